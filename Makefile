@@ -32,7 +32,7 @@ emulator: install ## Start the emulated devices again
 	$(BIN)/sequence-planner emulate $(STATION)
 
 hall: install ## The computers of the truck engine station and the world they stand in, for `run` without --emulator
-	$(BIN)/python -m sequence_planner.emulation.truck_station all --messages models/truck_engine_station/messages
+	$(BIN)/python -m sequence_planner.simulation.truck_station all --messages models/truck_engine_station/messages
 
 test: static pytest e2e ## Run every check
 
@@ -89,8 +89,8 @@ campaign: install-test page e2e/node_modules/done.stamp chromium ## The long run
 	cd backend && for each in campaigns/*.py; do echo "$$each" && PYTHONPATH=tests .venv/bin/python "$$each" || exit 1; done
 
 types: install frontend/node_modules/done.stamp ## Make the page's types and the editors' schemas again from the models
-	cd backend && .venv/bin/python -m sequence_planner.model.schemas ../docs/schemas
-	cd backend && .venv/bin/python -m sequence_planner.web.openapi > ../frontend/openapi.json
+	cd backend && .venv/bin/python -m sequence_planner.model.json_schema ../docs/schemas
+	cd backend && .venv/bin/python -m sequence_planner.server.openapi > ../frontend/openapi.json
 	cd frontend && npm run types
 
 golden: install-test ## Write down anew the names on which others rely: commands, settings, alarms, metrics, records of the journal

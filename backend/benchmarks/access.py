@@ -27,10 +27,10 @@ import httpx
 from argon2 import PasswordHasher
 from stations.processes import part
 
-from sequence_planner.control.asks import AboutFlows
-from sequence_planner.control.commands import CommandRefused
-from sequence_planner.identity.passwords import COSTS
-from sequence_planner.web.controller_client import ControllerClient
+from sequence_planner.auth.passwords import COSTS
+from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.queries import AboutFlows
+from sequence_planner.controller.ipc import ControllerClient
 
 STATION = Path(__file__).parents[2] / "models" / "bolt_tightening"
 DOMAIN = 1 + (os.getpid() + 75) % 100

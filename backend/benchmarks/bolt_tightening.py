@@ -10,18 +10,19 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
+from sequence_planner.automaton.automaton import Ability, Automaton, State
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.automaton.tick import finish, initial_state, synchronise
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Circumstances, Goal, Plan, goals_of
-from sequence_planner.planning.replaying.lookahead import Lookahead
-from sequence_planner.planning.replaying.replay import Replay
-from sequence_planner.planning.sat.search import Search, Sought
-from sequence_planner.planning.sat.sweep import sweep_order
+from sequence_planner.planning.problem import Circumstances, Goal, Plan, goals_of
+from sequence_planner.planning.sat.search import Search, SoughtPlans
+from sequence_planner.planning.sat.start_order import sweep_order
+from sequence_planner.planning.validation.lookahead import Lookahead
+from sequence_planner.planning.validation.replay import Replay
+from sequence_planner.process.budget import Budget
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 MODEL = Path(__file__).parents[2] / "models" / "bolt_tightening"
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
@@ -63,7 +64,7 @@ def measure_plans(
     goals = goals_of(automaton, (f"tighten_bolt_pair({pair})" for pair in pairs))
 
     def plan(search: Search) -> Plan:
-        found = search.plan(Sought(state, goals, Circumstances(), 60), Budget.seconds(60))
+        found = search.plan(SoughtPlans(state, goals, Circumstances(), 60), Budget.seconds(60))
         assert found is not None
         return found
 

@@ -19,16 +19,16 @@ from pathlib import Path
 from ruamel.yaml import YAML
 from stations.large import ABILITIES, RESOURCES, files
 
-from sequence_planner.actor import SYSTEM
-from sequence_planner.start_needs import StartNeeds
-from sequence_planner.storage.database import Database
-from sequence_planner.workshop import draft as drafts
-from sequence_planner.workshop.checking import checked
-from sequence_planner.workshop.edits import SetEntry
-from sequence_planner.workshop.files import FolderReader, write_files
-from sequence_planner.workshop.language_worker import Draft, answer, errors, renamed_files, tied, used
-from sequence_planner.workshop.questions import LanguageQuestionKind, PlaceInText
-from sequence_planner.workshop.showing import Reader
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
+from sequence_planner.editor import draft as drafts
+from sequence_planner.editor.checks import checked
+from sequence_planner.editor.draft import SetEntry
+from sequence_planner.editor.language_worker import LanguageDraft, answer, errors, renamed_files, tied, used
+from sequence_planner.editor.processes import LanguageQuestionKind, PlaceInText
+from sequence_planner.editor.schemas.draft import FileReader
+from sequence_planner.model.files import FolderReader, write_files
+from sequence_planner.model.launch_requirements import StartNeeds
 
 LOOKS = 20
 MACHINE = "resources/machine_9.yaml"
@@ -72,7 +72,7 @@ def drafting(model: dict[str, str], folder: Path) -> None:
             with database.reading() as connection:
                 return drafts.read(connection)
 
-        draft, reader = read(), Reader()
+        draft, reader = read(), FileReader()
         told("all files for the page, first", lambda: reader.shown(draft, draft.files))
         told("the same by ruamel.yaml alone", lambda: [YAML(typ="rt").load(text) for text in model.values()])
         told("all files for the page, again", lambda: reader.shown(read(), model), LOOKS)
@@ -82,14 +82,16 @@ def drafting(model: dict[str, str], folder: Path) -> None:
         def change() -> None:
             proposal = drafts.editing(read(), [edit], "a title")
             with database.writing() as connection:
-                drafts.write(connection, read(), drafts.Proposal(dict(model), proposal.kind, None, ""), SYSTEM, 2.0)
+                drafts.write(
+                    connection, read(), drafts.DraftProposal(dict(model), proposal.kind, None, ""), SYSTEM, 2.0
+                )
 
         told("an edit, worked out and written", change, LOOKS)
 
 
 def words(model: dict[str, str], folder: Path) -> None:
     """The process that keeps what it has read of the draft."""
-    draft = Draft(folder / "words")
+    draft = LanguageDraft(folder / "words")
     draft.take(model)
     told("errors of the whole model, first", lambda: errors(draft))
     numbers = itertools.count()

@@ -23,10 +23,11 @@ from compared import abc
 from compared.aiger import aiger
 from compared.declaring import Problem
 
-from sequence_planner.automaton.structure import State
+from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.planning.plan import (
+from sequence_planner.language.evaluator import holds
+from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.problem import (
     ORDINARY,
     Circumstances,
     Contract,
@@ -37,9 +38,8 @@ from sequence_planner.planning.plan import (
     goal_of,
     goals_of,
 )
-from sequence_planner.planning.planner import Planner
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from planning.advice.single_faults import Moment, drawn, main_job

@@ -23,16 +23,17 @@ from typing import TypeVar
 from stations.curves import drawn
 from stations.several import write_several
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
+from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, goals_of
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Circumstances, Contract, PlanAnswer, PlanRequest, goals_of
+from sequence_planner.planning.validation.acceptance import Acceptance
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import supervised, supervisor
+from sequence_planner.synthesis.supervisor import supervised, supervisor
 
 SIZES = (1, 2, 4, 8, 16)
 LIMIT = 300.0  # seconds for one size
@@ -109,7 +110,7 @@ def plan(automaton: Automaton, known: Supervisor, what: str, operation: str, con
         print(f"    {answer.verdict.value}")
         return
     print(f"    {len(answer.plan.ticks)} ticks, by {answer.engine}")
-    course = Acceptance.of(automaton, known).course(Task(state, goals, Circumstances(), contract), answer.plan)
+    course = Acceptance.of(automaton, known).course(PlanningTask(state, goals, Circumstances(), contract), answer.plan)
     assert course is not None
     on_its_way = dict(course.way[1].run.values)
     timed("  again, on its way", lambda: ask(on_its_way))

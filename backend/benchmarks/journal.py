@@ -19,8 +19,8 @@ from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.storage.database import Database
+from sequence_planner.db.database import Database
+from sequence_planner.journal.writer import RunWriter
 
 RATES = (10, 50, 200)  # records per second
 SECONDS = 20.0

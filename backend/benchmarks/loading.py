@@ -12,12 +12,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from sequence_planner.automaton.grounding.station import ground
+from sequence_planner.automaton.grounding import ground
 from sequence_planner.cli.analysing import Limits
-from sequence_planner.cli.check import check_model
-from sequence_planner.model.composing import compose, compose_slowly
-from sequence_planner.model.loading import load_station
-from sequence_planner.pipelines.building import load_messages
+from sequence_planner.cli.model.check import check_model
+from sequence_planner.model.loader import load_station
+from sequence_planner.model.yaml.reader import compose, compose_slowly
+from sequence_planner.pipelines.builder import load_messages
 from sequence_planner.pipelines.inference import with_inferred_variables
 from sequence_planner.station import prepare_station
 

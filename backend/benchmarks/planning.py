@@ -27,16 +27,16 @@ from compared.bolts import bolt_tightening
 from compared.families import Problem, blocked, blocks, capacity, logistics, mutex, stations
 from compared.timing import ROUNDS, child, median, own
 
-from sequence_planner.automaton.structure import State
+from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import apply_effects, finish, start, synchronise
-from sequence_planner.exporting.pddl import pddl_text
-from sequence_planner.exporting.ticks import sequential
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.engines import FACTORIES
-from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof
+from sequence_planner.export.pddl import pddl_text
+from sequence_planner.export.sequential import sequential
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replaying.replay import Replay, missing
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.portfolio.engines import FACTORIES
+from sequence_planner.planning.problem import Contract, Plan, PlanAnswer, PlanRequest, Proof
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
 
 T = TypeVar("T")
 
@@ -175,7 +175,7 @@ def none_at_all(problem: Problem, folder: Path) -> None:
     (question,) = problem.questions
     answers: list[PlanAnswer] = []
     ours = median(lambda: own(lambda: answers.append(planned(problem, question))))
-    task = Task(problem.state, problem.questions[question])
+    task = PlanningTask(problem.state, problem.questions[question])
     alone = median(lambda: own(partial(proof_of, problem, task)))
     more = [f"{answers[-1].verdict}, {answers[-1].engine}", f"engine pdr {alone * 1000:.1f} ms"]
     if abc.PROGRAM is not None:
@@ -189,7 +189,7 @@ def none_at_all(problem: Problem, folder: Path) -> None:
     say(f"{problem.name}, {problem.size}", ours, *more)
 
 
-def proof_of(problem: Problem, task: Task) -> Proof:
+def proof_of(problem: Problem, task: PlanningTask) -> Proof:
     """What the engine that makes proofs, made anew, finds."""
     proof = FACTORIES["pdr"](problem.automaton, problem.supervisor).solve(task, Budget.seconds(LIMIT)).proof
     assert proof is not None

@@ -13,13 +13,13 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from sequence_planner.checking.far import MOST_EFFORT, begun, from_afar
-from sequence_planner.checking.inquiry import Questions
-from sequence_planner.checking.possibility import UNKNOWN, Finding
-from sequence_planner.checking.supervised import exactly, subjects_of
+from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding
+from sequence_planner.analysis.checks.large_reachability import MOST_EFFORT, begun, from_afar
+from sequence_planner.analysis.checks.reachability import Questions
+from sequence_planner.analysis.checks.supervised import exactly, subjects_of
 from sequence_planner.cli.loading import load_model
-from sequence_planner.synthesis.effort import Effort
-from sequence_planner.synthesis.supervision import supervised, supervisor
+from sequence_planner.synthesis.supervisor import supervised, supervisor
+from sequence_planner.synthesis.transition_relation import NodeLimit
 
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -51,14 +51,16 @@ def measure(folder: Path) -> None:
         far = from_afar(automaton, left, safe, made).findings
         took, memory = time.process_time() - at_once, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
         print(f"  from afar {len(left)} questions {took:.1f} s, {memory:.0f} MiB at most, findings {kinds(far)}")
-        inquiry = begun(Questions(automaton, [e for each in left for e in each.expressions], safe), Effort(MOST_EFFORT))
+        inquiry = begun(
+            Questions(automaton, [e for each in left for e in each.expressions], safe), NodeLimit(MOST_EFFORT)
+        )
         if inquiry is not None:
             print(
                 f"  at most {inquiry.diagrams.count(inquiry.perhaps_reached())} states are reached with the supervisor"
             )
 
 
-def kinds(found: Sequence[Finding]) -> str:
+def kinds(found: Sequence[FeasibilityFinding]) -> str:
     """How many findings there are of which kind."""
     return ", ".join(f"{number} {kind}" for kind, number in Counter(each.kind for each in found).items()) or "none"
 

@@ -15,19 +15,18 @@ from collections import Counter
 from pathlib import Path
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.control.execution import Execution
-from sequence_planner.control.moment import Moment
-from sequence_planner.history.model_digest import model_digest
-from sequence_planner.history.recorder import RunRecorder
-from sequence_planner.history.replay import replay
-from sequence_planner.history.restoring import beginning
-from sequence_planner.history.simulated import SimulatedStation
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.journal.whole_run import WholeRun
+from sequence_planner.controller.restore import beginning
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.db.database import Database
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.record.recorder import RunRecorder, model_digest
+from sequence_planner.execution.record.replay import replay
+from sequence_planner.history.simulation import SimulatedStation
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.journal.writer import RunWriter
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.storage.database import Database
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 MODELS = Path(__file__).parents[2] / "models"
 STATIONS = ("bolt_tightening", "truck_engine_station")
@@ -37,10 +36,10 @@ LIMIT = 60.0  # seconds in which an hour must be replayed
 
 async def record(station: ReadyStation, supervisor: Supervisor, database: Database, minutes: float) -> None:
     """Let the station produce, and write what happens."""
-    execution = Execution(station.automaton, supervisor)
+    execution = Executor(station.automaton, supervisor)
     writer = RunWriter(database, lambda: None)
     writer.begin()
-    now = Moment(1_800_000_000.0, 1000.0)
+    now = Timestamp(1_800_000_000.0, 1000.0)
     simulated = SimulatedStation(station, execution, Planner(station.automaton, supervisor), now)
     recorder = RunRecorder(execution, writer.write, model_digest(station.automaton), clock=lambda: simulated.now.epoch)
     execution.start_production()
@@ -67,7 +66,7 @@ def again(station: ReadyStation, supervisor: Supervisor, database: Database) -> 
     print("  " + ", ".join(f"{kind} {number}" for kind, number in kinds.most_common()))
     began = time.perf_counter()
     with database.reading() as connection:
-        assert beginning(connection, station.automaton, Moment.now()) is not None
+        assert beginning(connection, station.automaton, Timestamp.now()) is not None
     print(f"  what a start needs of it is read in {(time.perf_counter() - began) * 1000:.1f} ms")
     return seconds
 

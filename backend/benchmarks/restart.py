@@ -15,12 +15,12 @@ import time
 from collections import Counter, defaultdict
 from pathlib import Path
 
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.advice.advisor import Advisor
-from sequence_planner.planning.advice.offer import Advice
-from sequence_planner.planning.budget import Budget
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.planning.recovery.advisor import Advisor
+from sequence_planner.planning.recovery.proposals import Advice
+from sequence_planner.process.budget import Budget
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from planning.advice.single_faults import Fault, Moment, asked, faults, main_job

@@ -23,11 +23,12 @@ from pathlib import Path
 from compared.message_peer import BARE_ANSWERED, BARE_ASKED
 from compared.message_station import ANSWERED, ASKED, NUMBER, NUMBERS, reports, write_station
 
-from sequence_planner.emulation.node import NODE
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.transport import QualityOfService, Sample, Transport
+from sequence_planner.controller.ipc import ControllerClient
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Sample, Transport
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.simulation.manual_interface import NODE
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.web.controller_client import ControllerClient
 
 STATION = Path(__file__).parents[2] / "models" / "truck_engine_station"
 PEER = Path(__file__).parent / "compared" / "message_peer.py"

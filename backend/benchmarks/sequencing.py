@@ -14,10 +14,9 @@ import statistics
 import time
 from collections.abc import Sequence
 
-from sequence_planner.mes.sequencing.dispatching import Rule, by_due_time, by_weighted_length, dispatch
-from sequence_planner.mes.sequencing.instance import TICK, cost, instance
-from sequence_planner.mes.sequencing.sequencing import by_rule, sequence
-from sequence_planner.mes.sequencing.work import Operation, Work
+from sequence_planner.mes.scheduling.dispatch import Rule, by_due_time, by_weighted_length, dispatch
+from sequence_planner.mes.scheduling.problem import TICK, JobWork, WorkOperation, cost, instance
+from sequence_planner.mes.scheduling.scheduler import by_rule, sequence
 
 NOW = 1_700_000_000.0
 SEEDS = range(5)
@@ -65,23 +64,23 @@ def measure(jobs: int, operations: int, groups: int, limit: float) -> None:
     )
 
 
-def tardiness(works: Sequence[Work], exclusive: Exclusive, rule: Rule) -> float:
+def tardiness(works: Sequence[JobWork], exclusive: Exclusive, rule: Rule) -> float:
     """The weighted tardiness by a rule."""
     problem = instance(works, exclusive, NOW)
     return max(cost(problem, dispatch(problem, rule))[0] * TICK, TICK)
 
 
-def shop(jobs: int, operations: int, groups: int, seed: int) -> tuple[list[Work], Exclusive]:
+def shop(jobs: int, operations: int, groups: int, seed: int) -> tuple[list[JobWork], Exclusive]:
     """Orders, and which of them exclude each other."""
     chance = random.Random(seed)
-    works: list[Work] = []
+    works: list[JobWork] = []
     routes = [chance.sample(RESOURCES, operations) for _ in range(groups)]
     # With work masters the station does one order of each at a time, without as many as its resources allow.
     pace = 70.0 * operations / max(groups, 1) if groups else 70.0 * operations / len(RESOURCES)
     for number in range(jobs):
         route = routes[number % groups] if groups else chance.sample(RESOURCES, operations)
         parts = {
-            f"operation-{place}": Operation(
+            f"operation-{place}": WorkOperation(
                 frozenset({f"operation-{place - 1}"} if place else ()),
                 float(chance.randint(20, 120)),
                 frozenset({resource}),
@@ -89,7 +88,7 @@ def shop(jobs: int, operations: int, groups: int, seed: int) -> tuple[list[Work]
             for place, resource in enumerate(route)
         }
         due = NOW + chance.uniform(0.1, 1.0) * jobs * pace
-        works.append(Work(f"order-{number}", chance.randint(0, 4), due, None, parts))
+        works.append(JobWork(f"order-{number}", chance.randint(0, 4), due, None, parts))
     exclusive = [
         frozenset(work.job for place, work in enumerate(works) if place % groups == kind) for kind in range(groups)
     ]

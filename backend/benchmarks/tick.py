@@ -21,10 +21,11 @@ from compared.closures import ClosureRun
 from compared.ring import ring
 
 from sequence_planner.automaton import tick as reference
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
-from sequence_planner.automaton.structure import Automaton, Kind, State
+from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
 from sequence_planner.automaton.transitions import transitions
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.types import Value
 
 SIZES = (200, 1000, 5000)
 CHANGED = 3  # variables per tick

@@ -31,8 +31,8 @@ import httpx
 from stations.processes import part
 from websockets.asyncio.client import connect
 
-from sequence_planner.control.controller import Controller
-from sequence_planner.control.moment import Moment
+from sequence_planner.controller.controller import Controller
+from sequence_planner.core.clock import Timestamp
 from sequence_planner.program import main as program
 
 STATION = Path(__file__).parents[2] / "models" / "truck_engine_station"
@@ -237,7 +237,7 @@ def controller(arguments: Sequence[str]) -> None:
     waiting: deque[tuple[int, float]] = deque()
     notes = Path(os.environ[NOTES]).open("a", buffering=1)  # noqa: SIM115 - until the process ends
 
-    def timed(self: Controller, moment: Moment) -> None:
+    def timed(self: Controller, moment: Timestamp) -> None:
         before, began = self.execution.ticks, time.perf_counter()
         step(self, moment)
         if self.execution.ticks > before:

@@ -24,17 +24,17 @@ from compared.declaring import UNSUPERVISED
 from compared.timing import own
 from compared.unseen import SCALES, Unseen, strayed, unseen
 
+from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.structure import State
-from sequence_planner.exporting.pddl import pddl_text
-from sequence_planner.exporting.ticks import sequential
-from sequence_planner.planning.budget import Budget
+from sequence_planner.export.pddl import pddl_text
+from sequence_planner.export.sequential import sequential
+from sequence_planner.planning.efa_planner import PlainPlanner
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plain import PlainPlanner
 from sequence_planner.planning.plain_answer import PlainAnswer
-from sequence_planner.planning.plan import Contract, Verdict
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.problem import Contract, Verdict
 from sequence_planner.planning.single.derived import as_station
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
 
 LIMIT = 10.0  # seconds of the processor for one question
 WAIT = 120.0  # seconds that we wait for them

@@ -12,8 +12,8 @@ from pathlib import Path
 import structlog
 from comparing.campaign import Kind, Subject, main
 
-from sequence_planner.identity.roles import Role
-from web.fuzzing import fuzz, station
+from sequence_planner.auth.roles import Role
+from server.fuzzing import fuzz, station
 
 EXAMPLES = 50
 WHO = (Role.ADMINISTRATOR, Role.OPERATOR, Role.VIEWER, None)

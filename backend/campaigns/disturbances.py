@@ -10,7 +10,7 @@ from collections import Counter
 import structlog
 from comparing.campaign import Kind, Subject, main
 
-from control.disturbances import LONGEST_TICK, disturbed
+from controller.disturbances import LONGEST_TICK, disturbed
 
 SECONDS = 60
 

@@ -7,7 +7,7 @@ from collections import Counter
 
 from comparing.campaign import Kind, Subject, main
 
-from control.faulty import after_fault
+from controller.faulty import after_fault
 from running import forked, killing
 
 FORKED, REAL = 10, 5  # times that one station's controller is killed

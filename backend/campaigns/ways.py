@@ -9,7 +9,7 @@ from collections.abc import Callable
 from comparing.campaign import REPOSITORY, Kind, Subject, main
 
 sys.path.insert(0, str(REPOSITORY / "backend" / "tests"))  # or a campaign would stand for the tests of that name
-from control import ways
+from controller import ways
 from planning.advice import rules
 
 DEADLINE = 3.0  # seconds for an answer

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from sequence_planner.cli import app
+from sequence_planner.cli.main import app
 
 CELL = Path(__file__).parent / "stations" / "cell"
 TRUCK = Path(__file__).parents[2] / "models" / "bolt_tightening"

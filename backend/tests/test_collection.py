@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 
-from sequence_planner.collection import collection_put_off, collection_seldom
+from sequence_planner.process.gc_tuning import collection_put_off, collection_seldom
 
 
 def test_collection_is_seldom_while_a_command_answers_and_as_usual_afterwards() -> None:

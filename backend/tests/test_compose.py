@@ -13,11 +13,10 @@ from sqlalchemy import make_url
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from sequence_planner.cli import app
-from sequence_planner.journal import signing_key
-from sequence_planner.mes.webhooks import sealing
-from sequence_planner.storage.address import address
-from sequence_planner.storage.location import backups_folder, revisions_folder
+from sequence_planner.cli.main import app
+from sequence_planner.db.location import address, backups_folder, revisions_folder
+from sequence_planner.journal import checkpoints
+from sequence_planner.mes.webhooks import endpoints
 
 ROOT = Path(__file__).parents[2]
 
@@ -247,7 +246,7 @@ def test_keys_revisions_and_backups_are_in_the_volume_of_the_state(
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     model, place = Path(environment["STATION_FOLDER"]), address(url)
-    keys = {signing_key.key_file(place), sealing.key_file(place)}
+    keys = {checkpoints.key_file(place), endpoints.key_file(place)}
     places = keys | {revisions_folder(url, model), backups_folder(url, model)}
     assert len(places) == 4
     assert all(place.is_relative_to(environment["XDG_STATE_HOME"]) for place in places)

@@ -8,26 +8,31 @@ from pathlib import Path
 import pytest
 
 from running.stations import finished
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_formula, resolve_predicate
-from sequence_planner.expressions.syntax import ExpressionError
-from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.language.parser import parse, parse_assignment, parse_formula
+from sequence_planner.language.resolver import (
+    NameScope,
+    resolve_assignment,
+    resolve_formula,
+    resolve_predicate,
+)
+from sequence_planner.language.syntax import ExpressionError
+from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.documents import (
     AbilityDocument,
-    DocumentPart,
     EffectDocument,
     OperationDocument,
     SpecificationDocument,
-    StageDocument,
     StationDocument,
     TopicDocument,
     WorkMasterDocument,
     WorkStepDocument,
 )
+from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import ModelError
+from sequence_planner.model.stage_documents import StageDocument
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 REPOSITORY = Path(__file__).parents[2]
 TEXT = "".join((REPOSITORY / "docs" / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))
@@ -71,10 +76,10 @@ def test_nothing_is_to_be_said_against_it(station: Path) -> None:
     assert "warning" not in found.stdout + found.stderr
 
 
-def scope_of(automaton: Automaton) -> Scope:
+def scope_of(automaton: Automaton) -> NameScope:
     """What names mean in the clamp's document."""
     activities = {operation.activity: BOOLEAN for operation in automaton.operations.values()}
-    return Scope({**automaton.types, **activities}, ("clamp.",))
+    return NameScope({**automaton.types, **activities}, ("clamp.",))
 
 
 def test_expressions(automaton: Automaton) -> None:

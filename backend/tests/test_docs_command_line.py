@@ -41,7 +41,7 @@ def test_it_prints_what_is_shown(line: str, printed: str) -> None:
 
 
 def test_every_kind_of_warning_is_described() -> None:
-    files = [*(SOURCE / "checking").glob("*.py"), SOURCE / "cli" / "check.py"]
+    files = [*(SOURCE / "analysis" / "checks").glob("*.py"), SOURCE / "cli" / "model" / "check.py"]
     kinds = {kind for file in files for kind in KINDS.findall(file.read_text(encoding="utf-8"))}
     rows = re.findall(r"^\| ((?:`[a-z-]+`(?:, )?)+) \|", TEXT, re.MULTILINE)
     described = {kind for row in rows for kind in re.findall(r"`([a-z-]+)`", row)}

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from sequence_planner.exporting.station import plain_of_station
+from sequence_planner.export.efa import plain_of_station
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision
+from sequence_planner.synthesis.supervisor import Supervision
+from sequence_planner.synthesis.transition_relation import Plant
 
 REPOSITORY = Path(__file__).parents[2]
 TEXT = (REPOSITORY / "docs" / "export.md").read_text(encoding="utf-8")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.model.reading import read_text
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision
+from sequence_planner.synthesis.supervisor import Supervision
+from sequence_planner.synthesis.transition_relation import Plant
 
 REPOSITORY = Path(__file__).parents[2]
 MODEL = REPOSITORY / "models" / "single_bolt"
@@ -53,7 +53,7 @@ def test_the_guard_shown_is_the_one_that_is_added() -> None:
     automaton: Automaton = prepare_station(MODEL).automaton
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
     reached = supervision.reachable(supervised=True)
-    guard = supervision.plant.where(resolve_predicate(parse(shown.strip()), Scope(automaton.types)))
+    guard = supervision.plant.where(resolve_predicate(parse(shown.strip()), NameScope(automaton.types)))
     allowed, disallowed = (reached & states for states in supervision.guard(ability))
     assert (allowed | disallowed).satisfiable()
     assert allowed == (allowed | disallowed) & guard

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from typer.main import get_command
 
-from sequence_planner.cli import app
-from sequence_planner.cli.put_off import PutOff
+from sequence_planner.cli.lazy import LazyCommand
+from sequence_planner.cli.main import app
 
 REPOSITORY = Path(__file__).parents[2]
 PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
@@ -23,7 +23,7 @@ OF_OTHERS = {"--system", "--home-dir", "--pty", "--uid", "--setenv", "--url", "-
 def options(command: Any) -> set[str]:  # noqa: ANN401 - of a class that typer does not show
     found = {each for parameter in command.params for each in parameter.opts if each.startswith("--")}
     for each in getattr(command, "commands", {}).values():
-        found |= options(each.command() if isinstance(each, PutOff) else each)
+        found |= options(each.command() if isinstance(each, LazyCommand) else each)
     return found
 
 

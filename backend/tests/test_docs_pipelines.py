@@ -7,9 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.model.client_documents import ActionDocument, ServiceDocument
-from sequence_planner.model.document_part import DocumentPart
-from sequence_planner.model.flow_documents import ExampleDocument, ExampleStepDocument, FlowDocument
+from sequence_planner.model.documents import (
+    ActionDocument,
+    ExampleDocument,
+    ExampleStepDocument,
+    FlowDocument,
+    ServiceDocument,
+)
+from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.stage_documents import (
     BoundsDocument,
     DiscretiseDocument,

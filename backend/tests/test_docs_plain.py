@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.model.documents import DocumentPart
-from sequence_planner.model.plain_documents import PlainDocument, TransitionDocument, read_plain
-from sequence_planner.planning.plain import plan_transitions
-from sequence_planner.planning.plan import goals_of
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.model.efa_document import PlainDocument, TransitionDocument, read_plain
+from sequence_planner.model.fields import DocumentPart
+from sequence_planner.planning.efa_planner import plan_transitions
+from sequence_planner.planning.problem import goals_of
+from sequence_planner.synthesis.supervisor import synthesise
 
 TEXT = (Path(__file__).parents[2] / "docs" / "plain-automata.md").read_text(encoding="utf-8")
 

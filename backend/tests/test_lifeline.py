@@ -13,7 +13,7 @@ from pathlib import Path
 LAUNCHED = """
 import os, sys, time
 from pathlib import Path
-from sequence_planner.lifeline import end_with_launcher
+from sequence_planner.process.parent_watch import end_with_launcher
 end_with_launcher(Path(sys.argv[1]) if sys.argv[1:] else None)
 print(os.getpid(), flush=True)
 time.sleep(60)

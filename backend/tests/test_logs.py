@@ -8,12 +8,12 @@ import subprocess
 import sys
 import time
 
-from sequence_planner.logs import LineQueue
+from sequence_planner.core.logging import LineQueue
 
 CHATTER = """
 import time
 import structlog
-from sequence_planner.logs import configure_logs
+from sequence_planner.core.logging import configure_logs
 
 configure_logs()
 log = structlog.get_logger()
@@ -24,7 +24,7 @@ print("done", flush=True)
 """
 FAULT = """
 import structlog
-from sequence_planner.logs import configure_logs
+from sequence_planner.core.logging import configure_logs
 
 configure_logs()
 
@@ -41,7 +41,7 @@ except RuntimeError:
 
 TYPED = """
 import structlog
-from sequence_planner.logs import configure_logs
+from sequence_planner.core.logging import configure_logs
 
 configure_logs()
 log = structlog.get_logger()
@@ -59,7 +59,7 @@ import logging
 logging.getLogger("uvicorn.error").warning("a library %s", "speaks")
 """
 ENDING = """
-from sequence_planner.logs import configure_logs
+from sequence_planner.core.logging import configure_logs
 
 configure_logs()
 raise RuntimeError("an end")
@@ -150,7 +150,7 @@ def test_what_ends_a_process_is_an_event_too() -> None:
 
 def test_nothing_is_imported_to_write_more_beautifully() -> None:
     code = (
-        "import sys; import sequence_planner.logs\n"
+        "import sys; import sequence_planner.core.logging\n"
         "print(*({each.partition('.')[0] for each in sys.modules} & {'rich', 'twisted', 'attr'}))\n"
         "import rich.console, twisted.python.log"
     )

@@ -15,10 +15,10 @@ import pytest
 from typer.core import TyperGroup
 from typer.main import get_command
 
-from sequence_planner.cli import app
-from sequence_planner.configuration import PREFIX, Configuration
-from sequence_planner.part import UNUSABLE
-from sequence_planner.service_manager import ServiceManager
+from sequence_planner.cli.main import app
+from sequence_planner.process.service_manager import ServiceManager
+from sequence_planner.settings import PREFIX, Configuration
+from sequence_planner.startup.station_process import UNUSABLE
 
 ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "deploy" / "sequence-planner@.service"
@@ -122,7 +122,7 @@ def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
     # What was installed finds its own page and schemas, and not those of the repository.
     code = (
         "from pathlib import Path; import sys; from sequence_planner import launcher; "
-        "from sequence_planner.model.schemas import write_schemas; "
+        "from sequence_planner.model.json_schema import write_schemas; "
         "write_schemas(Path(sys.argv[1])); print(launcher.PAGE)"
     )
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "installed")}

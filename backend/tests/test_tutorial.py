@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from control.rig import Rig
-from sequence_planner.cli import app
-from sequence_planner.control.vocabulary import PlanStatus
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
+from controller.rig import Rig
+from sequence_planner.cli.main import app
+from sequence_planner.execution.vocabulary import PlanStatus
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, synthesise
+from sequence_planner.synthesis.supervisor import Supervision, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 REPOSITORY = Path(__file__).parents[2]
 MODELS = REPOSITORY / "models"
@@ -74,7 +74,7 @@ def assert_guards(station: Path, guards: list[Block]) -> None:
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
     reached = supervision.reachable(supervised=True)
     for guard in guards:
-        shown = supervision.plant.where(resolve_predicate(parse(guard.content.strip()), Scope(automaton.types)))
+        shown = supervision.plant.where(resolve_predicate(parse(guard.content.strip()), NameScope(automaton.types)))
         allowed, disallowed = (reached & states for states in supervision.guard(guard.label))
         assert (allowed | disallowed).satisfiable(), f"{guard.label} never has a choice"
         assert allowed == (allowed | disallowed) & shown, guard.label
@@ -163,7 +163,7 @@ def test_the_guard_of_the_first_robot_alone_goes_with_the_second(tmp_path: Path)
 def test_without_the_specification_both_robots_come_to_the_buffer(tmp_path: Path) -> None:
     automaton = prepare_station(station_after(4, tmp_path)).automaton
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
-    both = resolve_predicate(parse("robot_1.at == buffer and robot_2.at == buffer"), Scope(automaton.types))
+    both = resolve_predicate(parse("robot_1.at == buffer and robot_2.at == buffer"), NameScope(automaton.types))
     assert (supervision.reachable(supervised=True) & supervision.plant.where(both)).satisfiable()
 
 

@@ -14,19 +14,24 @@ from typing import cast
 import pytest
 
 from core.actors import EVA
-from sequence_planner import deployment_under_way
-from sequence_planner.control.command_base import CommandRefused
-from sequence_planner.control.control_view import ControlView
-from sequence_planner.control.deploying import Deploying, LastDeployment
-from sequence_planner.control.known import Known
-from sequence_planner.control.production_commands import Deploy
-from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote, undo_what_was_cut_off
-from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
-from sequence_planner.exchange import exchanging
-from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
-from sequence_planner.part import Executed, Part
-from sequence_planner.workshop import files
-from sequence_planner.workshop.files import put_in_place, read_contents, read_files, write_files
+from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.production import Deploy
+from sequence_planner.controller.deployment_folder import (
+    NAME,
+    DeploymentFolder,
+    DeploymentNote,
+    undo_what_was_cut_off,
+)
+from sequence_planner.controller.preparation import Deploying, LastDeployment
+from sequence_planner.controller.restore import RestoredState
+from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.model import files
+from sequence_planner.model.exchange import exchanging
+from sequence_planner.model.files import put_in_place, read_contents, read_files, write_files
+from sequence_planner.process.parent_watch import DEPLOYED, OVERTAKEN
+from sequence_planner.startup import deployment
+from sequence_planner.startup.deployment import LONGEST_START, UnderWay
+from sequence_planner.startup.station_process import Executed, StationProcess
 
 MODEL = Path(__file__).parents[2] / "models" / "single_bolt"
 NOTE = DeploymentNote(revision="1" * 40, name="Repaired", by="anna", time=1.0)
@@ -72,7 +77,7 @@ def beside(tmp_path: Path) -> Path:
 @pytest.fixture
 def now(monkeypatch: pytest.MonkeyPatch) -> Now:
     clock = Now()
-    monkeypatch.setattr(deployment_under_way, "time", clock)
+    monkeypatch.setattr(deployment, "time", clock)
     return clock
 
 
@@ -80,7 +85,7 @@ def begun(model: Path, beside: Path, controller: Controller) -> UnderWay:
     """What watches over a deployment whose files are in place."""
     DeploymentFolder(beside).begin(NOTE, read_contents(model))
     put_in_place({**read_files(model), "station.yaml": "title: new\n"}, model)
-    watch = UnderWay(model, beside, cast(Part, controller), None)
+    watch = UnderWay(model, beside, cast(StationProcess, controller), None)
     controller.ended = DEPLOYED
     watch.look()
     controller.ended = None
@@ -187,7 +192,7 @@ def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_
     """A controller that makes room just after the launcher has looked at the deployment."""
     DeploymentFolder(beside).begin(NOTE, read_contents(model))
     program = f"import sys; sys.stdin.read(); raise SystemExit({DEPLOYED})"
-    part = Part("controller", Executed([sys.executable, "-c", program]))
+    part = StationProcess("controller", Executed([sys.executable, "-c", program]))
     part.spawn()
     watch, first = UnderWay(model, beside, part, None), part.process
     assert first is not None
@@ -242,7 +247,7 @@ def test_who_has_stood_by_for_another_begins_with_what_that_one_has_done(beside:
     last = LastDeployment(beside / "socket")
     last.tell_that_it_stands_by()
     assert DeploymentFolder(beside).runs
-    known = last.known(Known(left_out=("an estimate",)))
+    known = last.known(RestoredState(left_out=("an estimate",)))
     assert (known.left_out, known.control) == (("an estimate",), None)
 
 
@@ -318,7 +323,7 @@ def test_a_controller_that_dies_at_it_leaves_a_whole_model(model: Path, beside: 
     before = read_contents(model)
     deployed_and_killed(model, beside, writes)
     controller = Controller()
-    watch = UnderWay(model, beside, cast(Part, controller), None)
+    watch = UnderWay(model, beside, cast(StationProcess, controller), None)
     controller.ended = -signal.SIGKILL
     watch.look()
     assert controller.done == [], "it is started again as after any other end"
@@ -340,7 +345,7 @@ def test_a_controller_that_dies_at_it_leaves_a_whole_model(model: Path, beside: 
 def test_a_controller_that_dies_before_it_has_begun_has_deployed_nothing(model: Path, beside: Path) -> None:
     DeploymentFolder(beside).begin(NOTE, read_contents(model))
     controller = Controller()
-    watch = UnderWay(model, beside, cast(Part, controller), None)
+    watch = UnderWay(model, beside, cast(StationProcess, controller), None)
     controller.ended = -signal.SIGKILL
     watch.look()
     assert not DeploymentFolder(beside).exists

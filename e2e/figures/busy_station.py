@@ -11,9 +11,9 @@ import asyncio
 import sys
 from pathlib import Path
 
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.ros.qos import QualityOfService
 
 UNITS, FIELDS, BUSY = 100, 50, 10
 PERIOD = 0.1  # seconds

@@ -12,9 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sequence_planner.analysis.finding import analyses
-from sequence_planner.model.loading import DEFINITIONS, load_station
+from sequence_planner.model.paths import DEFINITIONS
+from sequence_planner.model.loader import load_station
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.workshop.comparison import Meant, behaviour_differences, differences, plan_differences
+from sequence_planner.editor.diff import Meant, behaviour_differences, differences, plan_differences
 
 
 def meant(station: ReadyStation) -> Meant:

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 
 from compared.declaring import UNSUPERVISED, Problem
 
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.immutable import replace
-from sequence_planner.planning.budget import Budget
+from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.core.immutable import replace
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.goals.tracking import Progress, Tracker
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.problem import Circumstances
 from sequence_planner.planning.sat.encoding import Encoding
-from sequence_planner.planning.sat.sweep import Sweep
+from sequence_planner.planning.sat.solver import Circuit
+from sequence_planner.planning.sat.start_order import Sweep
 from sequence_planner.planning.sat.symbolic import Symbol, SymbolicState
 from sequence_planner.planning.single.derived import for_planning
+from sequence_planner.process.budget import Budget
 
 
 class _Gates(Circuit):

@@ -7,9 +7,9 @@ from pathlib import Path
 from compared.declaring import Problem
 
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.planning.plan import goals_of
+from sequence_planner.planning.problem import goals_of
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 MODEL = Path(__file__).parents[3] / "models" / "bolt_tightening"
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")

@@ -10,11 +10,11 @@ from typing import Any
 
 from compared.declaring import UNSUPERVISED, Problem
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.plan import goals_of
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.planning.problem import goals_of
 from sequence_planner.planning.single.derived import for_planning
 
 Document = dict[str, Any]

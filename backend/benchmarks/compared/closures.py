@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 from sys import intern
 from typing import Any
 
-from sequence_planner.automaton.structure import Automaton, target
-from sequence_planner.expressions.evaluation import RELATIONS
-from sequence_planner.expressions.syntax import (
+from sequence_planner.automaton.automaton import Automaton, target
+from sequence_planner.language.evaluator import RELATIONS
+from sequence_planner.language.syntax import (
     And,
     Arithmetic,
     Assignment,
@@ -25,7 +25,7 @@ from sequence_planner.expressions.syntax import (
     Or,
     Variable,
 )
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.types import Value
 
 Values = dict[str, Any]
 Closure = Callable[[Values], Any]

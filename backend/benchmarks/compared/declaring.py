@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from sequence_planner.automaton.dependencies import ordered_flags
-from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -17,12 +15,14 @@ from sequence_planner.automaton.structure import (
     State,
     VariableDeclaration,
 )
+from sequence_planner.automaton.dependencies import ordered_flags
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.parser import parse, parse_assignment
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_predicate
-from sequence_planner.expressions.syntax import Assignment, Expression
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.planning.plan import Goal
+from sequence_planner.language.parser import parse, parse_assignment
+from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.syntax import Assignment, Expression
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.planning.problem import Goal
 
 FLAGS = ("enabled", "executing", "finished")
 UNSUPERVISED = Supervisor(StateSet((), ()), {})
@@ -91,9 +91,9 @@ class Declared:
         self._forbidden[name] = predicate
 
     @property
-    def _scope(self) -> Scope:
+    def _scope(self) -> NameScope:
         types = {name: variable.type for name, variable in self._variables.items()}
-        return Scope(types | {f"{name}.{flag}": BOOLEAN for name in self._abilities for flag in FLAGS})
+        return NameScope(types | {f"{name}.{flag}": BOOLEAN for name in self._abilities for flag in FLAGS})
 
     def automaton(self) -> Automaton:
         """All that has been declared."""
@@ -131,8 +131,8 @@ class Declared:
         return Problem(self._name, automaton, supervisor or UNSUPERVISED, initial_state(automaton), goals)
 
 
-def _ability(name: str, resource: str, does: Does, scope: Scope) -> Ability:
-    own = Scope(scope.variables, (f"{name}.",))
+def _ability(name: str, resource: str, does: Does, scope: NameScope) -> Ability:
+    own = NameScope(scope.variables, (f"{name}.",))
     return Ability(
         name=name,
         resource=resource,
@@ -147,9 +147,9 @@ def _ability(name: str, resource: str, does: Does, scope: Scope) -> Ability:
     )
 
 
-def _predicate(text: str, scope: Scope) -> Expression:
+def _predicate(text: str, scope: NameScope) -> Expression:
     return resolve_predicate(parse(text), scope)
 
 
-def _actions(texts: Iterable[str], scope: Scope) -> tuple[Assignment, ...]:
+def _actions(texts: Iterable[str], scope: NameScope) -> tuple[Assignment, ...]:
     return tuple(resolve_assignment(parse_assignment(text), scope) for text in texts)

@@ -13,8 +13,8 @@ from compared.classical import automaton_of, blocks, blocks_document, logistics,
 from compared.declaring import Declared, Does, Problem
 from compared.unreachable import blocked, capacity, mutex
 
-from sequence_planner.automaton.structure import Kind
-from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.automaton.automaton import Kind
+from sequence_planner.language.types import BOOLEAN
 
 __all__ = [
     "Problem",

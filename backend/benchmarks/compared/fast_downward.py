@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from compared.timing import child
 
-from sequence_planner.exporting.pddl import PddlText
-from sequence_planner.planning.plan import Plan
+from sequence_planner.export.pddl import PddlText
+from sequence_planner.planning.problem import Plan
 
 SEARCH = "let(ff, ff(), lazy_greedy([ff], preferred=[ff]))"
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from sequence_planner.synthesis.diagrams import Diagrams, Function
-from sequence_planner.synthesis.steps import Step
+from sequence_planner.synthesis.bdd import Diagrams, Function
+from sequence_planner.synthesis.transition_relation import TransitionStep
 
 Fire = Callable[[Function], Function]
-Close = Callable[[Diagrams, Function, Iterable[Step], Function | None], Function]
+Close = Callable[[Diagrams, Function, Iterable[TransitionStep], Function | None], Function]
 
 
 def breadth_first(diagrams: Diagrams, states: Function, fires: Iterable[Fire], within: Function) -> Function:
@@ -42,12 +42,12 @@ def closures(algorithm: str) -> tuple[Close, Close]:
     close = ALGORITHMS[algorithm]
 
     def reachable(
-        diagrams: Diagrams, states: Function, steps: Iterable[Step], within: Function | None = None
+        diagrams: Diagrams, states: Function, steps: Iterable[TransitionStep], within: Function | None = None
     ) -> Function:
         return close(diagrams, states, (step.after for step in steps), diagrams.true if within is None else within)
 
     def reaching(
-        diagrams: Diagrams, states: Function, steps: Iterable[Step], within: Function | None = None
+        diagrams: Diagrams, states: Function, steps: Iterable[TransitionStep], within: Function | None = None
     ) -> Function:
         return close(diagrams, states, (step.before for step in steps), diagrams.true if within is None else within)
 

@@ -21,15 +21,15 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from sequence_planner.control.process import Running, control
-from sequence_planner.logs import configure_logs
+from sequence_planner.controller.service import Running, control
+from sequence_planner.core.logging import configure_logs
 from sequence_planner.ros import environment, names
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.cyclone_network import join
-from sequence_planner.ros.cyclone_qos import endpoint_qos
-from sequence_planner.ros.cyclone_types import raw_types
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import QualityOfService, Transport
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Transport
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.transports.cyclonedds_discovery import endpoint_qos
+from sequence_planner.ros.transports.cyclonedds_network import join, raw_types
+from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.station import prepare_station
 
 BARE_ASKED, BARE_ANSWERED = "/bare/asked", "/bare/answered"

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from ruamel.yaml import YAML
 
-from sequence_planner.emulation.spoken import spoken
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.types import Value
+from sequence_planner.simulation.messages import spoken
 from sequence_planner.station import ReadyStation
 
 ASKED, ANSWERED, NUMBER = "/echo/asked", "/echo/answered", "echo_msgs/msg/Number"

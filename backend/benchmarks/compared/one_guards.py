@@ -14,10 +14,10 @@ from itertools import pairwise
 
 from one_synthesis import automaton_of
 
-from sequence_planner.checking.supervised import check_supervision
+from sequence_planner.analysis.checks.supervised import check_supervision
 from sequence_planner.synthesis.guards import Restrictions
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
+from sequence_planner.synthesis.supervisor import Supervision, relevant, supervisor
+from sequence_planner.synthesis.transition_relation import Plant
 
 
 def main() -> None:

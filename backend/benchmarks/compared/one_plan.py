@@ -8,9 +8,9 @@ from __future__ import annotations
 import pickle
 import sys
 
-from sequence_planner.collection import collection_seldom
-from sequence_planner.planning.plan import Contract, PlanRequest
 from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.problem import Contract, PlanRequest
+from sequence_planner.process.gc_tuning import collection_seldom
 
 
 @collection_seldom()

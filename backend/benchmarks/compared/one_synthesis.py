@@ -14,13 +14,13 @@ from importlib import import_module
 from pathlib import Path
 
 from core.known_automata import philosophers, transfer_lines
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.model.plain_documents import load_plain, read_plain
+from sequence_planner.model.efa_document import load_plain, read_plain
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis import diagrams, supervision
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision
+from sequence_planner.synthesis import bdd, supervisor
+from sequence_planner.synthesis.supervisor import Supervision
+from sequence_planner.synthesis.transition_relation import Plant
 
 KNOWN = {"philosophers": philosophers, "transfer-lines": transfer_lines}
 
@@ -38,12 +38,12 @@ def choose(engine: str, algorithm: str) -> None:
     """Put the engine and the algorithm in the place of our own."""
     if engine == "cudd":
         cudd = import_module("cudd")
-        diagrams.BCDDManager = cudd.Manager  # type: ignore[attr-defined]
-        diagrams.BCDDSubstitution = cudd.Substitution  # type: ignore[attr-defined]
+        bdd.BCDDManager = cudd.Manager  # type: ignore[attr-defined]
+        bdd.BCDDSubstitution = cudd.Substitution  # type: ignore[attr-defined]
     if algorithm != "saturation":
         reachable, reaching = import_module("fixpoints").closures(algorithm)
-        supervision.reachable = reachable  # type: ignore[attr-defined]
-        supervision.reaching = reaching  # type: ignore[attr-defined]
+        supervisor.reachable = reachable  # type: ignore[attr-defined]
+        supervisor.reaching = reaching  # type: ignore[attr-defined]
 
 
 def main() -> None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sequence_planner.automaton.dependencies import ordered_flags
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -15,10 +14,11 @@ from sequence_planner.automaton.structure import (
     Operation,
     VariableDeclaration,
 )
-from sequence_planner.expressions.parser import parse, parse_assignment
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_predicate
-from sequence_planner.expressions.syntax import Expression
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.automaton.dependencies import ordered_flags
+from sequence_planner.language.parser import parse, parse_assignment
+from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.syntax import Expression
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 POSES = EnumerationType(("home", "above", "at_work", "between"))
 PARTS = EnumerationType(("none", "placed", "done"))
@@ -135,7 +135,7 @@ class _Words:
     """What the words of an ability mean in its place in the ring."""
 
     def __init__(self, types: Mapping[str, Type], resource: str, ability: str, following: str) -> None:
-        self._scope = Scope(types, (f"{resource}.{ability}.", f"{resource}."))
+        self._scope = NameScope(types, (f"{resource}.{ability}.", f"{resource}."))
         self._resource, self._name, self._following = resource, f"{resource}.{ability}", following
 
     def ability(self, does: Does) -> Ability:

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from compared.declaring import Declared, Does, Problem
 
-from sequence_planner.automaton.structure import Kind
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.automaton.automaton import Kind
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.synthesis.supervisor import synthesise
 
 
 def mutex(users: int) -> Problem:

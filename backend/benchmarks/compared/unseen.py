@@ -16,14 +16,14 @@ from compared.classical import automaton_of
 from compared.declaring import UNSUPERVISED
 from compared.families import stations
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.exporting.station import plain_of_station
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.syntax import Comparison, Constant, Expression, Variable, conjunction
-from sequence_planner.planning.plan import Goal
+from sequence_planner.export.efa import plain_of_station
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.syntax import Comparison, Constant, Expression, Variable, conjunction
+from sequence_planner.planning.problem import Goal
 
 Names = Sequence[str]
 
@@ -279,4 +279,4 @@ def _goal(automaton: Automaton, chance: random.Random, steps: int) -> Goal:
 
 
 def _predicate(automaton: Automaton, text: str) -> Expression:
-    return resolve_predicate(parse(text), Scope(automaton.types))
+    return resolve_predicate(parse(text), NameScope(automaton.types))

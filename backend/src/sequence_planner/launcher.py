@@ -1,18 +1,10 @@
-"""One command starts all processes of a station, and sees to it that they live.
-
-Controller and server are started again when they die. A model that was deployed and cannot be started gives way to the
-one before it. All are forked from one process that has imported what they need, see `forking`: most of what a start
-takes is over then. The socket on which people reach the server is this process's, so that who connects meanwhile waits,
-and is not turned away. Emulated devices are not started again: like real ones they stay away until somebody brings them
-back, but where another model was deployed they begin anew with it, as those before them stood.
-Production is started without a person only once; a controller that had to be started again waits for one. None of them
-outlives this process, even if it is killed: each holds a pipe from it (see `lifeline`).
-"""
+"""Launcher: start and supervise all processes of a station, and print its address."""
 
 from __future__ import annotations
 
 import contextlib
 import fcntl
+import http.client
 import os
 import signal
 import sys
@@ -24,29 +16,72 @@ from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - `socket` is the path of another one
 from typing import Final
 
-from sequence_planner.announcement import UNWELL, announced, health
+from sequence_planner.auth.oidc.options import ProviderOptions
 from sequence_planner.backup.settings import Keeping
-from sequence_planner.beginning import Beginning, begin, first_start
-from sequence_planner.control.unix_socket import LONGEST_PATH
-from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
-from sequence_planner.deployment_under_way import UnderWay
-from sequence_planner.emulation.standing import standing_file
-from sequence_planner.forking.orphans import reap_orphans
+from sequence_planner.controller.deployment_folder import DeploymentFolder, DeploymentNote
+from sequence_planner.core.logging import FORMAT, LogFormat, configure_logs, say
+from sequence_planner.core.secrets import CLIENT_SECRET, PASSWORD, environment
+from sequence_planner.core.storage_error import DATABASE
+from sequence_planner.forking.child import reap_orphans
 from sequence_planner.forking.starting import OWN
-from sequence_planner.identity.openid.options import ProviderOptions
-from sequence_planner.lifeline import DEMONSTRATION_DATABASE, LAST_WORDS_SUFFIX, NOT_EMULATED
-from sequence_planner.logs import FORMAT, LogFormat, configure_logs, say
-from sequence_planner.memory_limit import USUAL, VARIABLE
 from sequence_planner.mes.webhooks.targets import Targets
-from sequence_planner.part import UNUSABLE, Forked, Part
-from sequence_planner.part_modules import CONTROLLER, EMULATOR, NETWORK, SERVER
-from sequence_planner.parts_file import write_restarts
+from sequence_planner.process.memory_limit import USUAL, VARIABLE
+from sequence_planner.process.parent_watch import DEMONSTRATION_DATABASE, LAST_WORDS_SUFFIX, NOT_EMULATED
+from sequence_planner.process.restarts import write_restarts
+from sequence_planner.process.service_manager import ServiceManager
+from sequence_planner.process.unix_socket import LONGEST_PATH
 from sequence_planner.retention.settings import Retention
-from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD, environment
-from sequence_planner.service_manager import ServiceManager
-from sequence_planner.storage.environment import DATABASE
-from sequence_planner.web.binding import bind, check_demonstration, check_endpoint
-from sequence_planner.web.settings import Endpoint, SettingsError
+from sequence_planner.server.binding import bind, check_demonstration, check_endpoint, trusting_context
+from sequence_planner.server.settings import Endpoint, SettingsError, address_of
+from sequence_planner.simulation.device_state import standing_file
+from sequence_planner.startup.deployment import UnderWay
+from sequence_planner.startup.preloads import CONTROLLER, EMULATOR, NETWORK, SERVER
+from sequence_planner.startup.prestart import StationBeginning, begin, first_start
+from sequence_planner.startup.station_process import UNUSABLE, Forked, StationProcess
+
+# What a person who starts a station is told first: where it is opened, as soon as somebody answers there.
+
+PATIENCE = 1.0  # seconds for an answer
+TO_ITSELF = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # how this machine reaches what listens on all its addresses
+
+
+UNWELL = 503  # what /healthz answers while the controller is not heard
+
+
+def health(endpoint: Endpoint) -> int | None:
+    """With which status `endpoint` answers whether it is alive: it may be for its proxy only. None without an answer.
+
+    Over HTTPS it must be the endpoint's own certificate; nobody else needs to trust that here.
+    """
+    host = str(address_of(endpoint.host))
+    host, port = TO_ITSELF.get(host, host), endpoint.port
+    if endpoint.certificate is None:
+        asking = http.client.HTTPConnection(host, port, timeout=PATIENCE)
+    else:
+        context = trusting_context(endpoint.certificate)
+        asking = http.client.HTTPSConnection(host, port, timeout=PATIENCE, context=context)
+    with contextlib.closing(asking):
+        try:
+            asking.request("GET", "/healthz")
+            return asking.getresponse().status
+        except (OSError, http.client.HTTPException):
+            return None
+
+
+def announced(endpoint: Endpoint, model: Path) -> str:
+    """Where the station in the folder `model` is opened."""
+    return f"{model} runs: open {endpoint.address} (operator's watch: {endpoint.address}/watch)"
+
+
+# One command starts all processes of a station, and sees to it that they live.
+#
+# Controller and server are started again when they die. A model that was deployed and cannot be started gives way to
+# the one before it. All are forked from one process that has imported what they need, see `forking`: most of what a
+# start takes is over then. The socket on which people reach the server is this process's, so that who connects
+# meanwhile waits, and is not turned away. Emulated devices are not started again: like real ones they stay away until
+# somebody brings them back, but where another model was deployed they begin anew with it, as those before them stood.
+# Production is started without a person only once; a controller that had to be started again waits for one. None of
+# them outlives this process, even if it is killed: each holds a pipe from it (see `parent_watch`).
 
 # The page as the build leaves it: in the package where that was installed, or beside the backend in the repository.
 PACKAGED = Path(__file__).resolve().parent / "page"
@@ -105,7 +140,7 @@ def launch(request: Launch) -> int:
             if len(str(socket).encode()) > LONGEST_PATH:
                 raise SettingsError(f"the path of {socket} is too long for a socket; set TMPDIR to a shorter folder")
             url = request.database or f"sqlite:///{socket.parent / DEMONSTRATION_DATABASE}"
-            begun = begin(Beginning(request.model, url, request.new, shared=request.hot_standby is not None))
+            begun = begin(StationBeginning(request.model, url, request.new, shared=request.hot_standby is not None))
             for each in begun.said:
                 say(each)
             if begun.refused is not None:
@@ -150,7 +185,7 @@ class _Launcher:
         # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
         of_controller = {**environment(PASSWORD), DATABASE: url}
         of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
-        self._controller = Part(
+        self._controller = StationProcess(
             "controller",
             Forked(["controller", *controller], (*CONTROLLER, *network)),
             of_controller,
@@ -171,12 +206,14 @@ class _Launcher:
         listening = fcntl.fcntl(listener, fcntl.F_DUPFD_CLOEXEC, LISTENER)
         server += [*_options(request.endpoint), f"--listener={listening}"]
         kept = (listening,)
-        self._server = Part("server", Forked(["server", *server], SERVER, inherited=kept), of_server)
+        self._server = StationProcess("server", Forked(["server", *server], SERVER, inherited=kept), of_server)
         self._standing = standing_file(self._folder)
         emulator = Forked(
             ["emulate", model, *speed, *transport, "--keep-in", str(self._standing)], (*EMULATOR, *network)
         )
-        self._emulator = Part("emulated devices", emulator, last_words=self._folder / f"emulator{LAST_WORDS_SUFFIX}")
+        self._emulator = StationProcess(
+            "emulated devices", emulator, last_words=self._folder / f"emulator{LAST_WORDS_SUFFIX}"
+        )
         self._deployment = UnderWay(
             request.model, self._folder, self._controller, self._emulator if request.emulator else None
         )

@@ -14,9 +14,9 @@ def main() -> None:
     """Run the command line."""
     if sys.argv[1:2] == ["run"] and "--help" not in sys.argv:
         from sequence_planner.forking.starting import OWN  # noqa: PLC0415
-        from sequence_planner.part_modules import LATER, NOW  # noqa: PLC0415
+        from sequence_planner.startup.preloads import LATER, NOW  # noqa: PLC0415
 
         OWN.prepare(NOW, LATER)
-    from sequence_planner.cli import main as run  # noqa: PLC0415
+    from sequence_planner.cli.main import main as run  # noqa: PLC0415
 
     run()

@@ -6,28 +6,26 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sequence_planner.analysis.read_before import STATION, content_key, keep, read_before
-from sequence_planner.automaton.grounding.abilities import GroundBefore
-from sequence_planner.automaton.grounding.declarations import OPERATION
-from sequence_planner.automaton.grounding.station import ground
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.analysis.cache import STATION, content_key, keep, read_before
+from sequence_planner.analysis.checks.connections import Connections
+from sequence_planner.analysis.checks.ungiven_values import check_never_given
+from sequence_planner.analysis.checks.warning import ModelWarning, described
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.declarations import OPERATION
+from sequence_planner.automaton.grounding import GroundBefore, ground
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.checking.connections import Connections
-from sequence_planner.checking.never_given import check_never_given
-from sequence_planner.checking.warning import ModelWarning, described
-from sequence_planner.collection import collection_put_off
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import TRUE, variables
-from sequence_planner.model.flow_documents import ExampleDocument
-from sequence_planner.model.loading import ReadBefore, Station, load_station
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.syntax import TRUE, variables
+from sequence_planner.model.documents import ExampleDocument
+from sequence_planner.model.loader import ReadBefore, Station, load_station
 from sequence_planner.model.source import Finding, ModelError
-from sequence_planner.pipelines.building import build_pipelines, load_messages
+from sequence_planner.pipelines.builder import build_pipelines, flow_name, load_messages
 from sequence_planner.pipelines.examples import PipelineExample, failures, loading_failures
-from sequence_planner.pipelines.flow_building import flow_name
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.pipelines.inference import with_inferred_variables
 from sequence_planner.planning.goals.monitor import TooManyStatesError, monitor_of
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.process.gc_tuning import collection_put_off
+from sequence_planner.ros.types.messages import MessageRegistry
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,15 @@ from core.choices import Choices, made_by
 from core.explicit import Explicit, Key
 from core.random_expressions import actions
 from core.random_stations import automaton as random_station
-from sequence_planner.analysis.never_together import MOST_BITS, NeverTogether, never_together
-from sequence_planner.automaton.structure import Automaton, Kind, State
+from sequence_planner.analysis.mutual_exclusion import MOST_BITS, NeverTogether, never_together
+from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.tick import synchronise, writes
-from sequence_planner.expressions.syntax import Variable
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import replace
-from sequence_planner.planning.budget import Budget
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.syntax import Variable
+from sequence_planner.language.types import Value
+from sequence_planner.process.budget import Budget
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
 
 MODELS = Path(__file__).parents[3] / "models"
 PATIENCE = 60.0

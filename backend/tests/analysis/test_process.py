@@ -8,16 +8,16 @@ from itertools import pairwise
 
 import pytest
 
-from control.bench import cell, until
-from control.rig import truck_engine
+from controller.bench import cell, until
+from controller.rig import truck_engine
 from core.building import automaton
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.finding import analyses
-from sequence_planner.analysis.process import SynthesisEndedError, analysing
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.analysis.worker import SynthesisEndedError, analysing
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
+from sequence_planner.language.types import BOOLEAN
 
 
 def processes() -> list[Child]:

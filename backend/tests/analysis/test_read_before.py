@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.analysis.read_before import automaton_read_before, content_key, keep_automaton
+from sequence_planner.analysis.cache import automaton_read_before, content_key, keep_automaton
 from sequence_planner.analysis.store import folder, key
 from sequence_planner.cli import loading
 from sequence_planner.cli.loading import load_model, usable_automaton

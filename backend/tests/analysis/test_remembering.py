@@ -9,13 +9,13 @@ import pytest
 
 from core.building import Does, automaton
 from sequence_planner.analysis.analysis import Analysis
+from sequence_planner.analysis.cache import MOST_KEPT, cache, remember, remembered, supervisor_of
 from sequence_planner.analysis.finding import analyses
-from sequence_planner.analysis.never_together import NeverTogether
-from sequence_planner.analysis.remembering import MOST_KEPT, cache, remember, remembered, supervisor_of
+from sequence_planner.analysis.mutual_exclusion import NeverTogether
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.synthesis import supervision
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.synthesis import supervisor
 
 
 def lamp(goal: str) -> Automaton:
@@ -107,7 +107,7 @@ def test_a_supervisor_is_computed_once_by_whoever_needs_it_first(
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     first = supervisor_of(lamp("lamp"))
-    monkeypatch.delattr(supervision, "synthesise")
+    monkeypatch.delattr(supervisor, "synthesise")
     assert supervisor_of(lamp("lamp")) == first
     with pytest.raises(ImportError):
         supervisor_of(lamp("not lamp"))
@@ -118,5 +118,5 @@ def test_what_a_controller_has_found_serves_commands_too(monkeypatch: pytest.Mon
     where = cache()
     assert where is not None
     remember(where, lamp("lamp"), found(lamp("lamp")))
-    monkeypatch.delattr(supervision, "synthesise")
+    monkeypatch.delattr(supervisor, "synthesise")
     assert supervisor_of(lamp("lamp")) == found(lamp("lamp")).supervisor

@@ -12,10 +12,10 @@ import asyncio
 import sys
 from pathlib import Path
 
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.found_types import serve_types
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.ros.types.type_discovery import serve_types
 
 
 async def live(domain: int, messages: Path) -> None:

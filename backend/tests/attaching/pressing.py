@@ -10,8 +10,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from sequence_planner.ros.cyclone_network import loopback_configuration
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
+from sequence_planner.ros.types.messages import MessageRegistry
 
 CELL = Path(__file__).parents[1] / "stations" / "cell"
 DOMAIN = 1 + (os.getpid() + 30) % 100

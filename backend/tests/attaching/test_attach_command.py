@@ -10,12 +10,12 @@ import httpx
 import pytest
 
 from cli.commands import as_json, command
-from sequence_planner.identity.roles import Role
+from sequence_planner.auth.roles import Role
 from sequence_planner.journal.audit import read
+from sequence_planner.model.files import read_files
+from sequence_planner.server.settings import Settings
 from sequence_planner.station import prepare_station
-from sequence_planner.web.settings import Settings
-from sequence_planner.workshop.files import read_files
-from web.running import Loop, Server, free_port
+from server.running import Loop, Server, free_port
 
 from .pressing import DOMAIN, press, station
 

@@ -9,17 +9,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sequence_planner.attaching.attachment import Attachment, attachment
-from sequence_planner.attaching.definitions import definition_files
-from sequence_planner.attaching.errors import AttachError
-from sequence_planner.attaching.network import FoundTopic
-from sequence_planner.attaching.proposals import Proposal
-from sequence_planner.attaching.writing import with_proposals, with_topic
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.model.editing import same
-from sequence_planner.model.reading import read_text
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.quality import QualityOfService
+from sequence_planner.editor.attach import (
+    AttachError,
+    Attachment,
+    FoundTopic,
+    StageProposal,
+    attachment,
+    definition_files,
+    with_proposals,
+    with_topic,
+)
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.model.yaml.editor import same
+from sequence_planner.model.yaml.reader import read_text
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.station import prepare_station
 
 from .pressing import press_registry, station
@@ -173,7 +177,7 @@ def test_in_any_document_only_the_entries_are_added(text: str, is_measured: bool
     assert isinstance(before, dict)
     assert same(content["topics"], {**(before.get("topics") or {}), "/press/force": entry})
     assert same(content.get("measured"), {**(before.get("measured") or {}), **measured} or before.get("measured"))
-    commented = with_proposals(after, topic, [Proposal({"expression": {"b": "data > 1"}})])
+    commented = with_proposals(after, topic, [StageProposal({"expression": {"b": "data > 1"}})])
     assert same(read_text(commented, "commented").content, content)
     assert "#   - expression: {b: data > 1}" in commented
     assert [line for line in commented.splitlines() if line in after.splitlines()] == after.splitlines()

@@ -15,25 +15,23 @@ from pathlib import Path
 import pytest
 
 from cli.commands import CELL, command
+from db.servers import Server
 from journal.acts import act, filled
 from journal.happened import happened
-from sequence_planner.actor import SYSTEM, ActorKind
-from sequence_planner.backup import postgresql_programs
-from sequence_planner.backup.making import back_up
-from sequence_planner.backup.restoring import restore
-from sequence_planner.identity import people
-from sequence_planner.identity.roles import Role
-from sequence_planner.identity.sessions import find_session, open_session
+from sequence_planner.auth import users
+from sequence_planner.auth.roles import Role
+from sequence_planner.auth.sessions import find_session, open_session
+from sequence_planner.backup import archive
+from sequence_planner.backup.service import back_up, restore
+from sequence_planner.core.actor import SYSTEM, ActorKind
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import PostgresqlServer, address, revisions_folder
+from sequence_planner.editor.revisions import Revisions
 from sequence_planner.journal import audit, checkpoints, run_journal
-from sequence_planner.journal.signing_key import key_file
-from sequence_planner.journal.verification import verify
-from sequence_planner.storage.address import PostgresqlServer, address
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
-from sequence_planner.storage.location import revisions_folder
-from sequence_planner.workshop.files import read_files
-from sequence_planner.workshop.revisions import Revisions
-from storage.servers import Server
+from sequence_planner.journal.checkpoints import key_file
+from sequence_planner.journal.verify import verify
+from sequence_planner.model.files import read_files
 
 Anew = Callable[[], str]
 
@@ -65,7 +63,7 @@ def at_work(database: Database, database_url: str, model: Path) -> Iterator[str]
     shutil.rmtree(folder, ignore_errors=True)
     Revisions(folder).save(files, files, "First", "", SYSTEM, 40.0)
     with database.writing() as connection:
-        person = people.create(connection, "Eva", Role.ENGINEER, "none", SYSTEM, time.time(), temporary=False)
+        person = users.create(connection, "Eva", Role.ENGINEER, "none", SYSTEM, time.time(), temporary=False)
         token, _ = open_session(connection, person, time.time(), kind=ActorKind.PERSON, address="", agent="")
     yield token
     shutil.rmtree(folder, ignore_errors=True)
@@ -98,7 +96,7 @@ def test_what_was_there_is_there_again_and_everybody_has_to_sign_in(
         assert verify(connection).wrong == ()
         assert len(run_journal.after(connection, 0, 100)) == 30
         assert find_session(connection, at_work, time.time()) is None
-        assert [person.name for person in people.everybody(connection)] == ["Eva"]
+        assert [person.name for person in users.everybody(connection)] == ["Eva"]
         (last,) = audit.read(connection, limit=1)
         assert (last.entry.action, last.entry.details["run"]) == ("backup-restored", 30)
     with opened(database_url) as database, database.reading() as connection:
@@ -248,10 +246,10 @@ def test_by_the_command_line(tmp_path: Path, model: Path, monkeypatch: pytest.Mo
     assert "verified" in out
     assert command("restore", kept, model, "--database", url)[0] == 2
     assert command("backup", model, "--to", kept, "--database", url)[0] == 2
-    monkeypatch.setattr(postgresql_programs, "_INSTALLED", tmp_path)
+    monkeypatch.setattr(archive, "_INSTALLED", tmp_path)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(StorageError, match="sudo apt-get install postgresql-client"):
-        postgresql_programs.program("pg_dump")
+        archive.program("pg_dump")
 
 
 @pytest.mark.parametrize(
@@ -261,11 +259,11 @@ def test_a_password_is_on_no_command_line(tmp_path: Path, monkeypatch: pytest.Mo
     program = tmp_path / "pg_dump"
     program.write_text(f'#!/bin/sh\necho "$@" > {tmp_path}/arguments\necho "$PGPASSWORD" > {tmp_path}/password\n')
     program.chmod(0o700)
-    monkeypatch.setattr(postgresql_programs, "_INSTALLED", tmp_path)
+    monkeypatch.setattr(archive, "_INSTALLED", tmp_path)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
     server = address(url)
     assert isinstance(server, PostgresqlServer)
-    postgresql_programs.run("pg_dump", server)
+    archive.run("pg_dump", server)
     assert "dbname=press" in (tmp_path / "arguments").read_text()
     assert "s3cret" not in (tmp_path / "arguments").read_text()
     assert (tmp_path / "password").read_text() == "s3cret\n"

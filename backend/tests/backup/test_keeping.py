@@ -13,14 +13,11 @@ import pytest
 from cli.commands import CELL
 from journal.acts import filled
 from sequence_planner.backup.archive import How, Maker
-from sequence_planner.backup.keeping import Shelf
-from sequence_planner.backup.making import Step, back_up
-from sequence_planner.backup.process import Task
+from sequence_planner.backup.errors import BackupError, Trouble, trouble_of
+from sequence_planner.backup.service import BackupTask, Shelf, Step, back_up, do
 from sequence_planner.backup.settings import Keeping
-from sequence_planner.backup.task import do
-from sequence_planner.backup.trouble import BackupError, Trouble, trouble_of
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.location import mark_of
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import mark_of
 
 MAKER = Maker(how=How.SCHEDULE, name="Sequence Planner")
 
@@ -40,7 +37,7 @@ def shelf(tmp_path: Path) -> Shelf:
 def make(shelf: Shelf) -> tuple[Path, tuple[str, ...], list[Step]]:
     """A new backup, what was removed for its sake, and the steps on the way."""
     file, steps = shelf.new(time.time()), list[Step]()
-    return file, do(Task(shelf.url, shelf.model, shelf.keeping, file, MAKER), steps.append).removed, steps
+    return file, do(BackupTask(shelf.url, shelf.model, shelf.keeping, file, MAKER), steps.append).removed, steps
 
 
 def test_the_oldest_of_its_own_go_for_one_that_is_whole_and_others_stay(shelf: Shelf) -> None:

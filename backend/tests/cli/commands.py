@@ -8,7 +8,7 @@ from typing import Any
 
 from typer.testing import CliRunner
 
-from sequence_planner.cli import app
+from sequence_planner.cli.main import app
 
 TESTS = Path(__file__).parents[1]
 CELL = TESTS / "stations" / "cell"

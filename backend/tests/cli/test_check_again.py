@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from cli.commands import command
+from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.store import folder
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.connections import Connections
-from sequence_planner.cli import check as module
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.cli.analysing import Found, Limits, checked
+from sequence_planner.cli.model import check as module
 
 MODELS = Path(__file__).parents[3] / "models"
 

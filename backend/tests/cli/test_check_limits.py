@@ -10,12 +10,12 @@ from shutil import copytree
 
 import pytest
 
-from checking.large import write_large_station
+from checks.large import write_large_station
 from cli.commands import TRUCK, as_json, command
-from sequence_planner.analysis.process import SynthesisEndedError, telling
+from sequence_planner.analysis.worker import SynthesisEndedError, telling
 from sequence_planner.cli.analysing import Limits, checked
 from sequence_planner.cli.loading import load_model
-from sequence_planner.memory_limit import MemoryLimitError, memory_limit
+from sequence_planner.process.memory_limit import MemoryLimitError, memory_limit
 
 COUNTS = """
   made: {type: 0..200}

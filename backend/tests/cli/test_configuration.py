@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from sequence_planner import launcher
-from sequence_planner.cli.serving import run
-from sequence_planner.configuration import Configuration
+from sequence_planner.cli.station.run import run
+from sequence_planner.core.logging import LogFormat
 from sequence_planner.launcher import Launch
-from sequence_planner.logs import LogFormat
+from sequence_planner.settings import Configuration
 
 from .commands import CELL, as_json, command
 

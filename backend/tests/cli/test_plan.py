@@ -10,7 +10,7 @@ import pytest
 from pytest import MonkeyPatch
 
 from cli.commands import EXAMPLE, as_json, command, plain
-from sequence_planner.exporting.unified import installed
+from sequence_planner.export.unified import installed
 
 PLACED = json.dumps({"state": {"bolts": "placed"}})
 

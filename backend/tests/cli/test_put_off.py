@@ -7,12 +7,12 @@ import sys
 
 import pytest
 
-from sequence_planner.cli import COMMANDS
-from sequence_planner.cli.put_off import PutOff
+from sequence_planner.cli.lazy import LazyCommand
+from sequence_planner.cli.main import COMMANDS
 
 
 @pytest.mark.parametrize("put_off", COMMANDS, ids=lambda each: each.name)
-def test_the_help_says_of_a_command_what_it_says_of_itself(put_off: PutOff) -> None:
+def test_the_help_says_of_a_command_what_it_says_of_itself(put_off: LazyCommand) -> None:
     command = put_off.command()
     assert command.name == put_off.name
     if not put_off.hidden:
@@ -22,7 +22,7 @@ def test_the_help_says_of_a_command_what_it_says_of_itself(put_off: PutOff) -> N
 def test_the_help_imports_no_command() -> None:
     code = (
         "import sys; sys.argv = ['sequence-planner', '--help']\n"
-        "from sequence_planner.cli import main\n"
+        "from sequence_planner.cli.main import main\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
         "print('imported:', *sorted(name for name in sys.modules if name.startswith('sequence_planner.')))"
     )
@@ -30,5 +30,5 @@ def test_the_help_imports_no_command() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
     ).stdout
     assert "Run a station" in printed
-    few = ("cli", "cli.put_off", "collection")
+    few = ("cli", "cli.lazy", "cli.main", "process", "process.gc_tuning")
     assert printed.splitlines()[-1] == " ".join(["imported:", *(f"sequence_planner.{each}" for each in few)])

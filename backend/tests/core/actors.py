@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.actor import Actor, ActorKind
+from sequence_planner.core.actor import Actor, ActorKind
 
 
 def person(name: str, *, kind: ActorKind = ActorKind.PERSON, session: str | None = None) -> Actor:

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sequence_planner.automaton.automaton import Ability, Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.automaton.tick import supervised_start
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.problem import Circumstances
+from sequence_planner.planning.validation.replay import missing
 
 from .explicit import outcomes
 

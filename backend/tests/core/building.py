@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from sequence_planner.automaton.dependencies import ordered_flags
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -17,10 +16,16 @@ from sequence_planner.automaton.structure import (
     Timeouts,
     VariableDeclaration,
 )
-from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_formula, resolve_predicate
-from sequence_planner.expressions.syntax import Expression
-from sequence_planner.expressions.types import BOOLEAN, Type, Value
+from sequence_planner.automaton.dependencies import ordered_flags
+from sequence_planner.language.parser import parse, parse_assignment, parse_formula
+from sequence_planner.language.resolver import (
+    NameScope,
+    resolve_assignment,
+    resolve_formula,
+    resolve_predicate,
+)
+from sequence_planner.language.syntax import Expression
+from sequence_planner.language.types import BOOLEAN, Type, Value
 
 NO_TIMEOUTS = Timeouts()
 FLAGS = ("enabled", "executing", "finished")
@@ -45,7 +50,7 @@ class Does:
 
 def predicate_of(automaton: Automaton, text: str) -> Expression:
     """A predicate in the model's language over the variables of an automaton."""
-    return resolve_predicate(parse(text), Scope({name: each.type for name, each in automaton.variables.items()}))
+    return resolve_predicate(parse(text), NameScope({name: each.type for name, each in automaton.variables.items()}))
 
 
 def automaton(
@@ -72,7 +77,7 @@ def automaton(
         for name, (type_, initial) in declared.items()
     }
     types = {name: variable.type for name, variable in variables.items()}
-    scope = Scope(types | {f"{name}.{flag}": BOOLEAN for name in abilities for flag in FLAGS})
+    scope = NameScope(types | {f"{name}.{flag}": BOOLEAN for name in abilities for flag in FLAGS})
     made = {name: _ability(name, does, scope) for name, does in abilities.items()}
     flags, circle = ordered_flags([Flag(a.flag(which), getattr(a, which)) for a in made.values() for which in FLAGS])
     assert not circle
@@ -114,8 +119,8 @@ def automaton(
     )
 
 
-def _ability(name: str, does: Does, scope: Scope) -> Ability:
-    own = Scope(scope.variables, (f"{name}.",))
+def _ability(name: str, does: Does, scope: NameScope) -> Ability:
+    own = NameScope(scope.variables, (f"{name}.",))
     return Ability(
         name=name,
         resource="station",

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.automaton.grounding.station import ground
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.grounding import ground
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.model.loading import load_station
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, relevant, synthesise
+from sequence_planner.model.loader import load_station
+from sequence_planner.synthesis.supervisor import Supervision, relevant, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 STATIONS = Path(__file__).parent.parent / "stations"
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import product
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import supervised_start, synchronise
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
-from sequence_planner.planning.plan import Circumstances
+from sequence_planner.planning.problem import Circumstances
 
 from .breadth_first import may_start, permitted
 from .explicit import outcomes

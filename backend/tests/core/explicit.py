@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, product
 
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, State
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Kind, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     effect_writes,
@@ -20,9 +20,9 @@ from sequence_planner.automaton.tick import (
     start_guard_holds,
     synchronise,
 )
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.syntax import TRUE
+from sequence_planner.language.types import Value
 
 Key = tuple[Value, ...]
 

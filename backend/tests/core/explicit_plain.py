@@ -11,11 +11,11 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_predicate
-from sequence_planner.expressions.syntax import Assignment, Component, Name
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.syntax import Assignment, Component, Name
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 Key = tuple[Value, ...]
 Test = Callable[[Key], bool]
@@ -41,7 +41,7 @@ class ExplicitPlain:
         return dict(zip(self.types, key, strict=True))
 
     def _test(self, text: str) -> Test:
-        predicate = resolve_predicate(parse(text), Scope(self.types))
+        predicate = resolve_predicate(parse(text), NameScope(self.types))
         return lambda key: evaluate(predicate, self.valuation(key)) is True
 
     def _where(self, *texts: str) -> frozenset[Key]:
@@ -82,7 +82,7 @@ class ExplicitPlain:
     def _value(self, name: str, update: bool | int | str, key: Key) -> Value:
         if not isinstance(update, str):
             return update
-        action = resolve_assignment(Assignment(Name((Component(name),)), parse(update)), Scope(self.types))
+        action = resolve_assignment(Assignment(Name((Component(name),)), parse(update)), NameScope(self.types))
         value = evaluate(action.value, self.valuation(key))
         assert value is not None
         return value

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from itertools import product
 from random import Random
 
+from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind, Specification, State, target
+from sequence_planner.automaton.automaton import VariableDeclaration as Declared
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, Flag, Kind, Specification, State, target
-from sequence_planner.automaton.structure import VariableDeclaration as Declared
 from sequence_planner.automaton.tick import supervised_start, synchronise
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
     And,
@@ -26,10 +26,9 @@ from sequence_planner.expressions.syntax import (
     Not,
     Variable,
 )
-from sequence_planner.expressions.types import BOOLEAN, IntegerRange
-from sequence_planner.planning.budget import Budget, SpentError
-from sequence_planner.planning.sat.pairs import Pairs
-from sequence_planner.planning.sat.sweep import Sweep
+from sequence_planner.language.types import BOOLEAN, IntegerRange
+from sequence_planner.planning.sat.start_order import StartPairs, Sweep
+from sequence_planner.process.budget import Budget, SpentError
 
 from .choices import Choices
 from .random_expressions import Scope, equality, rare
@@ -134,7 +133,7 @@ def compare_pairs(seed: str) -> Counter[str]:
     choices = Choices(Random(seed).randrange)
     station, supervisor = with_supervisor(crowded(choices, 5))
     known = choices.chance(2)
-    pairs = Pairs(station, supervisor, known)
+    pairs = StartPairs(station, supervisor, known)
     met = Counter[str]()
     for _ in range(PAIRS):
         one, other = choices.different(list(station.abilities), 2, 2)

@@ -8,17 +8,17 @@ from typing import Any
 
 import pytest
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.printing import print_value
-from sequence_planner.model.plain_documents import read_plain
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.printer import print_value
+from sequence_planner.model.efa_document import read_plain
 from sequence_planner.model.source import ModelError
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.problem import Goal
+from sequence_planner.planning.validation.replay import missing
 
 from .choices import Choices
 from .explicit_plain import ExplicitPlain, Key, type_of

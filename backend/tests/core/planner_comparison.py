@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from random import Random
 
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Engine, Finding, Task
-from sequence_planner.planning.heuristic.best_first import HeuristicSearch
-from sequence_planner.planning.heuristic.breadth_first import ShortestSearch
-from sequence_planner.planning.pdr.engine import Reachability
-from sequence_planner.planning.plan import Contract
-from sequence_planner.planning.relaxed.goal_by_goal import GoalByGoal
-from sequence_planner.planning.relaxed.projection import Projection
-from sequence_planner.planning.replaying.replay import Replay, missing
-from sequence_planner.planning.sat.bounded import BoundedModelChecking
-from sequence_planner.planning.sat.seen import PartialSight
+from sequence_planner.planning.heuristic.projection import GoalByGoal, Projection
+from sequence_planner.planning.heuristic.search import HeuristicSearch, ShortestSearch
+from sequence_planner.planning.pdr.ic3 import Reachability
+from sequence_planner.planning.portfolio.engine import Engine, Finding, PlanningTask
+from sequence_planner.planning.problem import Contract
+from sequence_planner.planning.sat.bmc import BoundedModelChecking, PartialSight
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
 
 from .breadth_first import Shortest, shortest
 from .choices import Choices
@@ -40,7 +37,7 @@ def compare_engines(seed: str) -> Counter[str]:
     met["without a plan" if best is None else "with a plan"] += 1
     for engine in engines(given):
         for contract in Contract:
-            task = Task(given.state, left, given.circumstances, contract, _LONGEST)
+            task = PlanningTask(given.state, left, given.circumstances, contract, _LONGEST)
             met += _judged(engine, task, given, best)
     return met
 
@@ -58,7 +55,7 @@ def engines(given: Problem) -> tuple[Engine, ...]:
     )
 
 
-def _judged(engine: Engine, task: Task, given: Problem, best: Shortest | None) -> Counter[str]:
+def _judged(engine: Engine, task: PlanningTask, given: Problem, best: Shortest | None) -> Counter[str]:
     finding = engine.solve(task, Budget.seconds(_SECONDS))
     what = f"{engine.name}, {task.contract.value}: "
     assert finding.plan is None or finding.proof is None
@@ -73,7 +70,7 @@ def _judged(engine: Engine, task: Task, given: Problem, best: Shortest | None) -
     return Counter({f"{what}plans": 1})
 
 
-def _judge_plan(what: str, finding: Finding, task: Task, given: Problem, best: Shortest) -> None:
+def _judge_plan(what: str, finding: Finding, task: PlanningTask, given: Problem, best: Shortest) -> None:
     assert finding.plan is not None
     plan = finding.plan
     replay = Replay(given.automaton, given.supervisor, task.circumstances)

@@ -6,7 +6,7 @@ waiting, and their specifications forbid something that matters.
 
 from __future__ import annotations
 
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -16,7 +16,7 @@ from sequence_planner.automaton.structure import (
     Specification,
     VariableDeclaration,
 )
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
     And,
@@ -27,7 +27,7 @@ from sequence_planner.expressions.syntax import (
     Or,
     Variable,
 )
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 from .choices import Choices
 from .random_expressions import Scope, equality

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.syntax import (
     TRUE,
     And,
     Arithmetic,
@@ -18,7 +18,7 @@ from sequence_planner.expressions.syntax import (
     Or,
     Variable,
 )
-from sequence_planner.expressions.types import BooleanType, EnumerationType, IntegerRange, Type
+from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Type
 
 from .choices import Choices
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import (
     TRUE,
     Arithmetic,
     Comparison,
@@ -14,7 +14,7 @@ from sequence_planner.expressions.syntax import (
     Variable,
     conjunction,
 )
-from sequence_planner.expressions.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
 
 from .choices import Choices
 from .random_expressions import Scope, equality, guard, predicate, rare

@@ -9,10 +9,10 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass, replace
 
+from sequence_planner.automaton.automaton import Automaton, Operation, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Operation, State
 from sequence_planner.automaton.tick import supervised_start
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.syntax import (
     TRUE,
     And,
     BinaryTemporal,
@@ -25,10 +25,10 @@ from sequence_planner.expressions.syntax import (
     UnaryTemporal,
     Variable,
 )
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Circumstances, goals_of
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.planning.problem import Circumstances, goals_of
+from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
 
 from .choices import Choices
 from .explicit import outcomes

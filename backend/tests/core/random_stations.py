@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -21,8 +21,8 @@ from sequence_planner.automaton.structure import (
     VariableDeclaration,
 )
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.expressions.syntax import FALSE, TRUE, And, Expression, Variable
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.language.syntax import FALSE, TRUE, And, Expression, Variable
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 from .choices import Choices
 from .random_expressions import Scope, actions, atom, equality, guard, predicate, rare

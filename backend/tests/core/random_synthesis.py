@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from math import prod
 from typing import Any
 
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -21,8 +21,8 @@ from sequence_planner.automaton.structure import (
     Specification,
     VariableDeclaration,
 )
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
     And,
@@ -36,7 +36,7 @@ from sequence_planner.expressions.syntax import (
     Variable,
     conjunction,
 )
-from sequence_planner.expressions.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
 
 from .choices import Choices
 from .random_expressions import Scope, actions, atom, equality, guard, predicate, rare

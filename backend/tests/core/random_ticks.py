@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from random import Random
 
 from sequence_planner.automaton import tick as reference
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
-from sequence_planner.automaton.structure import (
+from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
     Effect,
@@ -22,8 +21,10 @@ from sequence_planner.automaton.structure import (
     State,
     VariableDeclaration,
 )
-from sequence_planner.expressions.syntax import TRUE, And, Comparison, Expression, Not, Variable
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
+from sequence_planner.language.syntax import TRUE, And, Comparison, Expression, Not, Variable
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 from .choices import Choices
 from .random_expressions import Scope, actions, atom, equality, guard, predicate

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     finish,
@@ -13,8 +13,8 @@ from sequence_planner.automaton.tick import (
     synchronise,
     writes,
 )
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.syntax import TRUE
 from sequence_planner.synthesis.traces import StepKind, Trace, TraceStep, forbidding
 
 

@@ -7,15 +7,15 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from random import Random
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.types import Value
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.language.types import Value
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .choices import Choices
 from .explicit import Explicit

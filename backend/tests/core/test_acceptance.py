@@ -6,27 +6,26 @@ from dataclasses import replace
 
 from hypothesis import given
 
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.replaying.replay import Replay, missing
-from sequence_planner.planning.replaying.tightening import tightened
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Plan, PlanRequest, PlanTick
+from sequence_planner.planning.validation.acceptance import Acceptance, tightened
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
 
 from .budget import examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 
 
-def planned(given_: Problem) -> tuple[Task, Plan] | None:
+def planned(given_: Problem) -> tuple[PlanningTask, Plan] | None:
     """A task, and a plan for it that has ticks."""
     request = PlanRequest(given_.state, given_.goals, 20, longest=7, circumstances=given_.circumstances)
     answer = Planner(given_.automaton, given_.supervisor).answer(request)
     if answer.plan is None or not answer.plan.ticks:
         return None
     goals = tuple(goal for goal in given_.goals if goal.name in answer.goals)
-    return Task(given_.state, missing(goals, given_.state), given_.circumstances, longest=7), answer.plan
+    return PlanningTask(given_.state, missing(goals, given_.state), given_.circumstances, longest=7), answer.plan
 
 
 def changed(choices: Choices, given_: Problem, plan: Plan) -> Plan:
@@ -51,11 +50,11 @@ def changed(choices: Choices, given_: Problem, plan: Plan) -> Plan:
     return replace(plan, ticks=tuple(ticks))
 
 
-def wrong_plans(choices: Choices) -> tuple[Problem, Task, list[Plan]]:
+def wrong_plans(choices: Choices) -> tuple[Problem, PlanningTask, list[Plan]]:
     given_ = problem(choices, unknown=choices.chance(3), demanding=choices.chance(2))
     found = planned(given_)
     if found is None:
-        return given_, Task(given_.state, ()), []
+        return given_, PlanningTask(given_.state, ()), []
     task, plan = found
     plans = [plan]
     for _ in range(8):
@@ -65,7 +64,7 @@ def wrong_plans(choices: Choices) -> tuple[Problem, Task, list[Plan]]:
 
 @examples(60)
 @given(made_by(wrong_plans))
-def test_what_is_accepted_is_what_replays(found: tuple[Problem, Task, list[Plan]]) -> None:
+def test_what_is_accepted_is_what_replays(found: tuple[Problem, PlanningTask, list[Plan]]) -> None:
     given_, task, plans = found
     acceptance = Acceptance(given_.automaton, given_.supervisor)
     replay = Replay(given_.automaton, given_.supervisor, given_.circumstances)

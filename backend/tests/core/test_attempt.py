@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.types import IntegerRange
-from sequence_planner.planning.plan import Contract, PlanRequest, Verdict, goals_of
+from sequence_planner.language.types import IntegerRange
 from sequence_planner.planning.planner import Planner
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.problem import Contract, PlanRequest, Verdict, goals_of
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .building import Does, automaton
 

@@ -7,18 +7,24 @@ from dataclasses import replace
 
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.automaton.tick import apply_effects, finish, initial_state, supervised_start, synchronise
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.expressions.traces import satisfies
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.automaton.tick import (
+    apply_effects,
+    finish,
+    initial_state,
+    supervised_start,
+    synchronise,
+)
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.ltl import satisfies
+from sequence_planner.language.syntax import TRUE
+from sequence_planner.language.types import BOOLEAN
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Contract, Goal, Plan, goals_of
-from sequence_planner.planning.sat.bounded import BoundedModelChecking
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import Contract, Goal, Plan, goals_of
+from sequence_planner.planning.sat.bmc import BoundedModelChecking
+from sequence_planner.process.budget import Budget
 
 from .breadth_first import Shortest, may_start, permitted, shortest
 from .budget import examples
@@ -38,7 +44,7 @@ def open_goals(given_: Problem) -> Goals:
 def solved(given_: Problem, contract: Contract, engine: BoundedModelChecking | None = None) -> Finding:
     """What `engine`, or a new one, finds for all goals that are open."""
     engine = engine or BoundedModelChecking(given_.automaton, given_.supervisor)
-    task = Task(given_.state, open_goals(given_), given_.circumstances, contract, LONGEST)
+    task = PlanningTask(given_.state, open_goals(given_), given_.circumstances, contract, LONGEST)
     return engine.solve(task, Budget.seconds(60))
 
 
@@ -154,7 +160,7 @@ def counter(bits: int) -> Automaton:
 def test_when_the_time_is_over_it_says_how_far_it_came() -> None:
     station = counter(12)
     engine = BoundedModelChecking(station, Supervisor(StateSet((), ()), {}))
-    task = Task(initial_state(station), goals_of(station, ("full",)), longest=5000, depth=5000)
+    task = PlanningTask(initial_state(station), goals_of(station, ("full",)), longest=5000, depth=5000)
     budget = Budget.seconds(0.4)
     finding = engine.solve(task, budget)
     assert budget.spent

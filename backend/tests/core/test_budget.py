@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-from sequence_planner.planning.budget import Budget
+from sequence_planner.process.budget import Budget
 
 LONG = 60.0  # seconds, which no test takes
 

@@ -7,15 +7,15 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.pdr.certificate import CertificateError, check
-from sequence_planner.planning.pdr.engine import Reachability
-from sequence_planner.planning.pdr.invariants import asserted, is_met
-from sequence_planner.planning.plan import Clause, Literal, Proof
-from sequence_planner.planning.relaxed import permission
-from sequence_planner.planning.relaxed.relaxation import reachable, unreached
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.heuristic import relaxation
+from sequence_planner.planning.heuristic.relaxation import reachable, unreached
+from sequence_planner.planning.pdr.ic3 import Reachability
+from sequence_planner.planning.pdr.invariants import CertificateError, check
+from sequence_planner.planning.pdr.proof_clauses import asserted, is_met
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Clause, Literal, Proof
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -23,7 +23,7 @@ from .exhaustive import alike, can_reach
 from .random_problems import Problem, problem
 
 
-def accepted(given_: Problem, task: Task, proof: Proof) -> bool:
+def accepted(given_: Problem, task: PlanningTask, proof: Proof) -> bool:
     """Whether the proof is accepted."""
     model = (given_.automaton, given_.supervisor)
     try:
@@ -34,7 +34,7 @@ def accepted(given_: Problem, task: Task, proof: Proof) -> bool:
     return True
 
 
-def possible(given_: Problem, task: Task) -> bool:
+def possible(given_: Problem, task: PlanningTask) -> bool:
     """Whether the goals can be reached."""
     return can_reach(given_.automaton, given_.supervisor, [task.state], task.goals, task.circumstances)
 
@@ -54,7 +54,7 @@ def test_what_the_relaxation_excludes_is_a_proof(given_: Problem) -> None:
         impossible = tuple(goal for goal in goals if not relaxed.may(goal.predicate))
         excluded.append({goal.name for goal in impossible})
         if impossible:
-            task = Task(given_.state, impossible, given_.circumstances)
+            task = PlanningTask(given_.state, impossible, given_.circumstances)
             assert accepted(given_, task, unreached(given_.automaton, relaxed))
     assert excluded[0] <= excluded[1]
 
@@ -63,7 +63,7 @@ def test_what_the_relaxation_excludes_is_a_proof(given_: Problem) -> None:
 @given(made_by(some_problem))
 def test_where_a_supervisor_is_too_large_to_be_looked_at_nothing_is_excluded_for_its_sake(given_: Problem) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(permission, "_MOST_NODES", -1)
+        patch.setattr(relaxation, "_MOST_NODES", -1)
         relaxed = reachable(given_.automaton, given_.state, given_.circumstances, given_.supervisor)
     assert relaxed.possible == reachable(given_.automaton, given_.state, given_.circumstances).possible
 
@@ -84,7 +84,7 @@ def with_claim(choices: Choices) -> tuple[Problem, Clause]:
 def test_no_proof_of_what_is_wrong_is_accepted(case: tuple[Problem, Clause]) -> None:
     """Whatever is claimed, alone or besides a proof: if it is accepted, the goals cannot be reached."""
     made, claim = case
-    task = Task(made.state, missing(made.goals, made.state), made.circumstances)
+    task = PlanningTask(made.state, missing(made.goals, made.state), made.circumstances)
     if not task.goals:
         return
     if accepted(made, task, Proof("guess", (claim,))) or accepted(made, task, Proof("guess", ())):
@@ -97,7 +97,7 @@ def test_nor_one_that_is_wrong_of_some_states_in_question(case: tuple[Problem, C
     """Whatever is claimed of a state and all that are like it but for the variables of the claim."""
     made, claim = case
     free = frozenset(literal.name for literal in claim) & made.automaton.variables.keys()
-    task = Task(made.state, made.goals, made.circumstances)
+    task = PlanningTask(made.state, made.goals, made.circumstances)
     states = list(alike(made.automaton, made.state, free))
     wrong = can_reach(made.automaton, made.supervisor, states, task.goals, task.circumstances)
     for proof in (Proof("guess", (claim,)), Proof("guess", ())):
@@ -113,7 +113,7 @@ def test_nor_one_that_is_wrong_of_some_states_in_question(case: tuple[Problem, C
 @given(made_by(with_claim))
 def test_a_proof_that_is_tampered_with_is_not_accepted(case: tuple[Problem, Clause]) -> None:
     made, claim = case
-    task = Task(made.state, missing(made.goals, made.state), made.circumstances)
+    task = PlanningTask(made.state, missing(made.goals, made.state), made.circumstances)
     proof = Reachability(made.automaton, made.supervisor).decide(task, Budget.seconds(60)).proof if task.goals else None
     if proof is None:
         return

@@ -7,13 +7,12 @@ from collections import Counter
 import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
-from sequence_planner.automaton.compiled.closures import Closures
-from sequence_planner.automaton.compiled.functions import Compiler
-from sequence_planner.automaton.structure import State
+from sequence_planner.automaton.automaton import State
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import Closures, CompiledTick, Compiler
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.evaluation import RELATIONS, evaluate, holds
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.evaluator import RELATIONS, evaluate, holds
+from sequence_planner.language.syntax import (
     And,
     Arithmetic,
     Comparison,
@@ -25,7 +24,7 @@ from sequence_planner.expressions.syntax import (
     Or,
     Variable,
 )
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 
 from .budget import examples
 from .building import Does, automaton

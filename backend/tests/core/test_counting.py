@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.counting import counted
+from sequence_planner.core.numerals import counted
 
 
 def test_one_is_not_many() -> None:

@@ -9,17 +9,15 @@ from itertools import combinations, product
 
 from hypothesis import given
 
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.synthesis.covers import cover, single
-from sequence_planner.synthesis.diagrams import Diagrams, Function
-from sequence_planner.synthesis.effort import Effort
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.parser import parse
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.synthesis.bdd import Diagrams, Function
+from sequence_planner.synthesis.guards import Cube, count_literals, cover, single, worded
 from sequence_planner.synthesis.hitting import least_hitting
-from sequence_planner.synthesis.primes import Cube
-from sequence_planner.synthesis.wording import count_literals, worded
+from sequence_planner.synthesis.transition_relation import NodeLimit
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -53,7 +51,7 @@ class Problem:
 
     def solved(self, diagrams: Diagrams) -> tuple[Cube, ...]:
         on, off = self.function(diagrams, self.on), self.function(diagrams, self.off)
-        cubes = cover(diagrams, on, off, Effort(ENOUGH), MANY)
+        cubes = cover(diagrams, on, off, NodeLimit(ENOUGH), MANY)
         assert cubes is not None
         return cubes
 
@@ -116,7 +114,7 @@ def test_a_cover_found_with_little_effort_is_as_right(given_: tuple[Problem, int
     diagrams = problem.diagrams()
     on, off = problem.function(diagrams, problem.on), problem.function(diagrams, problem.off)
     for find in (cover, single, partial(single, widest=False)):
-        cubes = find(diagrams, on, off, Effort(effort), literals)
+        cubes = find(diagrams, on, off, NodeLimit(effort), literals)
         if cubes is not None:
             held = [problem.held(cube) for cube in cubes]
             assert problem.on <= set[State]().union(*held)
@@ -137,7 +135,7 @@ def test_a_single_cube_is_found_wherever_there_is_one(problem: Problem) -> None:
         for axis, domain in enumerate(problem.domains)
     )
     there_is = problem.held(around).isdisjoint(problem.off)
-    assert (single(diagrams, on, off, Effort(ENOUGH), MANY) is not None) == there_is
+    assert (single(diagrams, on, off, NodeLimit(ENOUGH), MANY) is not None) == there_is
     assert not there_is or len(problem.solved(diagrams)) == 1
 
 
@@ -179,7 +177,7 @@ def test_what_is_said_of_a_cover_is_what_it_holds_and_what_is_denied_is_the_rest
     held = set[State]().union(*map(problem.held, cubes))
     for allowed in (True, False):
         said = worded(problem.types, diagrams, cubes, allowed)
-        assert resolve_predicate(parse(print_expression(said)), Scope(problem.types)) == said
+        assert resolve_predicate(parse(print_expression(said)), NameScope(problem.types)) == said
         for state in product(*problem.domains):
             assert holds(said, dict(zip(problem.types, state, strict=True))) == ((state in held) == allowed)
         assert count_literals(said) >= problem.literals(cubes)  # more only where a range has two ends
@@ -216,8 +214,8 @@ def test_a_cover_that_takes_far_too_many_words_is_none() -> None:
     )
     diagrams = odd.diagrams()
     on, off = odd.function(diagrams, odd.on), odd.function(diagrams, odd.off)
-    assert cover(diagrams, on, off, Effort(ENOUGH), 60) is None
-    assert odd.literals(cover(diagrams, on, off, Effort(ENOUGH), MANY) or ()) == 32 * 6
+    assert cover(diagrams, on, off, NodeLimit(ENOUGH), 60) is None
+    assert odd.literals(cover(diagrams, on, off, NodeLimit(ENOUGH), MANY) or ()) == 32 * 6
 
 
 def family(choices: Choices) -> tuple[list[list[int]], list[set[int]]]:

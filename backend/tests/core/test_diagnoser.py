@@ -5,17 +5,16 @@ from __future__ import annotations
 import threading
 import time
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.forking.starting import children
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Circumstances, goals_of
-from sequence_planner.planning.reasons.diagnoser import Diagnoser, Model
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, member_text
-from sequence_planner.synthesis.fewer import FewerSpecifications
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.diagnoser import Diagnoser, DiagnosisModel
+from sequence_planner.planning.diagnosis import Diagnosis, member_text
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Circumstances, goals_of
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
 
 
 def endless(names: frozenset[str]) -> Supervisor:
@@ -24,9 +23,9 @@ def endless(names: frozenset[str]) -> Supervisor:
     raise AssertionError(names)
 
 
-def hopeless(automaton: Automaton) -> Task:
+def hopeless(automaton: Automaton) -> PlanningTask:
     everything = Circumstances(offline=frozenset(automaton.resources))
-    return Task(initial_state(automaton), goals_of(automaton, automaton.operations), everything)
+    return PlanningTask(initial_state(automaton), goals_of(automaton, automaton.operations), everything)
 
 
 def processes() -> list[str]:
@@ -35,7 +34,7 @@ def processes() -> list[str]:
 
 def test_one_that_is_called_off_ends_at_once(worked_example: Automaton) -> None:
     supervisor = synthesise(worked_example)
-    diagnoser = Diagnoser(Model(worked_example, supervisor, endless))
+    diagnoser = Diagnoser(DiagnosisModel(worked_example, supervisor, endless))
     budget = Budget.seconds(60)
     caller = threading.Timer(1.5, budget.call_off)
     caller.start()
@@ -48,7 +47,7 @@ def test_one_that_is_called_off_ends_at_once(worked_example: Automaton) -> None:
 
 def test_the_process_lives_on_from_answer_to_answer(worked_example: Automaton) -> None:
     supervisor = synthesise(worked_example)
-    diagnoser = Diagnoser(Model(worked_example, supervisor, FewerSpecifications(worked_example, supervisor)))
+    diagnoser = Diagnoser(DiagnosisModel(worked_example, supervisor, FewerSpecifications(worked_example, supervisor)))
     try:
         for _ in range(2):
             diagnosis = diagnoser.diagnose(hopeless(worked_example), Budget.seconds(60))

@@ -12,19 +12,18 @@ from multiprocessing.connection import Connection, Pipe
 import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.forking.starting import start
-from sequence_planner.planning.attempt import Attempt
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.engines import ALONE, FACTORIES, Engines
-from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest, Verdict, goals_of
-from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.racing import escalation
-from sequence_planner.planning.racing.escalation import Escalation
-from sequence_planner.planning.racing.race import Race
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.planner import Planner, PlanningAttempt
+from sequence_planner.planning.portfolio import escalation
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.portfolio.engines import ALONE, FACTORIES, Engines
+from sequence_planner.planning.portfolio.escalation import Escalation
+from sequence_planner.planning.portfolio.race import Portfolio
+from sequence_planner.planning.problem import Contract, PlanAnswer, PlanRequest, Verdict, goals_of
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .budget import examples
 from .choices import made_by
@@ -35,7 +34,7 @@ from .test_race import GOAL, OWN, Engine, lanes, processes, shape, until
 class Spinning(Engine):
     """Keeps all other threads out, like a solver in C that holds the interpreter."""
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         re.match("(a+)+$", "a" * 64 + "b")
         return Finding()
 
@@ -43,7 +42,7 @@ class Spinning(Engine):
 class Unproven(Engine):
     """Has a plan at once, and says nothing of a better one."""
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         return FACTORIES["projection"](self.automaton, synthesise(self.automaton)).solve(task, budget)
 
 
@@ -58,7 +57,7 @@ def planner(automaton: Automaton, here: tuple[str, ...] | None, *raced: str) -> 
     engines = None
     if here is not None:
         engines = Engines(automaton, supervisor, type(lane)("alone", dict.fromkeys(Contract, here)), HERE)
-    solvers = Escalation(engines, partial(Race, automaton, supervisor, lanes(*raced), {**FACTORIES, **OWN}))
+    solvers = Escalation(engines, partial(Portfolio, automaton, supervisor, lanes(*raced), {**FACTORIES, **OWN}))
     try:
         yield Planner(automaton, supervisor, solvers)
     finally:
@@ -77,7 +76,7 @@ def test_it_answers_as_the_engines_in_turn_do(given_: Problem) -> None:
     request = PlanRequest(given_.state, given_.goals, 60, longest=7, circumstances=given_.circumstances)
     model = given_.automaton, given_.supervisor
     alone = Planner(*model)
-    solvers = Escalation(Engines(*model, ALONE), partial(Race, *model))
+    solvers = Escalation(Engines(*model, ALONE), partial(Portfolio, *model))
     here = Planner(*model, solvers)
     one, other = alone.answer(request), here.answer(request)
     solvers.close()
@@ -154,11 +153,13 @@ def test_its_attempt_has_no_more_than_its_share_of_the_time(worked_example: Auto
     (lane,) = lanes("Patient")
     solvers = Escalation(
         Engines(worked_example, supervisor, lane, HERE),
-        partial(Race, worked_example, supervisor, lanes("Patient"), OWN),
+        partial(Portfolio, worked_example, supervisor, lanes("Patient"), OWN),
     )
     goals = goals_of(worked_example, GOAL)
     whole = Budget.seconds(20)
-    attempt = Attempt(Task(initial_state(worked_example), goals), lambda plan: True, Budget.seconds(0.4))
+    attempt = PlanningAttempt(
+        PlanningTask(initial_state(worked_example), goals), lambda plan: True, Budget.seconds(0.4)
+    )
     began = time.monotonic()
     solvers.solve(attempt, whole)
     assert 0.35 < time.monotonic() - began < 2

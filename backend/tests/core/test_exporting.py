@@ -11,21 +11,28 @@ from typing import Any
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, Effect, Kind, Specification, VariableDeclaration
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions
-from sequence_planner.automaton.structure import Automaton, Effect, Kind, Specification, VariableDeclaration
 from sequence_planner.automaton.transitions import Transition
-from sequence_planner.exporting.efa import efa_document, efa_text, names_in_document
-from sequence_planner.exporting.names import different, dotted, word
-from sequence_planner.exporting.station import plain_of_station, remarks
-from sequence_planner.expressions.syntax import TRUE, Variable, conjuncts
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
-from sequence_planner.model.plain_documents import read_plain
+from sequence_planner.export.efa import (
+    different,
+    dotted,
+    efa_document,
+    efa_text,
+    names_in_document,
+    plain_of_station,
+    remarks,
+    word,
+)
+from sequence_planner.language.syntax import TRUE, Variable, conjuncts
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
+from sequence_planner.model.efa_document import read_plain
 from sequence_planner.model.source import ModelError
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.supervisor import Supervision
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .budget import examples
 from .building import Does, automaton

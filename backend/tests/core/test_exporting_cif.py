@@ -9,15 +9,15 @@ from itertools import product
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.exporting.cif import cif_text
-from sequence_planner.exporting.station import plain_of_station
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.types import Value
-from sequence_planner.model.plain_documents import read_plain
+from sequence_planner.export.cif import cif_text
+from sequence_planner.export.efa import plain_of_station
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.types import Value
+from sequence_planner.model.efa_document import read_plain
 from sequence_planner.model.source import ModelError
 
 from .budget import examples

@@ -8,21 +8,20 @@ from dataclasses import replace
 import pytest
 from hypothesis import assume, given, reject
 
+from sequence_planner.automaton.automaton import Automaton, Effect, Kind, VariableDeclaration
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton, Effect, Kind, VariableDeclaration
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.exporting.pddl import PddlText, pddl_text
-from sequence_planner.exporting.sequential import ExportError
-from sequence_planner.exporting.ticks import sequential
-from sequence_planner.expressions.syntax import FALSE, TRUE, Not, Variable
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.model.plain_documents import read_plain
+from sequence_planner.export.pddl import PddlText, pddl_text
+from sequence_planner.export.sequential import ExportError, sequential
+from sequence_planner.language.syntax import FALSE, TRUE, Not, Variable
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.model.efa_document import read_plain
 from sequence_planner.model.source import ModelError
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Circumstances, Goal, goals_of
-from sequence_planner.planning.replaying.replay import Replay
+from sequence_planner.planning.problem import Circumstances, Goal, goals_of
 from sequence_planner.planning.single.derived import for_planning
+from sequence_planner.planning.validation.replay import Replay
 
 from .breadth_first import shortest
 from .budget import examples

@@ -5,12 +5,12 @@ from __future__ import annotations
 from hypothesis import assume, given
 
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.exporting.smv import smv_text
-from sequence_planner.exporting.ticks import sequential
-from sequence_planner.expressions.syntax import Variable
-from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.export.sequential import sequential
+from sequence_planner.export.smv import smv_text
+from sequence_planner.language.syntax import Variable
+from sequence_planner.language.types import BOOLEAN
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Goal
+from sequence_planner.planning.problem import Goal
 
 from .breadth_first import shortest
 from .budget import examples

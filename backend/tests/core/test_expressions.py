@@ -6,12 +6,12 @@ from itertools import product
 
 from hypothesis import given
 
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.parser import parse, parse_assignment
-from sequence_planner.expressions.printing import print_assignment, print_expression
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_predicate
-from sequence_planner.expressions.simplification import simplify, simplify_assignment
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.parser import parse, parse_assignment
+from sequence_planner.language.printer import print_assignment, print_expression
+from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.simplifier import simplify, simplify_assignment
+from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
     And,
@@ -24,7 +24,7 @@ from sequence_planner.expressions.syntax import (
     Variable,
     variables,
 )
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -116,7 +116,7 @@ def test_simplification_changes_no_value_not_even_an_unknown_one(given_: tuple[E
 @examples(400)
 @given(made_by(an_expression))
 def test_printed_text_means_the_expression_again(expression: Expression) -> None:
-    assert resolve_predicate(parse(print_expression(expression)), Scope(TYPES)) == expression
+    assert resolve_predicate(parse(print_expression(expression)), NameScope(TYPES)) == expression
 
 
 def test_brackets_are_kept_where_they_matter_and_dropped_where_not() -> None:
@@ -136,5 +136,5 @@ def test_brackets_are_kept_where_they_matter_and_dropped_where_not() -> None:
 @given(made_by(lambda choices: actions(choices, SCOPE, SCOPE, least=1)))
 def test_printed_actions_mean_the_actions_again(written: tuple[Assignment, ...]) -> None:
     for action in written:
-        assert resolve_assignment(parse_assignment(print_assignment(action)), Scope(TYPES)) == action
+        assert resolve_assignment(parse_assignment(print_assignment(action)), NameScope(TYPES)) == action
         assert simplify_assignment(action).target == action.target

@@ -7,17 +7,16 @@ from random import Random
 
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state, start
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import Contract, Plan, PlanTick, goals_of
-from sequence_planner.planning.relaxed.causal_order import CausalOrder
-from sequence_planner.planning.relaxed.goal_by_goal import GoalByGoal
-from sequence_planner.planning.replaying.replay import Replay
-from sequence_planner.planning.sat.bounded import BoundedModelChecking
+from sequence_planner.language.types import BOOLEAN, EnumerationType
+from sequence_planner.planning.heuristic.projection import CausalOrder, GoalByGoal
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import Contract, Plan, PlanTick, goals_of
+from sequence_planner.planning.sat.bmc import BoundedModelChecking
+from sequence_planner.planning.validation.replay import Replay
+from sequence_planner.process.budget import Budget
 
 from .budget import examples
 from .building import Does, automaton
@@ -62,9 +61,9 @@ def shop(jobs: list[int]) -> Automaton:
     )
 
 
-def task_of(station: Automaton, contract: Contract = Contract.FAST) -> Task:
+def task_of(station: Automaton, contract: Contract = Contract.FAST) -> PlanningTask:
     goals = goals_of(station, station.operations)
-    return Task(initial_state(station), goals, contract=contract)
+    return PlanningTask(initial_state(station), goals, contract=contract)
 
 
 def ask(station: Automaton, contract: Contract = Contract.FAST) -> Finding:
@@ -103,7 +102,7 @@ def test_random_goals() -> None:
         given_ = problem(choices, unknown=choices.chance(4), demanding=choices.chance(2))
         if not (goals := open_goals(given_)):
             continue
-        task = Task(given_.state, goals, given_.circumstances, Contract.FAST, longest=12)
+        task = PlanningTask(given_.state, goals, given_.circumstances, Contract.FAST, longest=12)
         finding = GoalByGoal(given_.automaton, given_.supervisor).solve(task, Budget.seconds(30))
         assert (finding.proof, finding.searched) == (None, 0)
         if finding.plan is not None:

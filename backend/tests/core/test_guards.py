@@ -11,20 +11,20 @@ from typing import Any
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.evaluation import evaluate, holds
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.syntax import And, Expression, variables
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.synthesis import saying
-from sequence_planner.synthesis.guards import Guard, shown_guards
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, relevant
+from sequence_planner.language.evaluator import evaluate, holds
+from sequence_planner.language.parser import parse
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.syntax import And, Expression, variables
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.synthesis import guards as saying
+from sequence_planner.synthesis.guards import SupervisorGuard, shown_guards
+from sequence_planner.synthesis.supervisor import Supervision, relevant
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .budget import examples
 from .building import Does, automaton
@@ -40,11 +40,11 @@ def supervised(automaton: Automaton) -> Supervision:
     return Supervision(Plant(automaton, relevant(automaton)))
 
 
-def shown(automaton: Automaton) -> Mapping[str, Guard]:
+def shown(automaton: Automaton) -> Mapping[str, SupervisorGuard]:
     return shown_guards(supervised(automaton))
 
 
-def texts(guards: Mapping[str, Guard]) -> dict[str, str]:
+def texts(guards: Mapping[str, SupervisorGuard]) -> dict[str, str]:
     return {name: print_expression(guard.expression) for name, guard in guards.items() if guard.expression is not None}
 
 
@@ -52,10 +52,10 @@ def read(written: Mapping[str, Any]) -> Automaton:
     return plain_automaton(read_plain(json.dumps(written), "example.efa.json"))
 
 
-def printed(automaton: Automaton, guard: Guard) -> Expression:
+def printed(automaton: Automaton, guard: SupervisorGuard) -> Expression:
     """The guard as a person would write it down again."""
     assert guard.expression is not None
-    return resolve_predicate(parse(print_expression(guard.expression)), Scope(automaton.types))
+    return resolve_predicate(parse(print_expression(guard.expression)), NameScope(automaton.types))
 
 
 # The examples.
@@ -276,7 +276,7 @@ def transition_names(transitions: Iterable[Mapping[str, Any]]) -> list[str]:
     return names
 
 
-def with_guards(automaton: Automaton, guards: Mapping[str, Guard]) -> Automaton:
+def with_guards(automaton: Automaton, guards: Mapping[str, SupervisorGuard]) -> Automaton:
     """The automaton with the guards written down in it."""
     abilities = dict(automaton.abilities)
     for guard in guards.values():

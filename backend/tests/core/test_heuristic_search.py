@@ -7,28 +7,26 @@ import time
 
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.syntax import Expression
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.heuristic.best_first import HeuristicSearch
-from sequence_planner.planning.heuristic.breadth_first import ShortestSearch
-from sequence_planner.planning.heuristic.elimination import Elimination
-from sequence_planner.planning.heuristic.estimate import Estimator
-from sequence_planner.planning.heuristic.relaxed_task import RelaxedTask
-from sequence_planner.planning.plain import plan_transitions
-from sequence_planner.planning.plan import Contract, Goal, Plan, PlanTick, goals_of
-from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.syntax import Expression
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.planning.efa_planner import plan_transitions
+from sequence_planner.planning.heuristic.relaxed_task import Estimator, RelaxedTask
+from sequence_planner.planning.heuristic.search import HeuristicSearch, ShortestSearch
+from sequence_planner.planning.heuristic.shorten import Elimination
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Contract, Goal, Plan, PlanTick, goals_of
 from sequence_planner.planning.single.derived import for_planning
+from sequence_planner.planning.validation.acceptance import Acceptance
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
 
 from . import building
 from .breadth_first import Shortest, shortest
@@ -45,9 +43,9 @@ def any_problem(choices: Choices) -> Problem:
     return problem(choices, unknown=choices.chance(3), demanding=choices.chance(2))
 
 
-def task_of(given_: Problem, longest: int = LONGEST) -> Task:
+def task_of(given_: Problem, longest: int = LONGEST) -> PlanningTask:
     goals = missing(given_.goals, given_.state)
-    return Task(given_.state, goals, given_.circumstances, Contract.FAST, longest)
+    return PlanningTask(given_.state, goals, given_.circumstances, Contract.FAST, longest)
 
 
 def replays(given_: Problem, ticks: tuple[PlanTick, ...]) -> bool:
@@ -165,7 +163,7 @@ def test_detours_are_left_out_of_long_orders() -> None:
     detour = ("lift_box1_left", "to_right", "to_left", "lower_box1_left", "to_right", "to_left")
     last = ("lift_box1_left", "to_right", "lower_box1_right")
     state = {name: automaton.initial_valuation[name] for name in automaton.variables}
-    elimination = Elimination(automaton, FREE, Task(state, goals_of(automaton, ("goal_1",))))
+    elimination = Elimination(automaton, FREE, PlanningTask(state, goals_of(automaton, ("goal_1",))))
     order = (*needed, *detour, *last)
     assert elimination.suits(order)
     assert elimination.eliminated(order, budget()) == (*needed, *last)
@@ -185,7 +183,7 @@ def test_goals_one_by_one_are_reached_like_goals_together() -> None:
 
 
 def _at(automaton: Automaton, place: str) -> Expression:
-    return resolve_predicate(parse(f"at == {place}"), Scope(automaton.types))
+    return resolve_predicate(parse(f"at == {place}"), NameScope(automaton.types))
 
 
 def test_what_is_needless_only_where_a_device_tarries_stays() -> None:
@@ -205,7 +203,7 @@ def test_what_is_needless_only_where_a_device_tarries_stays() -> None:
         },
         goals={"drilled": "deep"},
     )
-    task = Task(initial_state(station), goals_of(station, ("drilled",)), contract=Contract.FAST)
+    task = PlanningTask(initial_state(station), goals_of(station, ("drilled",)), contract=Contract.FAST)
     plan = HeuristicSearch(station, FREE).solve(task, budget()).plan
     assert plan is not None
     assert sorted(name for _, name in plan.starts) == ["drill", "hold"]

@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from sequence_planner.expressions.syntax import And, Constant, Not, Span, Variable
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.immutable import Immutable, replace, uncompared
-from sequence_planner.planning.plan import Goal, PlanTick
+from sequence_planner.core.immutable import Immutable, replace, uncompared
+from sequence_planner.language.syntax import And, Constant, Not, Span, Variable
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.planning.problem import Goal, PlanTick
 
 from .budget import examples
 from .choices import Choices, made_by

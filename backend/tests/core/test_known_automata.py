@@ -7,10 +7,10 @@ import json
 import pytest
 
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.supervisor import Supervision
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .explicit_plain import ExplicitPlain, Key
 from .known_automata import Document, philosophers, transfer_lines

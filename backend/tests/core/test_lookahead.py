@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from hypothesis import given
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
-from sequence_planner.automaton.structure import State
+from sequence_planner.automaton.automaton import State
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
 from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
-from sequence_planner.planning.plan import PlanTick
-from sequence_planner.planning.replaying.lookahead import Lookahead
-from sequence_planner.planning.replaying.replay import Replay
+from sequence_planner.planning.problem import PlanTick
+from sequence_planner.planning.validation.lookahead import Lookahead
+from sequence_planner.planning.validation.replay import Replay
 
 from .budget import examples
 from .choices import Choices, made_by

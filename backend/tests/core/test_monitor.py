@@ -7,20 +7,20 @@ from collections.abc import Sequence
 import pytest
 from hypothesis import given
 
-from expressions.trees import formulas, traces
-from sequence_planner.expressions.evaluation import Valuation
-from sequence_planner.expressions.parser import parse_formula
-from sequence_planner.expressions.resolution import Scope, resolve_formula
-from sequence_planner.expressions.syntax import TRUE, BinaryTemporal, Expression, UnaryTemporal, conjunction
-from sequence_planner.expressions.traces import satisfies
-from sequence_planner.expressions.types import BOOLEAN, Value
+from language.trees import formulas, traces
+from sequence_planner.language.evaluator import Valuation
+from sequence_planner.language.ltl import satisfies
+from sequence_planner.language.parser import parse_formula
+from sequence_planner.language.resolver import NameScope, resolve_formula
+from sequence_planner.language.syntax import TRUE, BinaryTemporal, Expression, UnaryTemporal, conjunction
+from sequence_planner.language.types import BOOLEAN, Value
 from sequence_planner.planning.goals.monitor import MOST_STATES, Monitor, TooManyStatesError, monitor_of
 from sequence_planner.planning.goals.pursuit import moved, settled
-from sequence_planner.planning.plan import Goal
+from sequence_planner.planning.problem import Goal
 
 from .budget import examples
 
-SCOPE = Scope(dict.fromkeys("pqr", BOOLEAN))
+SCOPE = NameScope(dict.fromkeys("pqr", BOOLEAN))
 
 
 def formula(text: str) -> Expression:

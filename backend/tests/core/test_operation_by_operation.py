@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections import Counter
 from random import Random
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType
-from sequence_planner.immutable import replace
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.decomposed.operation_by_operation import OperationByOperation
-from sequence_planner.planning.decomposed.operation_task import OperationTask
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import DEPTH, Circumstances, Contract, PlanRequest, Verdict, goals_of
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.types import BOOLEAN, EnumerationType
+from sequence_planner.planning.heuristic.relaxation import reachable
+from sequence_planner.planning.operation_decomposition import OperationByOperation, OperationTask
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.relaxed.relaxation import reachable
-from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import DEPTH, Circumstances, Contract, PlanRequest, Verdict, goals_of
+from sequence_planner.planning.validation.acceptance import Acceptance
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
 
 from .building import Does, automaton
 from .choices import Choices
@@ -68,18 +67,18 @@ def line(stages: int) -> Automaton:
     return replace(station, operations=operations)
 
 
-def only(station: Automaton, *names: str) -> Task:
-    return Task(initial_state(station), goals_of(station, names), contract=Contract.FAST)
+def only(station: Automaton, *names: str) -> PlanningTask:
+    return PlanningTask(initial_state(station), goals_of(station, names), contract=Contract.FAST)
 
 
-def ask(station: Automaton, task: Task) -> Finding:
+def ask(station: Automaton, task: PlanningTask) -> Finding:
     return OperationByOperation(station, EVERYTHING).solve(task, Budget.seconds(60))
 
 
 def towards(station: Automaton, state: State, goal: str, offline: str = "") -> tuple[str, ...] | None:
     """Which operations seem to lead to the predicate `goal`."""
     possible = reachable(station, state, Circumstances(frozenset({offline}))).possible
-    predicate = resolve_predicate(parse(goal), Scope(station.types))
+    predicate = resolve_predicate(parse(goal), NameScope(station.types))
     return OperationTask(station).towards(state, [predicate], possible)
 
 
@@ -137,7 +136,7 @@ def test_an_operation_does_not_bring_what_another_is_for() -> None:
     )
     operations = dict(station.operations)
     operations["tightening"] = replace(
-        operations["tightening"], precondition=resolve_predicate(parse("bolt == placed"), Scope(station.types))
+        operations["tightening"], precondition=resolve_predicate(parse("bolt == placed"), NameScope(station.types))
     )
     station = replace(station, operations=operations)
     assert towards(station, initial_state(station), "bolt == tight") == ("placing", "tightening")
@@ -146,7 +145,7 @@ def test_an_operation_does_not_bring_what_another_is_for() -> None:
 
 def test_it_is_no_engine_where_no_operation_leads_to_the_goals() -> None:
     station = line(3)
-    task = Task(initial_state(station), goals_of(station, ("stage_0",)), contract=Contract.FAST)
+    task = PlanningTask(initial_state(station), goals_of(station, ("stage_0",)), contract=Contract.FAST)
     bare = replace(station, operations={})
     assert ask(bare, task).plan is None
 
@@ -165,7 +164,7 @@ def test_what_it_finds_is_a_plan() -> None:
             for place, (name, each) in enumerate(given_.automaton.operations.items())
         }
         station = replace(given_.automaton, operations=chained)
-        task = Task(given_.state, missing(goals, given_.state), given_.circumstances, Contract.FAST, longest=30)
+        task = PlanningTask(given_.state, missing(goals, given_.state), given_.circumstances, Contract.FAST, longest=30)
         finding = OperationByOperation(station, given_.supervisor).solve(task, Budget.seconds(30))
         assert (finding.proof, finding.searched) == (None, 0)
         if finding.plan is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from sequence_planner.synthesis.ordering import hubs_first
+from sequence_planner.synthesis.bdd import hubs_first
 
 
 def test_what_many_others_are_about_stands_before_them() -> None:

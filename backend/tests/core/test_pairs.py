@@ -8,14 +8,14 @@ from typing import Any
 from hypothesis import given
 
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.pdr.certificate import check
-from sequence_planner.planning.plan import goals_of
+from sequence_planner.language.evaluator import holds
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.planning.pdr.invariants import check
+from sequence_planner.planning.problem import goals_of
 from sequence_planner.planning.single.derived import as_station, without_flags
-from sequence_planner.planning.single.pairs import Pairs
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.single.pairs import PairProver
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .budget import examples
 from .choices import made_by
@@ -37,7 +37,7 @@ def test_what_pairs_exclude_is_never_reached_and_the_proof_passes_the_certificat
         return
     budget = Budget.seconds(60)
     bare = without_flags(automaton)
-    proof = Pairs(bare, supervisor).solve(task, budget).proof
+    proof = PairProver(bare, supervisor).solve(task, budget).proof
     if proof is None:
         return
     reached = explicit.distances({key}, True)
@@ -61,7 +61,7 @@ def test_two_that_exclude_one_another_need_no_more_than_pairs() -> None:
     supervisor, both = synthesise(automaton), goals_of(automaton, automaton.operations)
     budget = Budget.seconds(60)
     derived, task = as_station(automaton, automaton.initial_valuation, both[:1])
-    engine = Pairs(without_flags(automaton), supervisor)
+    engine = PairProver(without_flags(automaton), supervisor)
     proof = engine.solve(task, budget).proof
     assert proof is not None
     assert all(len(clause) <= 2 for clause in proof.invariant)

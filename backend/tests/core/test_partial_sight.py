@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.types import BOOLEAN, IntegerRange
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.pdr.localisation import localisable
-from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, goals_of
-from sequence_planner.planning.replaying.replay import Replay, missing
-from sequence_planner.planning.sat.seen import PartialSight
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.language.types import BOOLEAN, IntegerRange
+from sequence_planner.planning.pdr.abstraction import localisable
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import ORDINARY, Circumstances, Contract, goals_of
+from sequence_planner.planning.sat.bmc import PartialSight
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .breadth_first import shortest
 from .budget import examples
@@ -40,7 +40,7 @@ def several_questions(choices: Choices) -> list[Problem]:
 def test_plans_are_the_shortest_and_bounds_are_none_too_high(questions: list[Problem]) -> None:
     engine = PartialSight(questions[0].automaton, questions[0].supervisor, most=1.0)
     for each in questions:
-        task = Task(each.state, missing(each.goals, each.state), each.circumstances, longest=LONGEST)
+        task = PlanningTask(each.state, missing(each.goals, each.state), each.circumstances, longest=LONGEST)
         if not task.goals:
             continue
         finding = engine.solve(task, Budget.seconds(60))
@@ -59,7 +59,7 @@ def test_plans_are_the_shortest_and_bounds_are_none_too_high(questions: list[Pro
 @examples(20)
 @given(made_by(problem))
 def test_work_goes_on_where_a_turn_has_ended(given_: Problem) -> None:
-    task = Task(given_.state, missing(given_.goals, given_.state), longest=LONGEST)
+    task = PlanningTask(given_.state, missing(given_.goals, given_.state), longest=LONGEST)
     if not task.goals:
         return
     interrupted, other = (PartialSight(given_.automaton, given_.supervisor, most=1.0) for _ in range(2))
@@ -79,7 +79,7 @@ def shape(finding: Finding) -> tuple[int, int, int] | int:
 @given(given_=made_by(lambda choices: problem(choices, unknown=True)))
 def test_it_leaves_to_others_what_cannot_be_seen_in_part(contract: Contract, given_: Problem) -> None:
     state = given_.state
-    task = Task(state, missing(given_.goals, state), contract=contract, longest=LONGEST)
+    task = PlanningTask(state, missing(given_.goals, state), contract=contract, longest=LONGEST)
     if task.goals and (contract is Contract.FAST or None in state.values()):
         engine = PartialSight(given_.automaton, given_.supervisor, most=1.0)
         assert engine.solve(task, Budget.seconds(60)) == Finding()
@@ -106,7 +106,7 @@ def test_what_seems_to_finish_by_itself_is_looked_at() -> None:
     )
     supervisor, state = synthesise(station), initial_state(station)
     finding = PartialSight(station, supervisor, most=1.0).solve(
-        Task(state, goals_of(station, station.operations)), Budget.seconds(60)
+        PlanningTask(state, goals_of(station, station.operations)), Budget.seconds(60)
     )
     assert finding.plan is not None
     assert [tick.starts for tick in finding.plan.ticks] == [("fill", "push"), ("fill",), ()]
@@ -116,7 +116,7 @@ def test_what_seems_to_finish_by_itself_is_looked_at() -> None:
 @examples(60)
 @given(made_by(problem))
 def test_it_finds_whatever_there_is_where_it_may_look_at_everything(given_: Problem) -> None:
-    task = Task(given_.state, missing(given_.goals, given_.state), longest=LONGEST)
+    task = PlanningTask(given_.state, missing(given_.goals, given_.state), longest=LONGEST)
     engine = PartialSight(given_.automaton, given_.supervisor, most=1.0)
     localised = localisable(given_.automaton, task.state, task.goals)
     best = shortest(given_.automaton, given_.supervisor, given_.state, task.goals, LONGEST, ORDINARY)

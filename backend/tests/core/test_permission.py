@@ -5,15 +5,15 @@ from __future__ import annotations
 import pytest
 from hypothesis import assume, given
 
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import goals_of
-from sequence_planner.planning.relaxed.relaxing import Relaxing
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor, synthesise
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
+from sequence_planner.planning.heuristic.unreachable import Relaxing
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import goals_of
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import Supervision, relevant, supervisor, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .breadth_first import shortest
 from .budget import examples
@@ -40,7 +40,7 @@ COPIES = automaton(
 
 @pytest.mark.parametrize("station", [COUNTS, COPIES])
 def test_what_depends_on_the_state_may_be_written(station: Automaton) -> None:
-    task = Task(initial_state(station), goals_of(station, station.operations))
+    task = PlanningTask(initial_state(station), goals_of(station, station.operations))
     assert Relaxing(station, synthesise(station)).solve(task, Budget.seconds(60)).proof is None
 
 
@@ -75,4 +75,4 @@ def test_nothing_is_proven_where_there_is_a_plan(station: Automaton) -> None:
     assume(supervision.possible)
     known, goals = supervisor(supervision), goals_of(station, station.operations)
     assume(shortest(station, known, state, goals, 6) is not None)
-    assert Relaxing(station, known).solve(Task(state, goals), Budget.seconds(60)).proof is None
+    assert Relaxing(station, known).solve(PlanningTask(state, goals), Budget.seconds(60)).proof is None

@@ -7,12 +7,12 @@ from itertools import product
 
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import target
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import target
 from sequence_planner.automaton.transitions import Phase, Transition
-from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Variable
-from sequence_planner.expressions.types import BOOLEAN, Value
-from sequence_planner.planning.relaxed.permission import Permission
+from sequence_planner.language.syntax import TRUE, Assignment, Constant, Variable
+from sequence_planner.language.types import BOOLEAN, Value
+from sequence_planner.planning.heuristic.relaxation import Permission
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -9,13 +9,13 @@ from hypothesis import given
 
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plain import PlainPlanner, plan_transitions
-from sequence_planner.planning.plan import Contract, Verdict, goals_of
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.language.evaluator import holds
+from sequence_planner.planning.efa_planner import PlainPlanner, plan_transitions
+from sequence_planner.planning.problem import Contract, Verdict, goals_of
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .budget import examples
 from .choices import made_by

@@ -8,16 +8,15 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import goals_of
-from sequence_planner.planning.replaying.replay import missing
-from sequence_planner.planning.sat.single_starts import SingleStarts
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import goals_of
+from sequence_planner.planning.sat.single_bmc import SingleStarts
 from sequence_planner.planning.single.derived import without_flags
-from sequence_planner.planning.single.neighbourhood import shortened
-from sequence_planner.planning.single.stepping import Stepping
+from sequence_planner.planning.single.neighbourhood import Stepping, shortened
 from sequence_planner.planning.single.sums import Sums
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .budget import examples
 from .choices import made_by
@@ -39,7 +38,7 @@ def test_the_unrolled_run_finds_as_few_transitions_as_exhaustive_search(written:
     left = missing(goals, begin)
     if not left:
         return
-    task = Task(begin, left, longest=LONGEST + 1)
+    task = PlanningTask(begin, left, longest=LONGEST + 1)
     finding = SingleStarts(without_flags(automaton), supervisor).solve(task, Budget.seconds(60))
     if least is None or least > LONGEST:
         assert (finding.plan, finding.searched) == (None, LONGEST + 1)
@@ -82,8 +81,8 @@ def test_what_is_found_when_the_time_ends_is_told_with_what_is_proven_of_it() ->
     for looks in range(60):
         engine = SingleStarts(without_flags(automaton), supervisor)
         begin = automaton.initial_valuation
-        assert engine.solve(Task(begin, (far,), longest=20, depth=20), Budget.seconds(60)).plan is None
-        task = Task(begin, (near,), longest=20, depth=20)
+        assert engine.solve(PlanningTask(begin, (far,), longest=20, depth=20), Budget.seconds(60)).plan is None
+        task = PlanningTask(begin, (near,), longest=20, depth=20)
         found = engine.solve(task, Looks(looks))
         assert found.searched <= 9  # the tick in which the goal is seen to hold is the ninth
         if found.plan is not None:
@@ -135,7 +134,7 @@ def test_what_sums_exclude_is_never_reached(written: dict[str, Any]) -> None:
         begin = explicit.valuation(key)
         for each in goals:
             left = missing((each,), begin)
-            task = Task(begin, left, longest=LONGEST)
+            task = PlanningTask(begin, left, longest=LONGEST)
             if left and Sums(without_flags(automaton), supervisor).solve(task, Budget.seconds(60)).exhausted:
                 assert distance(explicit, key, left) is None
 
@@ -166,7 +165,7 @@ def test_sums_and_parities_that_nothing_changes(transitions: dict[str, str], nev
     )
     engine = Sums(without_flags(automaton), synthesise(automaton))
     found = [
-        engine.solve(Task(automaton.initial_valuation, (goal,)), Budget.seconds(60)).exhausted
+        engine.solve(PlanningTask(automaton.initial_valuation, (goal,)), Budget.seconds(60)).exhausted
         for goal in goals_of(automaton, automaton.operations)
     ]
     assert found == [True, False]

@@ -8,17 +8,17 @@ from typing import Any
 
 import pytest
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.printer import print_expression
+from sequence_planner.model.efa_document import read_plain
+from sequence_planner.planning.efa_planner import plan_transitions
 from sequence_planner.planning.plain_answer import PlainAnswer
-from sequence_planner.planning.plan import Verdict, goals_of
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.planning.problem import Verdict, goals_of
+from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 Transition = dict[str, Any]
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 from hypothesis import given
 
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Goal, PlanRequest, Verdict
+from sequence_planner.planning.heuristic import relaxation
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.relaxed import relaxation
-from sequence_planner.planning.replaying.replay import Replay
+from sequence_planner.planning.problem import Goal, PlanRequest, Verdict
+from sequence_planner.planning.validation.replay import Replay
 
 from .breadth_first import Shortest, shortest
 from .budget import examples

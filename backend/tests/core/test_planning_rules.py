@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.tick import initial_state, sense, synchronise
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Value
-from sequence_planner.planning.attempt import Attempt
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engines import ALONE, Engines
-from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest, Verdict, goals_of
-from sequence_planner.planning.planner import InTurn, Planner
-from sequence_planner.planning.relaxed.relaxation import reachable
-from sequence_planner.planning.sat.sweep import sweep_order
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Value
+from sequence_planner.planning.heuristic.relaxation import reachable
+from sequence_planner.planning.planner import InTurn, Planner, PlanningAttempt
+from sequence_planner.planning.portfolio.engines import ALONE, Engines
+from sequence_planner.planning.problem import Circumstances, PlanAnswer, PlanRequest, Verdict, goals_of
+from sequence_planner.planning.sat.start_order import sweep_order
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .building import Does, automaton
 
@@ -334,7 +333,7 @@ class Recorded:
         self.asked: list[set[str]] = []
         self._solvers = InTurn(Engines(station, synthesise(station), ALONE))
 
-    def solve(self, attempt: Attempt, budget: Budget) -> None:
+    def solve(self, attempt: PlanningAttempt, budget: Budget) -> None:
         self.asked.append({goal.name for goal in attempt.task.goals})
         self._solvers.solve(attempt, budget)
 

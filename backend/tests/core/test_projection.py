@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import Circumstances, Contract, goals_of
-from sequence_planner.planning.relaxed.projection import Projection
-from sequence_planner.planning.relaxed.relevance import Relevance
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.planning.heuristic.projection import Projection
+from sequence_planner.planning.heuristic.relaxed_plan import Relevance
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import Circumstances, Contract, goals_of
+from sequence_planner.process.budget import Budget
 
 from .budget import examples
 from .building import Does, automaton
@@ -29,7 +29,7 @@ OFF = (BOOLEAN, False)
 def test_what_it_finds_is_a_plan(given_: Problem) -> None:
     if not (goals := open_goals(given_)):
         return
-    task = Task(given_.state, goals, given_.circumstances, Contract.FAST, longest=12)
+    task = PlanningTask(given_.state, goals, given_.circumstances, Contract.FAST, longest=12)
     finding = Projection(given_.automaton, given_.supervisor).solve(task, Budget.seconds(30))
     assert (finding.proof, finding.searched) == (None, 0)
     if finding.plan is not None:
@@ -57,7 +57,7 @@ def lamps(number: int) -> Automaton:
 
 
 def ask(station: Automaton, goal: str, contract: Contract = Contract.FAST) -> Finding:
-    task = Task(initial_state(station), goals_of(station, (goal,)), Circumstances(), contract)
+    task = PlanningTask(initial_state(station), goals_of(station, (goal,)), Circumstances(), contract)
     return Projection(station, EVERYTHING).solve(task, Budget.seconds(20))
 
 
@@ -92,7 +92,7 @@ def test_only_what_could_matter_is_looked_at() -> None:
 
 def test_it_goes_on_where_the_budget_was_spent() -> None:
     station = lamps(40)
-    task = Task(initial_state(station), goals_of(station, ("pair",)), Circumstances(), Contract.FAST)
+    task = PlanningTask(initial_state(station), goals_of(station, ("pair",)), Circumstances(), Contract.FAST)
     engine = Projection(station, EVERYTHING)
     called_off = Budget.seconds(20)
     called_off.call_off()

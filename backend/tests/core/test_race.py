@@ -13,19 +13,28 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.engines import FACTORIES, Lane
-from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, PlanTick, Proof, Verdict, goals_of
 from sequence_planner.planning.planner import Planner, PlannerError
-from sequence_planner.planning.racing import race as racing
-from sequence_planner.planning.racing.race import Race
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.portfolio import race as racing
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.portfolio.engines import FACTORIES, Lane
+from sequence_planner.planning.portfolio.race import Portfolio
+from sequence_planner.planning.problem import (
+    Contract,
+    Plan,
+    PlanAnswer,
+    PlanRequest,
+    PlanTick,
+    Proof,
+    Verdict,
+    goals_of,
+)
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .budget import ONLY_TIMED, examples
 from .choices import made_by
@@ -48,43 +57,43 @@ class Engine:
 class Sleeping(Engine):
     """Cannot be interrupted, like a solver in C."""
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         time.sleep(60)
         return Finding()
 
 
 class Failing(Engine):
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         raise ZeroDivisionError("of its own making")
 
 
 class Dying(Engine):
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         os.kill(os.getpid(), signal.SIGKILL)
         return Finding()
 
 
 class Lying(Engine):
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         return Finding(Plan((PlanTick((), ()),), minimal_ticks=True, minimal_starts=True), searched=1)
 
 
 class Greedy(Engine):
     """Uses more memory than it may."""
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         return Finding(searched=len(bytearray(2**30)))
 
 
 class Proving(Engine):
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         return Finding(proof=Proof(self.name, ()))
 
 
 class Patient(Engine):
     """Works until it is told that nobody waits."""
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         while not budget.spent:
             time.sleep(0.001)
         return Finding(searched=3)
@@ -111,7 +120,7 @@ class Asking:
     def __init__(self, automaton: Automaton, *names: str, memory: int = racing.MEMORY) -> None:
         supervisor = synthesise(automaton)
         self.model = automaton, supervisor
-        self.race = Race(automaton, supervisor, lanes(*names), {**FACTORIES, **OWN}, memory)
+        self.race = Portfolio(automaton, supervisor, lanes(*names), {**FACTORIES, **OWN}, memory)
         self.request = PlanRequest(initial_state(automaton), goals_of(automaton, GOAL), deadline=20)
 
     @property
@@ -147,9 +156,9 @@ def until(what: Callable[[], bool]) -> None:
 def test_a_race_answers_as_the_engines_in_turn_do(given_: Problem) -> None:
     request = PlanRequest(given_.state, given_.goals, 60, longest=7, circumstances=given_.circumstances)
     alone = Planner(given_.automaton, given_.supervisor)
-    with Race(given_.automaton, given_.supervisor) as race, pytest.MonkeyPatch.context() as patched:
+    with Portfolio(given_.automaton, given_.supervisor) as race, pytest.MonkeyPatch.context() as patched:
         # A busy machine has the lane for proofs, which is the nicest, wait for longer.
-        patched.setattr("sequence_planner.planning.attempt._PROOF_GRACE", 20.0)
+        patched.setattr("sequence_planner.planning.planner._PROOF_GRACE", 20.0)
         planner = Planner(given_.automaton, given_.supervisor, race)
         for contract in Contract:
             asked = replace(request, contract=contract)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from hypothesis import given
 
-from sequence_planner.automaton.structure import State
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.pdr.certificate import check
-from sequence_planner.planning.pdr.engine import Reachability
-from sequence_planner.planning.pdr.first_sight import FirstSight
-from sequence_planner.planning.plan import Circumstances, Contract, goals_of
-from sequence_planner.planning.replaying.replay import Replay, missing
+from sequence_planner.automaton.automaton import State
+from sequence_planner.planning.pdr.ic3 import Reachability
+from sequence_planner.planning.pdr.invariants import check
+from sequence_planner.planning.pdr.quick_proof import QuickProof
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Circumstances, Contract, goals_of
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -25,7 +25,7 @@ def decides(given_: Problem) -> None:
     goals = missing(given_.goals, given_.state)
     if not goals:
         return
-    task = Task(given_.state, goals, given_.circumstances, Contract.FAST)
+    task = PlanningTask(given_.state, goals, given_.circumstances, Contract.FAST)
     finding = Reachability(given_.automaton, given_.supervisor).solve(task, Budget.seconds(60))
     possible = can_reach(given_.automaton, given_.supervisor, [given_.state], goals, given_.circumstances)
     assert (finding.plan is None, finding.proof is None) == (not possible, possible)
@@ -56,7 +56,7 @@ def several_beginnings(choices: Choices) -> tuple[Problem, frozenset[str]]:
 @given(made_by(several_beginnings))
 def test_a_proof_can_be_about_many_states(case: tuple[Problem, frozenset[str]]) -> None:
     made, free = case
-    task = Task(made.state, made.goals, made.circumstances)
+    task = PlanningTask(made.state, made.goals, made.circumstances)
     decision = Reachability(made.automaton, made.supervisor).decide(task, Budget.seconds(60), free)
     states = list(alike(made.automaton, made.state, free))
     possible = can_reach(made.automaton, made.supervisor, states, made.goals, made.circumstances)
@@ -82,7 +82,7 @@ def test_what_is_kept_from_other_questions_makes_no_difference(case: tuple[Probl
     made, states = case
     engine = Reachability(made.automaton, made.supervisor)
     for state in states:
-        task = Task(state, made.goals, made.circumstances, Contract.FAST)
+        task = PlanningTask(state, made.goals, made.circumstances, Contract.FAST)
         finding = engine.solve(task, Budget.seconds(60))
         possible = can_reach(made.automaton, made.supervisor, [state], made.goals, made.circumstances)
         assert (finding.plan is None, finding.proof is None) == (not possible, possible)
@@ -94,9 +94,9 @@ def test_what_is_kept_from_other_questions_makes_no_difference(case: tuple[Probl
 @given(made_by(one_after_the_other))
 def test_at_first_sight_there_are_proofs_only_where_there_is_no_plan(case: tuple[Problem, list[State]]) -> None:
     made, states = case
-    engine = FirstSight(made.automaton, made.supervisor)
+    engine = QuickProof(made.automaton, made.supervisor)
     for state in states:
-        task = Task(state, made.goals, made.circumstances, Contract.FAST)
+        task = PlanningTask(state, made.goals, made.circumstances, Contract.FAST)
         if (proof := engine.solve(task, Budget.seconds(60)).proof) is not None:
             check(made.automaton, made.supervisor, task, proof, Budget.seconds(60), whole=True)
             assert not can_reach(made.automaton, made.supervisor, [state], made.goals, made.circumstances)
@@ -106,6 +106,6 @@ def test_at_first_sight_there_are_proofs_only_where_there_is_no_plan(case: tuple
 @given(made_by(problem))
 def test_nothing_is_said_when_there_is_no_time(given_: Problem) -> None:
     goals = goals_of(given_.automaton, given_.automaton.operations)
-    task = Task(given_.state, goals, Circumstances(), Contract.FAST)
+    task = PlanningTask(given_.state, goals, Circumstances(), Contract.FAST)
     finding = Reachability(given_.automaton, given_.supervisor).solve(task, Budget.seconds(0))
     assert not finding.decided

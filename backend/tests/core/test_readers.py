@@ -5,13 +5,13 @@ from __future__ import annotations
 from hypothesis import given
 from pysat.solvers import Solver
 
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import Assignment, Expression, Variable
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.syntax import Assignment, Expression, Variable
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.planning.sat.solver import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol
-from sequence_planner.synthesis.diagrams import Diagrams
-from sequence_planner.synthesis.reading import Reader
+from sequence_planner.synthesis.bdd import Diagrams
+from sequence_planner.synthesis.transition_relation import ExpressionReader
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -88,6 +88,6 @@ def a_predicate_and_states(choices: Choices) -> tuple[Expression, list[Values]]:
 def test_a_diagram_holds_where_evaluation_says_so(given_: tuple[Expression, list[Values]]) -> None:
     expression, states = given_
     diagrams = Diagrams({variable.name: variable.type.domain for variable in SCOPE})
-    holds = Reader(diagrams, diagrams.values).predicate(expression)
+    holds = ExpressionReader(diagrams, diagrams.values).predicate(expression)
     for state in states:
         assert (diagrams.states(state) & holds).satisfiable() == evaluate(expression, state)

@@ -7,17 +7,16 @@ from random import Random
 
 from hypothesis import given
 
-from sequence_planner.planning.attempt import Attempt
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.engines import ALONE, Engines
-from sequence_planner.planning.pdr.engine import Reachability
-from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, PlanRequest
-from sequence_planner.planning.planner import InTurn, Planner
-from sequence_planner.planning.recollection import Recollection
-from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.replaying.replay import Replay, missing
-from sequence_planner.planning.sat.bounded import BoundedModelChecking
+from sequence_planner.planning.pdr.ic3 import Reachability
+from sequence_planner.planning.plan_cache import PlanCache
+from sequence_planner.planning.planner import InTurn, Planner, PlanningAttempt
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.portfolio.engines import ALONE, Engines
+from sequence_planner.planning.problem import ORDINARY, Circumstances, Contract, PlanRequest
+from sequence_planner.planning.sat.bmc import BoundedModelChecking
+from sequence_planner.planning.validation.acceptance import Acceptance
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
 
 from .breadth_first import Shortest, shortest
 from .budget import examples
@@ -35,7 +34,7 @@ class Counting:
         self.asked = 0
         self._in_turn = InTurn(Engines(of.automaton, of.supervisor, ALONE))
 
-    def solve(self, attempt: Attempt, budget: Budget) -> None:
+    def solve(self, attempt: PlanningAttempt, budget: Budget) -> None:
         self.asked += 1
         self._in_turn.solve(attempt, budget)
 
@@ -57,7 +56,7 @@ def test_the_rest_of_a_plan_is_known_to_be_the_shortest(given_: Problem) -> None
     if answer.plan is None or not answer.plan.ticks:
         return
     planned = tuple(goal for goal in given_.goals if goal.name in answer.goals)
-    task = Task(given_.state, missing(planned, given_.state), given_.circumstances, longest=LONGEST)
+    task = PlanningTask(given_.state, missing(planned, given_.state), given_.circumstances, longest=LONGEST)
     course = Acceptance(given_.automaton, given_.supervisor).course(task, answer.plan)
     assert course is not None
     asked, replay = counting.asked, Replay(given_.automaton, given_.supervisor, given_.circumstances)
@@ -80,13 +79,13 @@ def test_the_rest_of_a_plan_is_known_to_be_the_shortest(given_: Problem) -> None
 @examples(80)
 @given(made_by(any_problem))
 def test_nothing_else_is_taken_for_it(given_: Problem) -> None:
-    task = Task(given_.state, missing(given_.goals, given_.state), given_.circumstances, longest=LONGEST)
+    task = PlanningTask(given_.state, missing(given_.goals, given_.state), given_.circumstances, longest=LONGEST)
     if not task.goals:
         return
     plan = BoundedModelChecking(given_.automaton, given_.supervisor).solve(task, Budget.seconds(60)).plan
     if plan is None:
         return
-    recollection = Recollection(given_.automaton)
+    recollection = PlanCache(given_.automaton)
     assert recollection.finding(task) is None
     course = Acceptance(given_.automaton, given_.supervisor).course(task, plan)
     assert course is not None
@@ -100,12 +99,12 @@ def test_nothing_else_is_taken_for_it(given_: Problem) -> None:
 
 def test_a_plan_with_more_proven_of_it_is_kept() -> None:
     given_ = next(each for each in map(seeded, range(1000)) if planned(each))
-    task = Task(given_.state, missing(given_.goals, given_.state), given_.circumstances, longest=LONGEST)
+    task = PlanningTask(given_.state, missing(given_.goals, given_.state), given_.circumstances, longest=LONGEST)
     plan = BoundedModelChecking(given_.automaton, given_.supervisor).solve(task, Budget.seconds(60)).plan
     assert plan is not None
     course = Acceptance(given_.automaton, given_.supervisor).course(task, plan)
     assert course is not None
-    unproven, recollection = replace(plan, minimal_ticks=False, minimal_starts=False), Recollection(given_.automaton)
+    unproven, recollection = replace(plan, minimal_ticks=False, minimal_starts=False), PlanCache(given_.automaton)
     for offered, kept in ((unproven, unproven), (plan, plan), (unproven, plan)):
         recollection.keep_plan(task, offered, course.ends)
         assert recollection.plan(task) == kept
@@ -130,8 +129,8 @@ def several_states(choices: Choices) -> tuple[Problem, list[Problem]]:
 @given(made_by(several_states))
 def test_a_proof_holds_in_the_states_of_its_invariant_only(questions: tuple[Problem, list[Problem]]) -> None:
     first, others = questions
-    engine, recollection = Reachability(first.automaton, first.supervisor), Recollection(first.automaton)
-    task = Task(first.state, missing(first.goals, first.state), first.circumstances)
+    engine, recollection = Reachability(first.automaton, first.supervisor), PlanCache(first.automaton)
+    task = PlanningTask(first.state, missing(first.goals, first.state), first.circumstances)
     if not task.goals:
         return
     proof = engine.solve(task, Budget.seconds(60)).proof

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from hypothesis import given
 
-from sequence_planner.automaton.structure import Automaton, Operation, State
+from sequence_planner.automaton.automaton import Automaton, Operation, State
 from sequence_planner.automaton.tick import start, start_guard_holds, synchronise
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.immutable import replace
-from sequence_planner.planning.relaxed.remaining import Absent, Remaining
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.evaluator import holds
+from sequence_planner.planning.heuristic.still_possible import Absent, Remaining
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -10,19 +10,19 @@ from random import Random
 
 from hypothesis import given
 
-from sequence_planner.automaton.structure import State
+from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import apply_effects, finish, synchronise
-from sequence_planner.expressions.types import EnumerationType
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import ORDINARY, Contract, Plan, PlanRequest
+from sequence_planner.language.types import EnumerationType
+from sequence_planner.planning.plan_cache import PlanCache
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.recollection import Recollection
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import ORDINARY, Contract, Plan, PlanRequest
 from sequence_planner.planning.repair import NAME, Repair
-from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.replaying.replay import Replay, missing
-from sequence_planner.planning.sat.bounded import BoundedModelChecking
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.sat.bmc import BoundedModelChecking
+from sequence_planner.planning.validation.acceptance import Acceptance
+from sequence_planner.planning.validation.replay import Replay, missing
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .breadth_first import Shortest, shortest
 from .budget import examples
@@ -37,11 +37,11 @@ LONGEST = 12
 class Followed:
     """A minimal plan, all that it leads through, and a repair that knows nothing else."""
 
-    def __init__(self, of: Problem, task: Task, plan: Plan) -> None:
+    def __init__(self, of: Problem, task: PlanningTask, plan: Plan) -> None:
         acceptance = Acceptance(of.automaton, of.supervisor)
         course = acceptance.course(task, plan)
         assert course is not None
-        recollection = Recollection(of.automaton)
+        recollection = PlanCache(of.automaton)
         recollection.keep_plan(task, plan, course.ends)
         self.plan = plan
         self.way = course.way
@@ -53,8 +53,8 @@ def any_problem(choices: Choices) -> Problem:
     return problem(choices, unknown=choices.chance(4), demanding=choices.chance(2))
 
 
-def task_of(given_: Problem, state: State) -> Task:
-    return Task(state, missing(given_.goals, state), given_.circumstances, longest=LONGEST)
+def task_of(given_: Problem, state: State) -> PlanningTask:
+    return PlanningTask(state, missing(given_.goals, state), given_.circumstances, longest=LONGEST)
 
 
 def followed(given_: Problem) -> Followed | None:
@@ -65,7 +65,7 @@ def followed(given_: Problem) -> Followed | None:
     return None if plan is None else Followed(given_, task, plan)
 
 
-def judge(given_: Problem, repair: Repair, task: Task) -> Plan | None:
+def judge(given_: Problem, repair: Repair, task: PlanningTask) -> Plan | None:
     """Ask for a repaired plan by both contracts; the one found fast, having held it against exhaustive search."""
     replay = Replay(given_.automaton, given_.supervisor, task.circumstances)
     fast, minimal = (repair.finding(replace(task, contract=each)) for each in (Contract.FAST, Contract.MINIMAL))
@@ -90,7 +90,7 @@ def judge(given_: Problem, repair: Repair, task: Task) -> Plan | None:
     return fast.plan
 
 
-def reached_without(of: Problem, task: Task, plan: Plan, number: int, start: str) -> bool:
+def reached_without(of: Problem, task: PlanningTask, plan: Plan, number: int, start: str) -> bool:
     """Whether `plan` leads to the goals without a start of a tick, less the effects that then cannot happen.
 
     Nobody counts on a device not to do what it is about to do.
@@ -113,7 +113,7 @@ def test_starts_that_were_held_back_are_made_up_for(given_: Problem) -> None:
         return
     for point in found.way:
         if missing(point.run.goals, point.run.values) == point.run.goals != ():
-            task = Task(dict(point.run.values), point.run.goals, given_.circumstances, longest=LONGEST)
+            task = PlanningTask(dict(point.run.values), point.run.goals, given_.circumstances, longest=LONGEST)
             plan = judge(given_, found.repair, task)
             assert plan is None or len(plan.ticks) <= len(found.plan.ticks) - point.tick
 
@@ -146,7 +146,9 @@ def test_what_formulas_have_seen_already_is_not_done_again(given_: Problem) -> N
         assert found is not None
         goals = missing(elsewhere.run.goals, here.run.values)
         if goals:
-            judge(given_, found.repair, Task(dict(here.run.values), goals, given_.circumstances, longest=LONGEST))
+            judge(
+                given_, found.repair, PlanningTask(dict(here.run.values), goals, given_.circumstances, longest=LONGEST)
+            )
 
 
 def disturbed(given_: Problem, plan: Plan, choices: Choices) -> Iterator[State]:

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     finish,
@@ -16,12 +16,12 @@ from sequence_planner.automaton.tick import (
     supervised_start,
     synchronise,
 )
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType
+from sequence_planner.language.types import BOOLEAN, EnumerationType
 from sequence_planner.planning.goals.pursuit import moved, settled
-from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick, goals_of
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replaying.replay import Replay
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.problem import Plan, PlanRequest, PlanTick, goals_of
+from sequence_planner.planning.validation.replay import Replay
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .breadth_first import shortest
 from .budget import examples

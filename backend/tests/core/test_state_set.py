@@ -8,8 +8,8 @@ from itertools import product
 from hypothesis import given
 
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, Builder, StateSet
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.synthesis.diagrams import Diagrams
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from sequence_planner.synthesis.bdd import Diagrams
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state, sense, start_guard_holds, synchronise
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.language.types import BOOLEAN, EnumerationType
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, relevant, synthesise
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .budget import examples
 from .building import Does, automaton

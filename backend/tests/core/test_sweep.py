@@ -9,19 +9,17 @@ from itertools import permutations
 import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.types import BOOLEAN, IntegerRange
-from sequence_planner.planning.budget import Budget
+from sequence_planner.language.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.demands import Demands, Domains
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.pdr.engine import Reachability
-from sequence_planner.planning.plan import Circumstances, goals_of
-from sequence_planner.planning.sat.bounded import BoundedModelChecking
-from sequence_planner.planning.sat.circles import circles, linear
-from sequence_planner.planning.sat.pairs import Pairs
-from sequence_planner.planning.sat.sweep import Sweep
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.planning.pdr.ic3 import Reachability
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Circumstances, goals_of
+from sequence_planner.planning.sat.bmc import BoundedModelChecking
+from sequence_planner.planning.sat.start_order import StartPairs, Sweep, circles, linear
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .budget import examples
 from .building import Does, automaton
@@ -74,7 +72,7 @@ def test_only_members_of_circles_are_repeated(given_: tuple[Before, tuple[str, .
 def test_what_texts_show_the_solver_finds_too(given_: Problem) -> None:
     station, supervisor = given_.automaton, given_.supervisor
     asked = {name: Demands(Domains(station), ability) for name, ability in station.abilities.items()}
-    told, merely_known = (Pairs(station, supervisor, known) for known in (False, True))
+    told, merely_known = (StartPairs(station, supervisor, known) for known in (False, True))
     for one, other in permutations(asked, 2):
         if asked[one].excludes(asked[other]):
             assert not told.order_matters(one, other)
@@ -142,7 +140,7 @@ def test_what_the_safe_states_ask_of_a_restart_ability_comes_before_it() -> None
 
 def found_in_two_ticks(station: Automaton, circumstances: Circumstances) -> None:
     goals, supervisor = goals_of(station, station.operations), synthesise(station)
-    task = Task(initial_state(station), goals, circumstances)
+    task = PlanningTask(initial_state(station), goals, circumstances)
     plan = BoundedModelChecking(station, supervisor).solve(task, Budget.seconds(60)).plan
     assert plan is not None
     assert len(plan.ticks) == 2

@@ -7,17 +7,15 @@ from typing import NamedTuple
 
 from hypothesis import given
 
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.tick import supervised_start
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.language.types import Value
+from sequence_planner.planning.problem import Circumstances
 from sequence_planner.planning.sat.flattening import flattened
-from sequence_planner.planning.sat.solver import Solver
-from sequence_planner.planning.sat.sweep import sweep_order
-from sequence_planner.planning.sat.template import Recorder
-from sequence_planner.planning.sat.unrolling import Unrolling
+from sequence_planner.planning.sat.solver import Circuit, Solver
+from sequence_planner.planning.sat.start_order import sweep_order
+from sequence_planner.planning.sat.unrolling import Recorder, Unrolling
+from sequence_planner.process.budget import Budget
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     effect_writes,
@@ -19,8 +19,8 @@ from sequence_planner.automaton.tick import (
     update_operations,
     writes,
 )
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .building import Does, automaton
 

@@ -10,15 +10,15 @@ from typing import Any
 
 from hypothesis import given
 
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.tick import apply_effects
-from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.synthesis.diagnosis import Unmeetable
 from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.shortest import Tracer
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, supervised
+from sequence_planner.synthesis.reachability import Tracer
+from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, supervised
 from sequence_planner.synthesis.traces import StepKind
-from sequence_planner.synthesis.unmeetable import Unmeetable
+from sequence_planner.synthesis.transition_relation import Plant
 
 from .budget import examples
 from .building import Does, automaton

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 from hypothesis import assume, given
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     finish,
@@ -19,11 +19,11 @@ from sequence_planner.automaton.tick import (
     start_guard_holds,
     synchronise,
 )
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
-from sequence_planner.planning.plan import PlanTick, WayBack, WayBackAnswer, WayBackRequest
-from sequence_planner.planning.way_back import WaysBack, deciding
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
+from sequence_planner.planning.problem import PlanTick, RecoveryPath, WayBackAnswer, WayBackRequest
+from sequence_planner.planning.recovery_path import WaysBack, deciding
+from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
 
 from .breadth_first import Shortest
 from .budget import examples
@@ -255,7 +255,7 @@ def way(**changes: Value | None) -> WayBackAnswer:
 
 def test_a_restart_ability_may_lead_back() -> None:
     answer = way(at="away", target="out", extended=True, extend=True)
-    assert isinstance(answer.way, WayBack)
+    assert isinstance(answer.way, RecoveryPath)
     assert [(tick.effects, tick.starts) for tick in answer.way.ticks] == [((), ("retract",)), (("arm_retracts",), ())]
     assert answer.way.breaks == ()
     assert answer.threatened == ()

@@ -10,16 +10,16 @@ from random import Random
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton, Operation, Specification, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Operation, Specification, State
 from sequence_planner.automaton.tick import supervised_start
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import TRUE, Comparison, Constant, Expression, Variable, conjunction
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.reasons.why import Member, Part, SupervisorFor, explain
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import TRUE, Comparison, Constant, Expression, Variable, conjunction
+from sequence_planner.planning.diagnosis import Member, MemberKind, SupervisorFor, explain
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Circumstances
+from sequence_planner.process.budget import Budget
+from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -44,28 +44,28 @@ def supervisors(given_: Problem) -> SupervisorFor:
 
 def possible(given_: Problem, members: Collection[Member], supervisor_for: SupervisorFor) -> bool:
     """Whether there is a plan when no more than `members` stands in its way."""
-    named = {part: {member.name for member in members if member.part is part} for part in Part}
+    named = {part: {member.name for member in members if member.part is part} for part in MemberKind}
     goals = tuple(
-        goal if goal.name in named[Part.LOCAL] else replace(goal, local=TRUE, at=0)
+        goal if goal.name in named[MemberKind.LOCAL] else replace(goal, local=TRUE, at=0)
         for goal in given_.goals
-        if goal.name in named[Part.GOAL]
+        if goal.name in named[MemberKind.GOAL]
     )
     circumstances = Circumstances(
-        frozenset(named[Part.OFFLINE]),
+        frozenset(named[MemberKind.OFFLINE]),
         given_.circumstances.restart,
-        tuple(c for c in given_.circumstances.avoid if print_expression(c) in named[Part.AVOID]),
-        frozenset(named[Part.BARRED]),
+        tuple(c for c in given_.circumstances.avoid if print_expression(c) in named[MemberKind.AVOID]),
+        frozenset(named[MemberKind.BARRED]),
     )
-    free = [name for name in given_.automaton.variables if name not in named[Part.VALUE]]
+    free = [name for name in given_.automaton.variables if name not in named[MemberKind.VALUE]]
     states = alike(given_.automaton, given_.state, free)
-    supervisor = supervisor_for(frozenset(named[Part.SPECIFICATION]))
+    supervisor = supervisor_for(frozenset(named[MemberKind.SPECIFICATION]))
     return not goals or can_reach(given_.automaton, supervisor, states, goals, circumstances)
 
 
 def explains(given_: Problem) -> bool:
     """There is a minimal reason exactly where there is no plan; whether there is one."""
     supervisor_for = supervisors(given_)
-    task = Task(given_.state, given_.goals, given_.circumstances)
+    task = PlanningTask(given_.state, given_.goals, given_.circumstances)
     reason = explain(given_.automaton, supervisor_for, task, Budget.seconds(60))
     plan = can_reach(given_.automaton, given_.supervisor, [given_.state], given_.goals, given_.circumstances)
     assert (reason is None) == plan
@@ -155,5 +155,5 @@ def test_so_they_do_with_unknown_values(given_: Problem) -> None:
 @examples(10)
 @given(made_by(problem))
 def test_without_time_no_reason_is_given(given_: Problem) -> None:
-    task = Task(given_.state, given_.goals, given_.circumstances)
+    task = PlanningTask(given_.state, given_.goals, given_.circumstances)
     assert explain(given_.automaton, supervisors(given_), task, Budget.seconds(0)) is None

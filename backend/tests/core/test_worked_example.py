@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     finish,
@@ -16,14 +16,14 @@ from sequence_planner.automaton.tick import (
     supervised_start,
     synchronise,
 )
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.syntax import Expression
-from sequence_planner.planning.plan import Plan, PlanRequest, Verdict, goals_of
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.syntax import Expression
 from sequence_planner.planning.planner import Planner
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.supervision import Supervision
+from sequence_planner.planning.problem import Plan, PlanRequest, Verdict, goals_of
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.supervisor import Supervision
 
 from .explicit import Explicit
 
@@ -32,7 +32,7 @@ TORQUE = "nutrunner.run_nut.torque_is_reached"
 
 
 def predicate(automaton: Automaton, text: str) -> Expression:
-    return resolve_predicate(parse(text), Scope(automaton.types))
+    return resolve_predicate(parse(text), NameScope(automaton.types))
 
 
 @pytest.fixture(scope="module")

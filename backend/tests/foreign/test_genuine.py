@@ -11,11 +11,11 @@ import pytest
 
 from foreign.genuine import CYCLONE, FAST, Genuine, genuine, lacking
 from foreign.peers import PATIENCE, eventually
-from sequence_planner.ros.action_server import ActionServer, Work
-from sequence_planner.ros.actions import ActionClient, GoalStatus, Outcome, cancelled
-from sequence_planner.ros.choice import TransportChoice, open_transport
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import NoAnswerError, NoServerError, QualityOfService, Sample, Transport
+from sequence_planner.ros.actions import ActionClient, ActionServer, GoalOutcome, GoalStatus, GoalWork, cancelled
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NoAnswerError, NoServerError, Sample, Transport
+from sequence_planner.ros.transports.choice import TransportChoice, open_transport
+from sequence_planner.ros.types.messages import MessageRegistry
 
 TEXT, POSE, ADD = "std_msgs/msg/String", "geometry_msgs/msg/PoseStamped", "example_interfaces/srv/AddTwoInts"
 FIBONACCI = "example_interfaces/action/Fibonacci"
@@ -81,14 +81,14 @@ class Station:
             numbers = registry().decode(f"{ADD}_Request", request)
             return registry().encode(f"{ADD}_Response", {"sum": int(str(numbers["a"])) + int(str(numbers["b"]))})
 
-        async def count(work: Work) -> Outcome:
+        async def count(work: GoalWork) -> GoalOutcome:
             sequence = [0, 1]
             while len(sequence) < int(str(work.goal["order"])):
                 if await cancelled(work.cancel_wanted, 0.1):
-                    return Outcome(GoalStatus.CANCELED, {"sequence": sequence})
+                    return GoalOutcome(GoalStatus.CANCELED, {"sequence": sequence})
                 sequence = [*sequence, sequence[-1] + sequence[-2]]
                 work.feedback({"sequence": sequence})
-            return Outcome(GoalStatus.SUCCEEDED, {"sequence": sequence})
+            return GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": sequence})
 
         self.transport.serve("/station/add", ADD, add)
         return ActionServer(self.transport, registry(), "/station/fibonacci", FIBONACCI, count)
@@ -176,7 +176,7 @@ def test_actions_both_ways(transport: TransportChoice, rmw: str) -> None:
         async with genuine(rmw, DOMAIN) as peer:
             told: list[object] = []
             goal = await client.send_goal({"order": 8}, PATIENCE, lambda values: told.append(values["sequence"]))
-            assert await goal.result() == Outcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1, 2, 3, 5, 8, 13]})
+            assert await goal.result() == GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1, 2, 3, 5, 8, 13]})
             assert told
             assert told[-1] == [0, 1, 1, 2, 3, 5, 8, 13]
             goal = await client.send_goal({"order": 40}, PATIENCE)

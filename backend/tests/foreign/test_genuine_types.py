@@ -16,9 +16,11 @@ import pytest
 from foreign.genuine import lacking
 from foreign.test_genuine import DOMAIN, OURS
 from running.stations import REPOSITORY
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.messages import MessageRegistry, UnknownMessageTypeError
-from sequence_planner.ros.transport import QualityOfService, TransportError
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import TransportError
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.types.errors import UnknownMessageTypeError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 CHANGED = "truck_engine_msgs/msg/RobotCommand"
 MODELS = sorted(path.parent for path in (REPOSITORY / "models").glob("*/messages"))

@@ -20,11 +20,10 @@ from structlog.testing import capture_logs
 from foreign.genuine import CYCLONE
 from foreign.peers import FAST_DDS, PATIENCE, ROS2_CLIENT, Peer, built, eventually, running
 from sequence_planner.ros import names
-from sequence_planner.ros.choice import TransportChoice, open_transport
-from sequence_planner.ros.cyclone_network import loopback_configuration
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.service_graph import ServiceEnd, TellsServices
-from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport
+from sequence_planner.ros.transport import NoAnswerError, NoServerError, ServiceEnd, TellsServices, Transport
+from sequence_planner.ros.transports.choice import TransportChoice, open_transport
+from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
+from sequence_planner.ros.types.messages import MessageRegistry
 
 DOMAIN = 1 + (os.getpid() + 25) % 100
 Role = tuple[str, ...]

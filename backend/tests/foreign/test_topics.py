@@ -10,9 +10,10 @@ from functools import cache
 import pytest
 
 from foreign.peers import FAST_DDS, ROS2_CLIENT, built, eventually, running
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import Endpoint, QualityOfService, Sample, Transport
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.types.messages import MessageRegistry
 
 TEXT, JOINTS = "std_msgs/msg/String", "sensor_msgs/msg/JointState"
 RELIABLE, LATCHED = QualityOfService.RELIABLE, QualityOfService.LATCHED
@@ -47,7 +48,7 @@ class Station:
     def texts(self, topic: str) -> list[object]:
         return [message["data"] for message in self.heard[topic]]
 
-    def foreign(self) -> list[Endpoint]:
+    def foreign(self) -> list[NetworkEndpoint]:
         return [endpoint for endpoint in self.transport.graph() if not endpoint.own]
 
 

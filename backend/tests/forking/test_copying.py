@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.analysis.process import SynthesisEndedError, TooLargeError, told
+from sequence_planner.analysis.worker import SynthesisEndedError, TooLargeError, told
 from sequence_planner.forking.copying import Copy
 
 PARENT = """

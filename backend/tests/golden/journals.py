@@ -17,13 +17,13 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.history.codec import BEGUN, SNAPSHOT
-from sequence_planner.history.player import Player
+from sequence_planner.execution.record.codec import BEGUN, SNAPSHOT
+from sequence_planner.execution.record.replay import Player
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 GOLDEN: Final = Path(__file__).parent
 JOURNALS: Final = GOLDEN / "journals"

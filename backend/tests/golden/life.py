@@ -13,27 +13,40 @@ from pathlib import Path
 from typing import Final, Literal
 
 from core.actors import EVA
-from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.control.asks import AskAdvice, AskGoal, AskReset
-from sequence_planner.control.commands import AcknowledgeTask, CommandRefused, StartProduction, TakeControl
-from sequence_planner.control.controller import Controller
-from sequence_planner.control.job_commands import CommandJob, TakeJob
-from sequence_planner.control.last_life import what_is_known
-from sequence_planner.control.offer_view import AdviceView, OfferView
-from sequence_planner.control.production_commands import EnterRestart, LeaveRestart, SetMode, SetService
-from sequence_planner.control.restart_commands import CorrectEstimates, DecideOutputs, ForceVariable, TakeErrand
-from sequence_planner.control.view import StationIdentity, StationView
-from sequence_planner.control.vocabulary import Mode, ServiceKind
-from sequence_planner.emulation.devices import EmulatedDevices
-from sequence_planner.emulation.faults import Fault, FaultKind
-from sequence_planner.emulation.faulty import FaultyDevices
-from sequence_planner.expressions.types import Value
-from sequence_planner.ros.memory import MemoryNetwork
+from sequence_planner.controller.commands.commands import (
+    AcknowledgeTask,
+    CommandJob,
+    CommandRefused,
+    CorrectEstimates,
+    DecideOutputs,
+    ForceVariable,
+    TakeErrand,
+    TakeJob,
+)
+from sequence_planner.controller.commands.production import (
+    EnterRestart,
+    LeaveRestart,
+    SetMode,
+    SetService,
+    StartProduction,
+    TakeControl,
+)
+from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
+from sequence_planner.controller.controller import Controller
+from sequence_planner.controller.previous_run import what_is_known
+from sequence_planner.controller.views.proposals import AdviceView, OfferView
+from sequence_planner.controller.views.station import StationIdentity, StationView
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
+from sequence_planner.language.types import Value
 from sequence_planner.ros.transport import Sample
+from sequence_planner.ros.transports.memory import MemoryNetwork
+from sequence_planner.simulation.devices import EmulatedDevices
+from sequence_planner.simulation.faults import Fault, FaultKind, FaultyDevices
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.storage.database import Database
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 SPEED: Final = 6.0  # of the devices
 DEVICE_STEP: Final = 0.05  # seconds between two reports of a device

@@ -18,14 +18,14 @@ from pathlib import Path
 
 import structlog
 
-from control.journalling import journal
+from controller.journalling import journal
 from golden.journals import JOURNALS, MODELS, MOST_BYTES, keep, model_of, names, records, replayed, write
 from golden.life import devices, life, ready
 from golden.scenarios import SCENARIOS, Scenario
-from sequence_planner.history.model_digest import model_digest
+from sequence_planner.db.database import Database
+from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.journal import run_journal
-from sequence_planner.ros.memory import MemoryNetwork
-from sequence_planner.storage.database import Database
+from sequence_planner.ros.transports.memory import MemoryNetwork
 
 
 def record(name: str) -> None:

@@ -10,19 +10,23 @@ from typing import Final
 
 from core.actors import EVA
 from golden.life import WHY, Life
-from sequence_planner.actor import SYSTEM
-from sequence_planner.automaton.structure import Kind
-from sequence_planner.control.job_commands import ForgetJob, JobOperation, JobWait, SequenceJobs, SetByOrder
-from sequence_planner.control.production_commands import EnterRestart, SetStepping, TakeStep
-from sequence_planner.control.restart_commands import (
+from sequence_planner.automaton.automaton import Kind
+from sequence_planner.controller.commands.commands import (
     ConfirmEstimates,
+    ForgetJob,
+    JobOperation,
+    JobWait,
     ReleaseForce,
+    SequenceJobs,
+    SetByOrder,
     StopErrand,
     TryAbility,
     UndoCorrection,
 )
-from sequence_planner.control.vocabulary import Mode, ServiceKind
-from sequence_planner.emulation.faults import FaultKind
+from sequence_planner.controller.commands.production import EnterRestart, SetStepping, TakeStep
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
+from sequence_planner.simulation.faults import FaultKind
 
 STATIONS: Final = Path(__file__).parents[3] / "models"
 BOLTS, TRUCK = STATIONS / "bolt_tightening", STATIONS / "truck_engine_station"

@@ -21,18 +21,17 @@ import typer
 from typer.testing import CliRunner
 
 import sequence_planner
-from sequence_planner.automaton.structure import State
-from sequence_planner.cli import app
-from sequence_planner.cli.put_off import PutOff
-from sequence_planner.configuration import PREFIX, Configuration
-from sequence_planner.control.alarming.keeping import KIND as ASIDE
-from sequence_planner.control.belief import KIND as BELIEFS
-from sequence_planner.expressions.syntax import Expression
-from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT
-from sequence_planner.history.memory import EXECUTION, ORDER, PLAN
-from sequence_planner.history.shapes import _MISSING, _fields
-from sequence_planner.planning.plan import Proof
-from sequence_planner.web.metric_families import PREFIX as METRICS_PREFIX
+from sequence_planner.automaton.automaton import State
+from sequence_planner.cli.lazy import LazyCommand
+from sequence_planner.cli.main import app
+from sequence_planner.controller.alarms.alarm import KIND as ASIDE
+from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
+from sequence_planner.execution.record.codec import _MISSING, BEGUN, KINDS, SNAPSHOT, _fields
+from sequence_planner.execution.record.recorder import EXECUTION, ORDER, PLAN
+from sequence_planner.language.syntax import Expression
+from sequence_planner.planning.problem import Proof
+from sequence_planner.server.metrics import PREFIX as METRICS_PREFIX
+from sequence_planner.settings import PREFIX, Configuration
 
 TEXTS: Final = Path(__file__).parent / "surface"
 SOURCE: Final = Path(sequence_planner.__file__).parent
@@ -234,7 +233,7 @@ def _commands() -> Iterator[tuple[tuple[str, ...], Any]]:
 
 
 def _within(path: tuple[str, ...], command: Any, above: Any) -> Iterator[tuple[tuple[str, ...], Any]]:  # noqa: ANN401
-    command = command.command() if isinstance(command, PutOff) else command
+    command = command.command() if isinstance(command, LazyCommand) else command
     yield path, command
     if hasattr(command, "list_commands"):
         context = command.make_context(path[-1] if path else None, [], parent=above, resilient_parsing=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from golden.journals import names, records, replayed
-from sequence_planner.history.codec import SNAPSHOT
+from sequence_planner.execution.record.codec import SNAPSHOT
 
 
 @pytest.mark.parametrize("name", names())

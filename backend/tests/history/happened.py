@@ -11,12 +11,12 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 from core.choices import made_by
 from core.random_expressions import predicate
 from core.random_stations import automaton
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.control.happenings import Happening
-from sequence_planner.expressions.syntax import Expression, Not, UnaryTemporal, Variable
-from sequence_planner.planning.plan import Proof
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.execution.events import Event
+from sequence_planner.language.syntax import Expression, Not, UnaryTemporal, Variable
+from sequence_planner.planning.problem import Proof
 
-HAPPENINGS: tuple[type, ...] = get_args(Happening)
+HAPPENINGS: tuple[type, ...] = get_args(Event)
 SECONDS = st.floats(-1e12, 1e12, allow_nan=False)
 
 

@@ -7,22 +7,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from control.journalling import journal
-from control.rig import TRUCK_ENGINE, ready
-from sequence_planner.control.conduct import Beginning
-from sequence_planner.control.execution import Execution
-from sequence_planner.control.moment import Moment
-from sequence_planner.history.model_digest import model_digest
-from sequence_planner.history.recorder import RunRecorder
-from sequence_planner.history.simulated import SimulatedStation
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.storage.database import Database
+from controller.journalling import journal
+from controller.rig import TRUCK_ENGINE, ready
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.db.database import Database
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.record.recorder import RunRecorder, model_digest
+from sequence_planner.execution.state import InitialState
+from sequence_planner.history.simulation import SimulatedStation
+from sequence_planner.journal.writer import RunWriter
 
-NOW = Moment(1_800_000_000.0, 500.0)
+NOW = Timestamp(1_800_000_000.0, 500.0)
 
 
 @contextmanager
-def worked(seconds: float, snapshot_every: int = 50) -> Iterator[tuple[Database, Execution]]:
+def worked(seconds: float, snapshot_every: int = 50) -> Iterator[tuple[Database, Executor]]:
     """The bolt tightening station, at work for so many seconds, and the execution as it is at the end."""
     with journal() as database:
         yield database, asyncio.run(life(database, TRUCK_ENGINE, seconds, snapshot_every))
@@ -33,12 +32,12 @@ async def life(
     folder: Path,
     seconds: float,
     snapshot_every: int = 50,
-    known: Beginning | None = None,
-    then: Callable[[Execution], None] = lambda execution: None,
-) -> Execution:
+    known: InitialState | None = None,
+    then: Callable[[Executor], None] = lambda execution: None,
+) -> Executor:
     """One life of a station: from `known` on, or from the beginning; `then` comes last."""
     station, supervisor, planner = ready(folder)
-    execution = Execution(station.automaton, supervisor, known)
+    execution = Executor(station.automaton, supervisor, known)
     writer = RunWriter(database, lambda: None)
     writer.begin()
     simulated = SimulatedStation(station, execution, planner, NOW)

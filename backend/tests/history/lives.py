@@ -9,15 +9,11 @@ from itertools import pairwise
 
 from core.choices import Choices
 from core.random_problems import RESOURCES, Problem, problem
-from sequence_planner.actor import SYSTEM
-from sequence_planner.automaton.structure import Automaton, Kind, State, Timeouts, WorkMaster
+from sequence_planner.automaton.automaton import Automaton, Kind, State, Timeouts, WorkMaster
 from sequence_planner.automaton.tick import apply_effects
-from sequence_planner.control.command_base import CommandRefused
-from sequence_planner.control.conduct import Beginning
-from sequence_planner.control.errand import Errand, ErrandKind
-from sequence_planner.control.execution import Execution
-from sequence_planner.control.job_commands import (
+from sequence_planner.controller.commands.commands import (
     CommandJob,
+    CommandRefused,
     ForgetJob,
     JobCommand,
     JobOperation,
@@ -26,34 +22,36 @@ from sequence_planner.control.job_commands import (
     SetByOrder,
     TakeJob,
 )
-from sequence_planner.control.job_desk import JobDesk
-from sequence_planner.control.moment import Moment
-from sequence_planner.control.vocabulary import Mode, ServiceKind
-from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Expression, Variable
-from sequence_planner.expressions.types import Value
-from sequence_planner.history.model_digest import model_digest
-from sequence_planner.history.recorder import RunRecorder
-from sequence_planner.immutable import replace as changed
+from sequence_planner.controller.commands.job_handler import JobHandler
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace as changed
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.record.recorder import RunRecorder, model_digest
+from sequence_planner.execution.state import ErrandKind, InitialState, OperatorPlan
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest, PlanTick, Verdict
+from sequence_planner.language.syntax import TRUE, Assignment, Constant, Expression, Variable
+from sequence_planner.language.types import Value
+from sequence_planner.planning.diagnosis import Diagnosis
 from sequence_planner.planning.planner import Planner, PlannerError
-from sequence_planner.planning.reasons.diagnosis import Diagnosis
+from sequence_planner.planning.problem import Plan, PlanAnswer, PlanRequest, PlanTick, Verdict
 
 
 @dataclass
 class Life:
     """An execution and the records of what has happened to it."""
 
-    execution: Execution
+    execution: Executor
     planner: Planner
     records: list[RunRecord] = field(default_factory=list)
     now: float = 1000.0
     asked: PlanRequest | None = None
 
     @property
-    def moment(self) -> Moment:
+    def moment(self) -> Timestamp:
         """Epoch and the other clock never agree."""
-        return Moment(1.7e9 + self.now, self.now)
+        return Timestamp(1.7e9 + self.now, self.now)
 
     def write(self, kind: str, time: float, content: str) -> int:
         """As the journal does."""
@@ -66,7 +64,7 @@ def life(choices: Choices, snapshot_every: int = 5) -> Life:
     given = problem(choices, demanding=True)
     station = _demanding(choices, given)
     beginning = _beginning(choices, station) if choices.chance(2) else None
-    execution = Execution(station, given.supervisor, beginning)
+    execution = Executor(station, given.supervisor, beginning)
     lived = Life(execution, Planner(station, given.supervisor))
     RunRecorder(execution, lived.write, model_digest(station), beginning, lambda: lived.moment.epoch, snapshot_every)
     if not choices.chance(5):
@@ -106,10 +104,10 @@ def _work_masters(choices: Choices, station: Automaton) -> dict[str, WorkMaster]
     return masters
 
 
-def _beginning(choices: Choices, station: Automaton) -> Beginning:
+def _beginning(choices: Choices, station: Automaton) -> InitialState:
     kept = (*station.names(Kind.ESTIMATED), *station.names(Kind.OUTPUT))
     values = {name: choices.pick(station.variables[name].type.domain) for name in kept if not choices.chance(3)}
-    return Beginning(values, 1.5e9, (), frozenset(), Moment(1.7e9, 1000.0))
+    return InitialState(values, 1.5e9, (), frozenset(), Timestamp(1.7e9, 1000.0))
 
 
 def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
@@ -151,7 +149,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
 
     def force() -> None:
         name = choices.pick((*station.names(Kind.MEASURED), *station.names(Kind.OUTPUT)))
-        until = Moment(lived.moment.epoch + 3.0, lived.now + 3.0)
+        until = Timestamp(lived.moment.epoch + 3.0, lived.now + 3.0)
         execution.force(name, choices.pick(station.variables[name].type.domain), until, "Eva", "to see")
 
     def release() -> None:
@@ -164,16 +162,16 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         plan = Plan((PlanTick((), starts), PlanTick((), ())), False, False)
         kind = choices.pick(tuple(ErrandKind))
         operation = choices.pick((None, *station.operations))
-        taken = Errand(kind, "by hand", plan, goal, choices.chance(2), choices.chance(2), operation, "Eva", "so")
+        taken = OperatorPlan(kind, "by hand", plan, goal, choices.chance(2), choices.chance(2), operation, "Eva", "so")
         taken = changed(taken, into_safe=choices.chance(3))
         if kind is ErrandKind.TRIAL and station.abilities:
             tried = choices.pick(tuple(station.abilities))
             plan = Plan((PlanTick((), (tried,)), PlanTick((), ())), False, False)
-            taken = Errand(kind, "by hand", plan, goal, by="Eva", ability=tried)
+            taken = OperatorPlan(kind, "by hand", plan, goal, by="Eva", ability=tried)
             execution.change_mode(Mode.PAUSED, "Eva", lived.moment)
         execution.take_errand(taken, lived.moment)
 
-    desk = JobDesk(execution)
+    desk = JobHandler(execution)
 
     def order() -> None:
         with contextlib.suppress(CommandRefused):
@@ -191,7 +189,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
     ]
 
 
-def _order(choices: Choices, execution: Execution) -> JobCommand:
+def _order(choices: Choices, execution: Executor) -> JobCommand:
     """What may be asked about jobs, where most of it is possible."""
     jobs, masters = execution.conduct.jobs, execution.automaton.work_masters
     if not jobs.by_order or choices.chance(8):

@@ -12,20 +12,19 @@ from hypothesis import strategies as st
 from core.budget import examples
 from core.building import Does, automaton
 from history.happened import HAPPENINGS, happening, value
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.control.errand import Errand, ErrandKind
-from sequence_planner.control.happenings import ErrandTaken, ModeChanged, Ticked
-from sequence_planner.control.moment import Moment
-from sequence_planner.control.vocabulary import Mode
-from sequence_planner.expressions.syntax import Comparison, Constant, Variable
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType
-from sequence_planner.history.codec import KINDS, TICKED, Codec, Senses, TickBook, kind_of
-from sequence_planner.history.shapes import UnreadableError
-from sequence_planner.journal.run_tables import LONGEST_KIND
-from sequence_planner.planning.plan import Plan, PlanTick
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.events import ErrandTaken, ModeChanged, Ticked
+from sequence_planner.execution.record.codec import KINDS, TICKED, Codec, Senses, TickBook, UnreadableError, kind_of
+from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.vocabulary import Mode
+from sequence_planner.journal.run_journal import LONGEST_KIND
+from sequence_planner.language.syntax import Comparison, Constant, Variable
+from sequence_planner.language.types import BOOLEAN, EnumerationType
+from sequence_planner.planning.problem import Plan, PlanTick
 
 STATION = automaton({"go": Does(start=("bell := true",))}, output={"bell": (BOOLEAN, False)})
-NOW = Moment(1_700_000_000.25, 12.5)
+NOW = Timestamp(1_700_000_000.25, 12.5)
 
 
 @examples(300)
@@ -64,7 +63,9 @@ def test_each_kind_of_happening_has_a_kind_of_record() -> None:
 
 
 def test_predicates_are_written_as_in_the_model() -> None:
-    errand = Errand(ErrandKind.GOAL, "ring", Plan((PlanTick((), ("go",)),), False, False), Variable("bell", BOOLEAN))
+    errand = OperatorPlan(
+        ErrandKind.GOAL, "ring", Plan((PlanTick((), ("go",)),), False, False), Variable("bell", BOOLEAN)
+    )
     content = Codec(STATION).content(ErrandTaken(errand, NOW))
     assert content["what"]["errand"]["goal"] == "bell"
 
@@ -75,7 +76,7 @@ def test_a_value_with_the_name_of_a_variable_stays_a_value() -> None:
         {"go": Does(start=("bell := true",))}, output={"bell": (BOOLEAN, False), "at": (places, "home")}
     )
     goal = Comparison("==", Variable("at", places), Constant("bell"))
-    errand = Errand(ErrandKind.GOAL, "go there", Plan((), False, False), goal)
+    errand = OperatorPlan(ErrandKind.GOAL, "go there", Plan((), False, False), goal)
     codec = Codec(station)
     document = json.loads(json.dumps(codec.content(ErrandTaken(errand, NOW))))
     assert codec.happening("errand-taken", document) == ErrandTaken(errand, NOW)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from cli.commands import command
-from control.rig import TRUCK_ENGINE
+from controller.rig import TRUCK_ENGINE
 from history.journalled import worked
 
 

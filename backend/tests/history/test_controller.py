@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import asyncio
 
-from control.bench import Arm, bench, cell
-from control.journalling import journal
+from controller.bench import Arm, bench, cell
+from controller.journalling import journal
 from core.actors import EVA
-from sequence_planner.control.commands import SetMode, TakeControl
-from sequence_planner.control.vocabulary import Mode
-from sequence_planner.history.codec import BEGUN
-from sequence_planner.history.replay import replay
-from sequence_planner.journal.whole_run import WholeRun
-from sequence_planner.ros.memory import MemoryNetwork
-from sequence_planner.storage.database import Database
+from sequence_planner.controller.commands.production import SetMode, TakeControl
+from sequence_planner.db.database import Database
+from sequence_planner.execution.record.codec import BEGUN
+from sequence_planner.execution.record.replay import replay
+from sequence_planner.execution.vocabulary import Mode
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.ros.transports.memory import MemoryNetwork
 
 
 async def life(network: MemoryNetwork, database: Database) -> None:

@@ -16,34 +16,31 @@ import pytest
 from sqlalchemy import text
 
 from cli.commands import command
-from control.journalling import journal
-from control.rig import TRUCK_ENGINE, ready
+from controller.journalling import journal
+from controller.rig import TRUCK_ENGINE, ready
 from history.journalled import NOW, life, worked
-from sequence_planner.actor import SYSTEM
-from sequence_planner.automaton.structure import Kind, VariableDeclaration
-from sequence_planner.control.execution import Execution
-from sequence_planner.control.happenings import Confirmed
-from sequence_planner.control.moment import Moment
-from sequence_planner.expressions.types import EnumerationType
-from sequence_planner.history.branch import branch
-from sequence_planner.history.codec import BEGUN, SNAPSHOT, kind_of
-from sequence_planner.history.error import HistoryError
-from sequence_planner.history.looking_back import looking_back
-from sequence_planner.history.model_digest import model_digest
-from sequence_planner.history.moment_view import moment_view
-from sequence_planner.history.player import Player
-from sequence_planner.history.replay import Replayed, replay
-from sequence_planner.history.restoring import beginning
-from sequence_planner.immutable import replace
+from sequence_planner.automaton.automaton import Kind, VariableDeclaration
+from sequence_planner.controller.restore import beginning
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.execution.events import Confirmed
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.record.codec import BEGUN, SNAPSHOT, HistoryError, kind_of
+from sequence_planner.execution.record.recorder import model_digest
+from sequence_planner.execution.record.replay import Player, Replayed, replay
+from sequence_planner.history.simulation import branch
+from sequence_planner.history.state_at import looking_back, moment_view
 from sequence_planner.journal import run_journal
-from sequence_planner.journal.archive_file import ArchiveError
+from sequence_planner.journal.archive import ArchiveError
+from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.journal.retention import trim
-from sequence_planner.journal.whole_run import WholeRun
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
+from sequence_planner.language.types import EnumerationType
 from sequence_planner.version import VERSION
 
-Worked = tuple[Database, Execution]
+Worked = tuple[Database, Executor]
 STATION, SUPERVISOR, _ = ready(TRUCK_ENGINE)
 AUTOMATON = STATION.automaton
 TESTS = Path(__file__).parents[1]
@@ -98,10 +95,10 @@ def test_another_process_replays_it_too(past: Worked) -> None:
     database, _ = past
     code = (
         "import sys\n"
-        "from control.rig import TRUCK_ENGINE, ready\n"
-        "from sequence_planner.history.replay import replay\n"
-        "from sequence_planner.journal.whole_run import WholeRun\n"
-        "from sequence_planner.storage.database import Database\n"
+        "from controller.rig import TRUCK_ENGINE, ready\n"
+        "from sequence_planner.execution.record.replay import replay\n"
+        "from sequence_planner.journal.full_run import WholeRun\n"
+        "from sequence_planner.db.database import Database\n"
         "station, supervisor, _ = ready(TRUCK_ENGINE)\n"
         "database = Database.open(sys.argv[1], create=False)\n"
         "with database.reading() as connection:\n"
@@ -156,9 +153,9 @@ def test_what_another_version_has_written_and_cannot_be_done_again_is_said_with_
     """Version 0.1.0 did not remember what was confirmed, so its digests are others from there on."""
     with journal() as database:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("sequence_planner.history.recorder.VERSION", "0.1.0")
-            patch.setattr("sequence_planner.control.execution.answered", lambda *_: {})
-            confirm = partial(Execution.confirm, names=frozenset({"bolts[bolt_pair_1]"}), by="Eva", now=NOW)
+            patch.setattr("sequence_planner.execution.record.recorder.VERSION", "0.1.0")
+            patch.setattr("sequence_planner.execution.executor.answered", lambda *_: {})
+            confirm = partial(Executor.confirm, names=frozenset({"bolts[bolt_pair_1]"}), by="Eva", now=NOW)
             asyncio.run(life(database, TRUCK_ENGINE, 3.0, then=confirm))
         with database.reading() as connection:
             confirmed = run_journal.before(connection, None, 1, {kind_of(Confirmed)})[0].number
@@ -205,7 +202,7 @@ def test_every_moment_can_be_looked_at(past: Worked) -> None:
 def test_what_was_believed_comes_back(past: Worked) -> None:
     database, execution = past
     with database.reading() as connection:
-        found = beginning(connection, AUTOMATON, Moment(1.9e9, 7.0))
+        found = beginning(connection, AUTOMATON, Timestamp(1.9e9, 7.0))
         last = run_journal.before(connection, None, 1)[0]
     assert found is not None
     assert found.left_out == ()

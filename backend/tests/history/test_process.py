@@ -9,12 +9,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from control.rig import TRUCK_ENGINE
+from controller.rig import TRUCK_ENGINE
 from history.journalled import worked
-from sequence_planner.history.error import HistoryError
-from sequence_planner.history.process import HistoryProcess
-from sequence_planner.history.view import LookBack, MomentView
-from sequence_planner.storage.database import Database
+from sequence_planner.db.database import Database
+from sequence_planner.execution.record.codec import HistoryError
+from sequence_planner.history.client import HistoryProcess
+from sequence_planner.history.timeline import LookBack, MomentView
 
 PATIENCE = 120.0
 

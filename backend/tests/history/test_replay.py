@@ -9,12 +9,11 @@ from hypothesis import given
 from core.budget import examples
 from core.choices import made_by
 from history.lives import Life, life
-from sequence_planner.control.execution import Execution
-from sequence_planner.control.live_plan import LivePlan
-from sequence_planner.control.start_order import StartOrder
-from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT, Codec
-from sequence_planner.history.memory import DERIVED, EXECUTION, ORDER, PLAN, Memory
-from sequence_planner.history.player import Player
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.plan_tracker import PlanCursor, PlanTracker
+from sequence_planner.execution.record.codec import BEGUN, KINDS, SNAPSHOT, Codec
+from sequence_planner.execution.record.recorder import DERIVED, EXECUTION, ORDER, PLAN, Memory
+from sequence_planner.execution.record.replay import Player
 
 
 def played(lived: Life, first: int = 0) -> Player:
@@ -51,7 +50,7 @@ def test_it_goes_on_from_each_snapshot_as_it_went_on(lived: Life) -> None:
 def test_nothing_that_an_execution_remembers_is_forgotten(lived: Life) -> None:
     execution = lived.execution
     for owner, table in ((execution, EXECUTION), (execution.plan, PLAN), (execution.plan.order, ORDER)):
-        assert isinstance(owner, Execution | LivePlan | StartOrder)
+        assert isinstance(owner, Executor | PlanTracker | PlanCursor)
         known = table.keys() | DERIVED
         assert not vars(owner).keys() - known, "put it into a table of history/memory.py, or say that it is derived"
         assert not {name for name in table if not hasattr(owner, name)}

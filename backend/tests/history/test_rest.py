@@ -11,14 +11,14 @@ from typing import Any
 import httpx
 import pytest
 
-from control.rig import TRUCK_ENGINE, ready
+from controller.rig import TRUCK_ENGINE, ready
 from history.journalled import life
-from sequence_planner.automaton.structure import Kind
-from sequence_planner.identity.roles import Role
+from sequence_planner.auth.roles import Role
+from sequence_planner.automaton.automaton import Kind
 from sequence_planner.journal import checkpoints, run_journal
-from sequence_planner.web.settings import Settings
-from web.running import Loop, Server, free_port
-from web.test_acting import problem
+from sequence_planner.server.settings import Settings
+from server.running import Loop, Server, free_port
+from server.test_acting import problem
 
 HISTORY = "/api/v1/history"
 AUTOMATON = ready(TRUCK_ENGINE)[0].automaton

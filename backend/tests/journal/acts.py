@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sequence_planner.actor import SYSTEM, Actor, ActorKind
+from sequence_planner.core.actor import SYSTEM, Actor, ActorKind
+from sequence_planner.db.database import Database
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Record
-from sequence_planner.storage.database import Database
 
 EVA = Actor(kind=ActorKind.PERSON, id="person-7", name="Eva Åkesson", session="s-1", address="127.0.0.1")
 

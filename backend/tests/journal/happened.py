@@ -6,8 +6,8 @@ import asyncio
 import json
 from collections.abc import Awaitable, Callable, Iterable
 
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.storage.database import Database
+from sequence_planner.db.database import Database
+from sequence_planner.journal.writer import RunWriter
 
 SNAPSHOTS = 10  # each tenth record is one
 

@@ -19,17 +19,16 @@ from cli.commands import command
 from core.budget import examples
 from journal.acts import EVA
 from journal.happened import content, happened, kind
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
 from sequence_planner.journal import audit, retention, run_journal
-from sequence_planner.journal.archive import Archive, broken_at, verified
-from sequence_planner.journal.archive_file import ArchiveError, ArchiveFullError
-from sequence_planner.journal.chain import START
-from sequence_planner.journal.chain import broken_at as chain_broken_at
+from sequence_planner.journal.archive import Archive, ArchiveError, ArchiveFullError, broken_at, verified
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.journal.hash_chain import START
+from sequence_planner.journal.hash_chain import broken_at as chain_broken_at
 from sequence_planner.journal.retention import trim
-from sequence_planner.journal.run_journal import RunRecord, Sought
-from sequence_planner.journal.verification import verify
-from sequence_planner.journal.whole_run import WholeRun
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
+from sequence_planner.journal.run_journal import RecordQuery, RunRecord
+from sequence_planner.journal.verify import verify
 
 
 @pytest.fixture
@@ -117,7 +116,7 @@ def test_whatever_is_cut_all_is_found_as_before(tmp_path_factory: pytest.TempPat
             assert run.get(number) == next((each for each in found if each.number == number), None)
             moment = data.draw(st.floats(-1, written + 2))
             assert run.at(moment) == sum(each.time <= moment for each in found)
-            sought = Sought(texts=(f'"number": {number}'[:11],))
+            sought = RecordQuery(texts=(f'"number": {number}'[:11],))
             fitting = [each for each in reversed(found) if sought.texts[0] in each.content.lower()]
             assert run.before(None, limit, None, sought) in ([], fitting[:limit])
             assert run.index.whole
@@ -231,7 +230,7 @@ import os, signal, sys, time
 from pathlib import Path
 from journal.acts import EVA
 from sequence_planner.journal import retention
-from sequence_planner.storage.database import Database
+from sequence_planner.db.database import Database
 retention.MOST_IN_FILE, retention._AT_ONCE, retention._BREATH = 40, 20, 0.001
 for line in sys.stdin:
     older_than, seconds = map(float, line.split())

@@ -13,17 +13,18 @@ from sqlalchemy import text
 from sqlalchemy.exc import IntegrityError
 
 from journal.acts import EVA, act, filled
-from sequence_planner.actor import SYSTEM
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Outcome
-from sequence_planner.storage.database import Database, StorageError
 
 APPEND = """
 import sys
-from sequence_planner.actor import SYSTEM
+from sequence_planner.core.actor import SYSTEM
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry
-from sequence_planner.storage.database import Database
+from sequence_planner.db.database import Database
 
 database = Database.open(sys.argv[1])
 print("ready", flush=True)
@@ -35,10 +36,10 @@ for number in range(100):
 
 BE_KILLED = """
 import os, signal, sys
-from sequence_planner.actor import SYSTEM
+from sequence_planner.core.actor import SYSTEM
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry
-from sequence_planner.storage.database import Database
+from sequence_planner.db.database import Database
 
 database = Database.open(sys.argv[1])
 for number in (1, 2):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sequence_planner.journal.chain import START, Position, broken_at, digest
+from sequence_planner.journal.hash_chain import START, ChainPosition, broken_at, digest
 from sequence_planner.journal.run_journal import RunRecord
 
 CONTENTS = st.dictionaries(st.text(), st.floats(allow_nan=False) | st.text() | st.none(), max_size=3).map(json.dumps)
@@ -19,7 +19,7 @@ HAPPENED = st.lists(
 )
 
 
-def _chain(happened: list[tuple[float, str, str]], begin: Position = START) -> list[RunRecord]:
+def _chain(happened: list[tuple[float, str, str]], begin: ChainPosition = START) -> list[RunRecord]:
     records: list[RunRecord] = []
     last = begin
     for time, kind, content in happened:
@@ -29,8 +29,8 @@ def _chain(happened: list[tuple[float, str, str]], begin: Position = START) -> l
     return records
 
 
-def _end(records: list[RunRecord]) -> Position:
-    return Position(records[-1].number, records[-1].hash)
+def _end(records: list[RunRecord]) -> ChainPosition:
+    return ChainPosition(records[-1].number, records[-1].hash)
 
 
 @given(HAPPENED)
@@ -83,7 +83,7 @@ def test_a_chain_goes_on_behind_what_was_cut_off(
     begin = _end(_chain(cut))
     records = _chain(left, begin)
     assert broken_at(records, begin, _end(records)) is None
-    assert broken_at(records, Position(begin.number, "another"), _end(records)) == begin.number + 1
+    assert broken_at(records, ChainPosition(begin.number, "another"), _end(records)) == begin.number + 1
     assert broken_at(records[1:], begin, _end(records)) == begin.number + 1
 
 
@@ -93,4 +93,4 @@ def test_a_kind_cannot_take_a_part_of_the_content_for_itself() -> None:
     split = text.rindex('","content":')
     start = text.index('"kind":"') + len('"kind":"')
     moved = replace(whole, kind=text[start:split], content=text[split + len('","content":') :])
-    assert broken_at([moved], START, Position(1, whole.hash)) == 1
+    assert broken_at([moved], START, ChainPosition(1, whole.hash)) == 1

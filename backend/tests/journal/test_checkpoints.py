@@ -13,20 +13,20 @@ from sqlalchemy import Connection, text
 
 from journal.acts import act, filled
 from journal.happened import content, durable, happened, with_writer
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import SqliteFile
 from sequence_planner.journal import audit, checkpointing, checkpoints, run_journal
-from sequence_planner.journal.chain import START, digest
-from sequence_planner.journal.checkpoints import Checkpoint
+from sequence_planner.journal.checkpoints import Checkpoint, key_file, public_key, signing_key
+from sequence_planner.journal.hash_chain import START, digest
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.journal.signing_key import key_file, public_key, signing_key
-from sequence_planner.journal.verification import verify
-from sequence_planner.storage.address import SqliteFile
-from sequence_planner.storage.database import Database, StorageError
+from sequence_planner.journal.verify import verify
+from sequence_planner.journal.writer import RunWriter
 
 MAKE_KEY = """
 import sys
 from pathlib import Path
-from sequence_planner.journal.signing_key import public_key, signing_key
+from sequence_planner.journal.checkpoints import public_key, signing_key
 print("ready", flush=True)
 sys.stdin.readline()
 signing_key(Path(sys.argv[1]))

@@ -13,9 +13,9 @@ import pytest
 from cli.commands import command
 from journal.acts import EVA
 from journal.happened import happened
+from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.retention import trim
-from sequence_planner.storage.database import Database
 
 TEXT = (Path(__file__).parents[3] / "docs" / "journal.md").read_text(encoding="utf-8")
 

@@ -14,9 +14,9 @@ from os import kill
 from signal import SIGKILL
 
 from journal.happened import content
+from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal
-from sequence_planner.journal.chain import START, broken_at
-from sequence_planner.storage.database import Database
+from sequence_planner.journal.hash_chain import START, broken_at
 
 SEED = 8
 POINTS = 40
@@ -25,8 +25,8 @@ POINTS = 40
 WRITE_UNTIL_KILLED = """
 import asyncio, os, sys, time
 from journal.happened import content
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.storage.database import Database
+from sequence_planner.journal.writer import RunWriter
+from sequence_planner.db.database import Database
 
 async def write():
     writer = RunWriter(Database.open(sys.argv[1]), lambda: print("durable", writer.durable, flush=True))

@@ -10,11 +10,12 @@ from sqlalchemy.exc import IntegrityError
 
 from journal.acts import EVA, filled
 from journal.happened import content, durable, happened, with_writer
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
 from sequence_planner.journal import audit, checkpoints, retention, run_journal
 from sequence_planner.journal.retention import Trimmed, trim
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.journal.verification import verify
-from sequence_planner.storage.database import Database, StorageError
+from sequence_planner.journal.verify import verify
+from sequence_planner.journal.writer import RunWriter
 
 
 def _left(database: Database) -> list[int]:

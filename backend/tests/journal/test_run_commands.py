@@ -12,8 +12,8 @@ from sqlalchemy import text
 from cli.commands import command
 from journal.acts import filled
 from journal.happened import happened
+from sequence_planner.db.database import Database
 from sequence_planner.journal import audit, run_journal
-from sequence_planner.storage.database import Database
 
 
 def test_all_that_happened_as_json_lines(database: Database, database_url: str) -> None:

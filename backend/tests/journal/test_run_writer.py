@@ -11,13 +11,15 @@ import pytest
 from sqlalchemy import Connection, event, text
 from structlog.testing import capture_logs
 
+from db.servers import Server
 from journal.happened import content, durable, happened, kind, troubled, with_writer
-from sequence_planner.journal import group_commit, run_journal
-from sequence_planner.journal.run_writer import RunWriter
-from sequence_planner.storage import postgresql as storage_postgresql
-from sequence_planner.storage import sqlite as storage_sqlite
-from sequence_planner.storage.database import Database, StorageError
-from storage.servers import Server
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db import postgresql as storage_postgresql
+from sequence_planner.db import sqlite as storage_sqlite
+from sequence_planner.db.database import Database
+from sequence_planner.journal import run_journal
+from sequence_planner.journal import writer as group_commit
+from sequence_planner.journal.writer import RunWriter
 
 
 def _numbers(database: Database) -> list[int]:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import asyncio
 import sys
 
-from sequence_planner.mes.webhooks.deliverer import Deliverer
+from sequence_planner.db.database import Database
 from sequence_planner.mes.webhooks.deliveries import Pace
-from sequence_planner.mes.webhooks.sending import Sender
+from sequence_planner.mes.webhooks.delivery import Deliverer, Sender
 from sequence_planner.mes.webhooks.targets import Targets
-from sequence_planner.storage.database import Database
 
 if __name__ == "__main__":
     url, host, port = sys.argv[1:]

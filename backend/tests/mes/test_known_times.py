@@ -8,10 +8,10 @@ from collections.abc import Callable
 import pytest
 
 from journal.happened import happened
+from sequence_planner.db.database import Database
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.mes.sequencing import known_times
-from sequence_planner.mes.sequencing.known_times import UNKNOWN_SECONDS, KnownTimes
-from sequence_planner.storage.database import Database
+from sequence_planner.mes.scheduling import problem
+from sequence_planner.mes.scheduling.problem import UNKNOWN_SECONDS, KnownTimes
 
 RESOURCES = {"robot.fetch": "robot", "robot.place": "robot", "press.close": "press"}
 GOAL = frozenset({"table"})
@@ -75,7 +75,7 @@ def test_a_clock_that_was_set_forward_leaves_no_time_that_cannot_be_worked_with(
 def test_of_what_happened_while_nobody_asked_only_the_last_is_read(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(known_times, "_LOOK_BACK", 4)
+    monkeypatch.setattr(problem, "_LOOK_BACK", 4)
     times, heard = known(), list[int]()
     monkeypatch.setattr(times, "hear", lambda page: heard.extend(each.number for each in page))
     for numbers in (range(1, 3), range(3, 20)):

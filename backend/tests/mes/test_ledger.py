@@ -10,22 +10,19 @@ from hypothesis import strategies as st
 
 from core.budget import examples
 from journal.happened import with_writer
-from sequence_planner.actor import SYSTEM
-from sequence_planner.control.work_master_view import (
+from sequence_planner.controller.views.details import (
     WorkAbilityView,
     WorkMastersView,
     WorkMasterView,
     WorkOperationView,
 )
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.journal.run_writer import RunWriter
+from sequence_planner.journal.writer import RunWriter
 from sequence_planner.mes import events, orders, responses
-from sequence_planner.mes.following import Following
-from sequence_planner.mes.ledger import MOST_DEVIATIONS, Ledger
-from sequence_planner.mes.order import OrderContent
-from sequence_planner.mes.run_reading import read
-from sequence_planner.mes.states import OrderCommand, OrderState
-from sequence_planner.storage.database import Database
+from sequence_planner.mes.order import OrderCommand, OrderContent, OrderState
+from sequence_planner.mes.tracker import MOST_DEVIATIONS, Ledger, OrderTracker, read
 
 JOBS = ("a", "b", "c")
 
@@ -214,7 +211,7 @@ def test_every_start_belongs_to_one_job_at_most(steps: list[tuple[str, str]]) ->
 
 
 def test_orders_go_on_as_the_journal_says_wherever_the_server_is_killed(database: Database) -> None:
-    Following(database).read_on(MASTERS)
+    OrderTracker(database).read_on(MASTERS)
     run = random_run([(name, what) for what in ("begin", "begin", "start", "done", "restart", "end") for name in JOBS])
     with database.writing() as connection:
         for name in JOBS:
@@ -227,8 +224,8 @@ def test_orders_go_on_as_the_journal_says_wherever_the_server_is_killed(database
             writer.write(record.kind, record.time, record.content)
 
         with_writer(database, write)
-        Following(database).read_on(MASTERS)
-        Following(database).read_on(MASTERS)
+        OrderTracker(database).read_on(MASTERS)
+        OrderTracker(database).read_on(MASTERS)
     with database.reading() as connection:
         told = events.after(connection, 0, 1000)
         found = {each.job_order: each for each in responses.page(connection, 0, 10)}
@@ -243,11 +240,11 @@ def test_orders_go_on_as_the_journal_says_wherever_the_server_is_killed(database
 
 
 def test_what_another_server_has_read_is_news_here_too(database: Database) -> None:
-    Following(database).read_on(MASTERS)
+    OrderTracker(database).read_on(MASTERS)
     with database.writing() as connection:
         order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
         orders.hand_over(connection, order, 1.0)
-    one, other = Following(database), Following(database)
+    one, other = OrderTracker(database), OrderTracker(database)
     assert one.read_on(MASTERS) == other.read_on(MASTERS) == (False, False)
 
     async def write(writer: RunWriter) -> None:
@@ -259,7 +256,7 @@ def test_what_another_server_has_read_is_news_here_too(database: Database) -> No
 
 
 def test_an_order_that_is_over_stays_so_and_is_commanded_no_more(database: Database) -> None:
-    Following(database).read_on(MASTERS)
+    OrderTracker(database).read_on(MASTERS)
     with database.writing() as connection:
         order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
         orders.hand_over(connection, order, 1.0)
@@ -271,7 +268,7 @@ def test_an_order_that_is_over_stays_so_and_is_commanded_no_more(database: Datab
             writer.write("ticked", 1.0, json.dumps({"jobs": {"a": each}}))
 
     with_writer(database, write)
-    assert Following(database).read_on(MASTERS) == (True, False)
+    assert OrderTracker(database).read_on(MASTERS) == (True, False)
     with database.reading() as connection:
         over = orders.get(connection, "a")
     assert (over.state, over.wish, over.allowed) == (OrderState.ABORTED, None, (OrderCommand.CLEAR,))

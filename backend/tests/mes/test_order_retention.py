@@ -8,21 +8,19 @@ from pathlib import Path
 import pytest
 from sqlalchemy import update
 
-from sequence_planner.actor import SYSTEM
-from sequence_planner.journal import archive_file, audit
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.journal import archive, audit
 from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.events import EventKind
-from sequence_planner.mes.order import OrderContent
-from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.mes.order import OrderCommand, OrderContent, OrderRefused
 from sequence_planner.mes.responses import nothing_made
 from sequence_planner.mes.retention import CUT, cut_orders, order_files, wrong_files
-from sequence_planner.mes.states import OrderCommand
 from sequence_planner.mes.tables import JOB_BEGIN
 from sequence_planner.mes.webhooks import deliveries
-from sequence_planner.mes.webhooks import webhook as webhooks
-from sequence_planner.mes.webhooks.sealing import Seal, key_file
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
+from sequence_planner.mes.webhooks import endpoints as webhooks
+from sequence_planner.mes.webhooks.endpoints import Seal, key_file
 
 OLD, LATER, NOW = 100.0, 500.0, 1000.0
 
@@ -71,7 +69,7 @@ def test_what_is_over_long_enough_goes_and_nothing_else(database: Database, fold
     assert cut_orders(database, 400.0, SYSTEM, NOW, folder) == 6
     assert ids(database) == ["open", "late"]
     [file] = folder.iterdir()
-    header, *lines = map(json.loads, archive_file.lines(file))
+    header, *lines = map(json.loads, archive.lines(file))
     assert (header["orders"], header["events"], header["responses"]) == (3, 6, 3)
     assert [line["order"]["id"] for line in lines[:3]] == ["a", "b", "c"]
     archived = [line["event"]["number"] for line in lines if "event" in line]
@@ -167,8 +165,8 @@ def test_two_at_once_take_nothing_out_twice(database: Database, folder: Path, mo
             connection.execute(update(JOB_BEGIN).values(events=1))
         return written(*_)  # type: ignore[arg-type]
 
-    written = archive_file.write
-    monkeypatch.setattr(archive_file, "write", meanwhile)
+    written = archive.write
+    monkeypatch.setattr(archive, "write", meanwhile)
     with pytest.raises(StorageError, match="somebody else"):
         cut_orders(database, 400.0, SYSTEM, NOW, folder)
     assert len(ids(database)) == 4

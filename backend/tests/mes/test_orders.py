@@ -9,11 +9,10 @@ from pathlib import Path
 
 from sqlalchemy import Connection, event
 
-from sequence_planner.actor import SYSTEM
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
 from sequence_planner.mes import orders, responses
-from sequence_planner.mes.order import JobOrder, OrderContent
-from sequence_planner.mes.states import OrderCommand, OrderState
-from sequence_planner.storage.database import Database
+from sequence_planner.mes.order import JobOrder, OrderCommand, OrderContent, OrderState
 
 ASKED: dict[str, Callable[[Connection], object]] = {
     "how many": orders.count_open,

@@ -14,25 +14,25 @@ from hypothesis.strategies import integers
 
 from core.budget import TIMED
 from mes.works import NOW, RESOURCES, Exclusive, best, check, objective, questions, shop
-from sequence_planner.actor import SYSTEM
-from sequence_planner.control.job_commands import JobOperation, JobWait, SequenceJobs
-from sequence_planner.control.link_messages import LONGEST_COMMAND, CommandMessage, encode
-from sequence_planner.mes.sequencing.sequencing import by_rule, sequence
-from sequence_planner.mes.sequencing.waits import waits_among
-from sequence_planner.mes.sequencing.work import Operation, Schedule, Work
+from sequence_planner.controller.commands.commands import JobOperation, JobWait, SequenceJobs
+from sequence_planner.controller.ipc import LONGEST_COMMAND, CommandMessage, encode
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.mes.scheduling.dispatch import waits_among
+from sequence_planner.mes.scheduling.problem import JobWork, Schedule, WorkOperation
+from sequence_planner.mes.scheduling.scheduler import by_rule, sequence
 
 ARM = frozenset({"arm"})
 
 
-def one(job: str, seconds: float, due: float | None, priority: int = 0) -> Work:
-    return Work(job, priority, due, None, {"make": Operation(frozenset(), seconds, ARM)})
+def one(job: str, seconds: float, due: float | None, priority: int = 0) -> JobWork:
+    return JobWork(job, priority, due, None, {"make": WorkOperation(frozenset(), seconds, ARM)})
 
 
 @settings(max_examples=60, deadline=None)
 @given(questions())
-@example(([Work("a", 0, None, None, {})], []))
-@example(([Work("a", 0, NOW - 5, None, {}), one("b", 3, NOW - 2)], [frozenset({"a", "b"})]))
-def test_it_is_the_best_that_there_is(question: tuple[list[Work], Exclusive]) -> None:
+@example(([JobWork("a", 0, None, None, {})], []))
+@example(([JobWork("a", 0, NOW - 5, None, {}), one("b", 3, NOW - 2)], [frozenset({"a", "b"})]))
+def test_it_is_the_best_that_there_is(question: tuple[list[JobWork], Exclusive]) -> None:
     works, exclusive = question
     schedule = sequence(works, exclusive, NOW, 20)
     check(works, exclusive, schedule)
@@ -47,7 +47,7 @@ def test_it_is_the_best_that_there_is(question: tuple[list[Work], Exclusive]) ->
 
 @settings(max_examples=60, deadline=None)
 @given(questions(most=9))
-def test_the_order_by_rule_can_be_worked_too(question: tuple[list[Work], Exclusive]) -> None:
+def test_the_order_by_rule_can_be_worked_too(question: tuple[list[JobWork], Exclusive]) -> None:
     works, exclusive = question
     schedule = by_rule(works, exclusive, NOW, "nobody answered")
     check(works, exclusive, schedule)
@@ -58,7 +58,7 @@ def test_the_order_by_rule_can_be_worked_too(question: tuple[list[Work], Exclusi
 
 @settings(max_examples=60, deadline=None)
 @given(questions(most=9))
-def test_what_waits_for_what_is_all_and_no_more_than_is_needed(question: tuple[list[Work], Exclusive]) -> None:
+def test_what_waits_for_what_is_all_and_no_more_than_is_needed(question: tuple[list[JobWork], Exclusive]) -> None:
     works, exclusive = question
     schedule = by_rule(works, exclusive, NOW, "")
     for jobs in (None, {"job-0", "job-2"}):
@@ -78,7 +78,7 @@ def test_what_waits_for_what_is_all_and_no_more_than_is_needed(question: tuple[l
 
 
 def _before(
-    works: list[Work], waits: dict[tuple[str, str], list[tuple[str, str]]], step: tuple[str, str]
+    works: list[JobWork], waits: dict[tuple[str, str], list[tuple[str, str]]], step: tuple[str, str]
 ) -> set[tuple[str, str]]:
     of = {work.job: work.operations for work in works}
     pending, found = [step], set[tuple[str, str]]()
@@ -109,15 +109,15 @@ def test_where_nothing_is_due_priority_decides() -> None:
 
 
 def test_a_job_that_is_under_way_goes_on_before_those_that_it_excludes() -> None:
-    under_way = Work("old", 0, None, None, {"end": Operation(frozenset(), 50, ARM)}, begun=True)
-    urgent = Work("urgent", 9, NOW + 10, None, {"make": Operation(frozenset(), 10, frozenset({"press"}))})
+    under_way = JobWork("old", 0, None, None, {"end": WorkOperation(frozenset(), 50, ARM)}, begun=True)
+    urgent = JobWork("urgent", 9, NOW + 10, None, {"make": WorkOperation(frozenset(), 10, frozenset({"press"}))})
     pair = frozenset({"old", "urgent"})
     assert sequence([under_way, urgent], [pair], NOW, 5).jobs == ["old", "urgent"]
     assert sequence([replace(under_way, begun=False), urgent], [pair], NOW, 5).jobs == ["urgent", "old"]
 
 
 def test_one_that_takes_longer_than_expected_is_expected_at_once() -> None:
-    running = Work("a", 0, None, None, {"make": Operation(frozenset(), 5, ARM, started=NOW - 60)})
+    running = JobWork("a", 0, None, None, {"make": WorkOperation(frozenset(), 5, ARM, started=NOW - 60)})
     schedule = sequence([running, one("b", 10, None)], [], NOW, 5)
     assert schedule.starts["a", "make"] == (NOW - 60, NOW)
     assert schedule.starts["b", "make"][0] == NOW
@@ -127,15 +127,15 @@ def test_one_that_takes_longer_than_expected_is_expected_at_once() -> None:
 @pytest.mark.parametrize(
     ("operations", "words"),
     [
-        ({"a": Operation(frozenset({"b"}), 1, ARM), "b": Operation(frozenset({"a"}), 1, ARM)}, "in a circle"),
-        ({"a": Operation(frozenset(), -1, ARM)}, "cannot take -1 s"),
-        ({"a": Operation(frozenset(), float("nan"), ARM)}, "cannot take nan s"),
-        ({"a": Operation(frozenset(), 1, ARM, started=inf)}, "is no time"),
+        ({"a": WorkOperation(frozenset({"b"}), 1, ARM), "b": WorkOperation(frozenset({"a"}), 1, ARM)}, "in a circle"),
+        ({"a": WorkOperation(frozenset(), -1, ARM)}, "cannot take -1 s"),
+        ({"a": WorkOperation(frozenset(), float("nan"), ARM)}, "cannot take nan s"),
+        ({"a": WorkOperation(frozenset(), 1, ARM, started=inf)}, "is no time"),
     ],
 )
-def test_what_cannot_be_worked_is_refused(operations: dict[str, Operation], words: str) -> None:
+def test_what_cannot_be_worked_is_refused(operations: dict[str, WorkOperation], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sequence([Work("j", 0, None, None, operations)], [], NOW, 1)
+        sequence([JobWork("j", 0, None, None, operations)], [], NOW, 1)
 
 
 def test_two_jobs_of_one_name_are_refused() -> None:
@@ -166,7 +166,7 @@ def test_a_thousand_orders_are_put_into_an_order() -> None:
     assert not found.optimal
 
 
-def _rule(works: list[Work], exclusive: Exclusive) -> Schedule:
+def _rule(works: list[JobWork], exclusive: Exclusive) -> Schedule:
     schedule = by_rule(works, exclusive, NOW, "")
     check(works, exclusive, schedule)
     return schedule
@@ -182,13 +182,13 @@ def test_times_far_away_do_no_harm() -> None:
 def test_the_order_between_forty_jobs_fits_into_a_line_to_the_controller() -> None:
     names = ["robot", "nutrunner", "operator", "gantry"]
     works = [
-        Work(
+        JobWork(
             f"order-2026-{job:08d}",
             0,
             None,
             None,
             {
-                f"assemble_engine_{job}.step_{step}": Operation(
+                f"assemble_engine_{job}.step_{step}": WorkOperation(
                     frozenset(), 5.0, frozenset({names[step % 4], names[(step + job) % 4]})
                 )
                 for step in range(20)
@@ -209,7 +209,7 @@ def test_the_order_between_forty_jobs_fits_into_a_line_to_the_controller() -> No
 @settings(max_examples=20, deadline=None)
 @given(questions(most=6), integers(1, 6))
 def test_with_a_horizon_it_can_be_worked_and_is_the_best_where_that_holds_all(
-    question: tuple[list[Work], Exclusive], most: int
+    question: tuple[list[JobWork], Exclusive], most: int
 ) -> None:
     works, exclusive = question
     schedule, whole = (sequence(works, exclusive, NOW, 20, most=each) for each in (most, 20))
@@ -225,10 +225,10 @@ def test_with_a_horizon_it_can_be_worked_and_is_the_best_where_that_holds_all(
 
 def test_a_thousand_orders_of_twenty_operations_are_put_into_an_order_soon() -> None:
     """As of the truck engine station, where rules alone took twelve seconds of a processor."""
-    chance, works = random.Random(1), list[Work]()
+    chance, works = random.Random(1), list[JobWork]()
     for number in range(1000):
         operations = {
-            f"o{place}": Operation(
+            f"o{place}": WorkOperation(
                 frozenset({f"o{place - 1}"} if place else ()),
                 15.0,
                 frozenset({RESOURCES[place % len(RESOURCES)]}),
@@ -236,7 +236,7 @@ def test_a_thousand_orders_of_twenty_operations_are_put_into_an_order_soon() -> 
             for place in range(20)
         }
         due = NOW + chance.uniform(0.1, 1.0) * 300_000
-        works.append(Work(f"order-{number}", chance.randint(0, 4), due, None, operations))
+        works.append(JobWork(f"order-{number}", chance.randint(0, 4), due, None, operations))
     exclusive = [frozenset(work.job for work in works)]
     began = time.process_time()
     ruled = by_rule(works, exclusive, NOW, "why")

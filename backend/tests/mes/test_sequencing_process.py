@@ -13,8 +13,8 @@ import pytest
 from mes.works import NOW, check, shop
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
-from sequence_planner.mes.sequencing.process import LATE, Sequencer
-from sequence_planner.mes.sequencing.work import Operation, Schedule, Work
+from sequence_planner.mes.scheduling.problem import JobWork, Schedule, WorkOperation
+from sequence_planner.mes.scheduling.scheduler import LATE, Sequencer
 
 PATIENCE = 60.0  # seconds
 
@@ -36,7 +36,7 @@ def processes() -> list[Child]:
     return [child for child in children() if child.name == "order of work"]
 
 
-async def ordered(sequencer: Sequencer, works: list[Work], limit: float = 20.0) -> Schedule:
+async def ordered(sequencer: Sequencer, works: list[JobWork], limit: float = 20.0) -> Schedule:
     """The order as the process finds it, which may still be starting."""
     while (schedule := await sequencer.sequence(works, [], NOW, limit)).fallback:
         check(works, [], schedule)
@@ -97,12 +97,12 @@ def test_what_a_busy_machine_finds_of_a_thousand_orders_is_taken_although_it_is_
 
 
 def test_what_cannot_be_worked_is_refused_and_the_next_question_is_answered() -> None:
-    circle = Operation(frozenset({"a"}), 1.0, frozenset())
+    circle = WorkOperation(frozenset({"a"}), 1.0, frozenset())
 
     async def scenario(sequencer: Sequencer) -> None:
         await ordered(sequencer, shop(2, seed=1))
         with pytest.raises(ValueError, match="in a circle"):
-            await sequencer.sequence([Work("job", 0, None, None, {"a": circle})], [], NOW, 20)
+            await sequencer.sequence([JobWork("job", 0, None, None, {"a": circle})], [], NOW, 20)
         await ordered(sequencer, shop(2, seed=1))
 
     run(scenario)

@@ -20,18 +20,15 @@ from hypothesis.stateful import (
 from sqlalchemy import Connection, delete, select
 
 from core.budget import examples
-from sequence_planner.actor import Actor, ActorKind
-from sequence_planner.control.vocabulary import JobState
-from sequence_planner.control.work_master_view import WorkMastersView
+from sequence_planner.controller.views.details import WorkMastersView
+from sequence_planner.core.actor import Actor, ActorKind
+from sequence_planner.db.database import Database
+from sequence_planner.execution.vocabulary import JobState
 from sequence_planner.journal import audit
 from sequence_planner.mes import events, orders, responses
-from sequence_planner.mes.following import note, response
-from sequence_planner.mes.ledger import JobMade, News
-from sequence_planner.mes.order import JobOrder, OrderContent
-from sequence_planner.mes.refusal import OrderRefused
-from sequence_planner.mes.states import OrderCommand, OrderState, Wish, allowed
+from sequence_planner.mes.order import JobOrder, OrderCommand, OrderContent, OrderRefused, OrderState, Wish, allowed
 from sequence_planner.mes.tables import JOB_EVENTS, JOB_ORDERS, JOB_RESPONSES
-from sequence_planner.storage.database import Database
+from sequence_planner.mes.tracker import JobMade, News, note, response
 
 MES = Actor(kind=ActorKind.KEY, id="mes", name="MES")
 WAITING, READY, RUNNING, INTERRUPTED = "NotAllowedToStart", "AllowedToStart", "Running", "Interrupted"

@@ -12,18 +12,17 @@ from hypothesis import strategies as st
 from core.budget import examples
 from journal.happened import with_writer
 from mes.test_ledger import MASTERS, job
-from sequence_planner.actor import SYSTEM
-from sequence_planner.control.moment import Moment
-from sequence_planner.control.standing_notes import StandingNotes
-from sequence_planner.control.view import PackML
+from sequence_planner.controller.commands.audit import StandingNotes
+from sequence_planner.controller.views.station import PackML
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.db.database import Database
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.journal.run_writer import RunWriter
+from sequence_planner.journal.writer import RunWriter
 from sequence_planner.mes import events, orders
 from sequence_planner.mes.events import JobEvent
-from sequence_planner.mes.following import Following
 from sequence_planner.mes.order import OrderContent
-from sequence_planner.mes.station_news import StationStanding
-from sequence_planner.storage.database import Database
+from sequence_planner.mes.tracker import OrderTracker, StationStanding
 
 BEGUN: dict[str, Any] = {"values": {}, "senses": {}, "memory": {}, "jobs": {}, "mode": "automatic"}
 Written = tuple[str, dict[str, Any]]
@@ -54,8 +53,8 @@ def write(database: Database, *records: Written) -> None:
     with_writer(database, writing)
 
 
-def read(database: Database, follower: Following | None = None) -> list[JobEvent]:
-    (follower or Following(database)).read_on(MASTERS)
+def read(database: Database, follower: OrderTracker | None = None) -> list[JobEvent]:
+    (follower or OrderTracker(database)).read_on(MASTERS)
     with database.reading() as connection:
         return events.after(connection, 0, 1000)
 
@@ -185,7 +184,7 @@ def test_what_was_told_is_how_it_stands(written: list[Written]) -> None:
 @pytest.mark.parametrize("each_time_anew", [True, False])
 def test_however_often_the_server_is_killed_each_is_told_once(database: Database, each_time_anew: bool) -> None:
     write(database, ("begun", BEGUN))
-    follower = Following(database)
+    follower = OrderTracker(database)
     read(database, follower)
     order(database)
     records = [
@@ -221,7 +220,7 @@ def test_what_lasts_for_a_moment_is_not_noted() -> None:
     notes = StandingNotes(lambda kind, content: noted.append((kind, dict(content))))
 
     def look(seconds: float, state: PackML, **waits: list[str]) -> None:
-        notes.look(state, waits, Moment(1000.0 + seconds, seconds))
+        notes.look(state, waits, Timestamp(1000.0 + seconds, seconds))
 
     look(0, PackML.EXECUTE, a=[])
     look(1, PackML.EXECUTE, a=[])

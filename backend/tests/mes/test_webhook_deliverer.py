@@ -16,17 +16,15 @@ import pytest
 
 from mes.receiver import Receiver, breaks_off, hangs, receiving, status
 from mes.test_webhook_deliveries import found, happen
-from sequence_planner.actor import SYSTEM
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
 from sequence_planner.mes import events
-from sequence_planner.mes.webhooks import deliverer, deliveries
-from sequence_planner.mes.webhooks import webhook as webhooks
-from sequence_planner.mes.webhooks.deliverer import Deliverer
+from sequence_planner.mes.webhooks import deliveries, delivery
+from sequence_planner.mes.webhooks import endpoints as webhooks
 from sequence_planner.mes.webhooks.deliveries import Pace
-from sequence_planner.mes.webhooks.sealing import Seal, key_file
-from sequence_planner.mes.webhooks.sending import Patience, Sender
+from sequence_planner.mes.webhooks.delivery import Deliverer, Patience, Sender
+from sequence_planner.mes.webhooks.endpoints import Seal, Webhook, key_file
 from sequence_planner.mes.webhooks.targets import Targets
-from sequence_planner.mes.webhooks.webhook import Webhook
-from sequence_planner.storage.database import Database
 
 TESTS = Path(__file__).parents[1]
 PATIENCE = 20.0  # seconds
@@ -41,7 +39,7 @@ def receiver() -> Iterator[Receiver]:
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(deliverer, "LOOK_EVERY", 0.02)
+    monkeypatch.setattr(delivery, "LOOK_EVERY", 0.02)
 
 
 def made(database: Database, receiver: Receiver) -> tuple[str, Webhook]:

@@ -13,18 +13,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
 
-from sequence_planner.actor import SYSTEM
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
 from sequence_planner.journal import audit
 from sequence_planner.mes import events
 from sequence_planner.mes.events import EventKind
-from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.mes.order import OrderRefused
 from sequence_planner.mes.webhooks import deliveries
-from sequence_planner.mes.webhooks import webhook as webhooks
+from sequence_planner.mes.webhooks import endpoints as webhooks
 from sequence_planner.mes.webhooks.deliveries import Pace
-from sequence_planner.mes.webhooks.sealing import Seal, UnreadableSecretError, key_file
+from sequence_planner.mes.webhooks.endpoints import MOST_WEBHOOKS, Seal, UnreadableSecretError, Webhook, key_file
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
-from sequence_planner.mes.webhooks.webhook import MOST_WEBHOOKS, Webhook
-from sequence_planner.storage.database import Database
 
 PACE = Pace(first=2.0, longest=60.0, longest_hold=8.0, attempts=3)
 URL = "https://mes.example/events"

@@ -11,20 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from mes.receiver import (
-    Answer,
-    Receiver,
-    breaks_off,
-    drips,
-    floods,
-    hangs,
-    receiving,
-    status,
-    talks_nonsense,
-)
-from sequence_planner.mes.webhooks.sending import Patience, Sender, Undelivered
+from mes.receiver import Answer, Receiver, breaks_off, drips, floods, hangs, receiving, status, talks_nonsense
+from sequence_planner.mes.webhooks.delivery import Patience, Sender, Undelivered
 from sequence_planner.mes.webhooks.targets import Targets, network
-from web.certificates import certify
+from server.certificates import certify
 
 OVER = threading.Event()
 PATIENCE = Patience()

@@ -10,7 +10,7 @@ from math import inf
 
 from hypothesis import strategies as st
 
-from sequence_planner.mes.sequencing.work import Operation, Schedule, Work, weight
+from sequence_planner.mes.scheduling.problem import JobWork, Schedule, WorkOperation, weight
 
 NOW = 1_700_000_000.0
 RESOURCES = ("arm", "press", "table")
@@ -18,16 +18,16 @@ Exclusive = list[frozenset[str]]
 
 
 @st.composite
-def questions(draw: st.DrawFn, most: int = 5) -> tuple[list[Work], Exclusive]:
+def questions(draw: st.DrawFn, most: int = 5) -> tuple[list[JobWork], Exclusive]:
     """Up to so many operations of up to three jobs, in whole seconds, some of which have started."""
-    works: list[Work] = []
+    works: list[JobWork] = []
     left = draw(st.integers(1, most))
     for number in range(draw(st.integers(1, 3))):
         size = draw(st.integers(0, min(left, 3)))
         left -= size
         operations = {f"o{place}": _operation(draw, place) for place in range(size)}
         works.append(
-            Work(
+            JobWork(
                 f"job-{number}",
                 draw(st.integers(-1, 3)),
                 draw(st.none() | st.integers(-10, 20).map(lambda seconds: NOW + seconds)),
@@ -41,8 +41,8 @@ def questions(draw: st.DrawFn, most: int = 5) -> tuple[list[Work], Exclusive]:
     return works, groups
 
 
-def _operation(draw: st.DrawFn, place: int) -> Operation:
-    return Operation(
+def _operation(draw: st.DrawFn, place: int) -> WorkOperation:
+    return WorkOperation(
         draw(
             st.sets(st.sampled_from([*(f"o{each}" for each in range(place)), "completed"]), max_size=2).map(frozenset)
         ),
@@ -52,11 +52,11 @@ def _operation(draw: st.DrawFn, place: int) -> Operation:
     )
 
 
-def begun(work: Work) -> bool:
+def begun(work: JobWork) -> bool:
     return work.begun or any(each.started is not None for each in work.operations.values())
 
 
-def best(works: Sequence[Work], exclusive: Exclusive) -> tuple[float, float]:
+def best(works: Sequence[JobWork], exclusive: Exclusive) -> tuple[float, float]:
     """The least weighted tardiness and with it the least end of all, by trying every sequence of the operations."""
     steps = [
         (number, name)
@@ -67,7 +67,7 @@ def best(works: Sequence[Work], exclusive: Exclusive) -> tuple[float, float]:
     return min((_cost(works, exclusive, sequence) for sequence in itertools.permutations(steps)), default=(inf, inf))
 
 
-def _cost(works: Sequence[Work], exclusive: Exclusive, sequence: tuple[tuple[int, str], ...]) -> tuple[float, float]:
+def _cost(works: Sequence[JobWork], exclusive: Exclusive, sequence: tuple[tuple[int, str], ...]) -> tuple[float, float]:
     """What comes of it if each operation, in this sequence, starts as early as those before it let it."""
     spans: dict[tuple[int, str], tuple[float, float]] = {}
     for number, work in enumerate(works):
@@ -98,7 +98,7 @@ def _cost(works: Sequence[Work], exclusive: Exclusive, sequence: tuple[tuple[int
     return tardiness, max(ends, default=0.0)
 
 
-def _apart(works: Sequence[Work], exclusive: Exclusive, spans: dict[tuple[int, str], tuple[float, float]]) -> bool:
+def _apart(works: Sequence[JobWork], exclusive: Exclusive, spans: dict[tuple[int, str], tuple[float, float]]) -> bool:
     """Whether no two rivals overlap, and those that have begun come first."""
     for one, other in itertools.permutations(range(len(works)), 2):
         if not _rivals(works, exclusive, one, other) or begun(works[other]):
@@ -113,11 +113,11 @@ def _apart(works: Sequence[Work], exclusive: Exclusive, spans: dict[tuple[int, s
     return True
 
 
-def _rivals(works: Sequence[Work], exclusive: Exclusive, one: int, other: int) -> bool:
+def _rivals(works: Sequence[JobWork], exclusive: Exclusive, one: int, other: int) -> bool:
     return one != other and any({works[one].job, works[other].job} <= group for group in exclusive)
 
 
-def objective(works: Sequence[Work], schedule: Schedule) -> tuple[float, float]:
+def objective(works: Sequence[JobWork], schedule: Schedule) -> tuple[float, float]:
     """Weighted tardiness and the end of all, counted from the times alone."""
     tardiness = last = 0.0
     for work in works:
@@ -128,7 +128,7 @@ def objective(works: Sequence[Work], schedule: Schedule) -> tuple[float, float]:
     return tardiness, last
 
 
-def check(works: Sequence[Work], exclusive: Collection[frozenset[str]], schedule: Schedule) -> None:
+def check(works: Sequence[JobWork], exclusive: Collection[frozenset[str]], schedule: Schedule) -> None:
     """Whatever else an order is like, it can be worked."""
     steps = [(work, name) for work in works for name in work.operations]
     assert sorted(schedule.jobs) == sorted(work.job for work in works)
@@ -161,7 +161,7 @@ def check(works: Sequence[Work], exclusive: Collection[frozenset[str]], schedule
         assert not ends or not inside or max(ends) <= inside[0][0] + 1e-6
 
 
-def _check_resources(steps: Sequence[tuple[Work, str]], schedule: Schedule) -> None:
+def _check_resources(steps: Sequence[tuple[JobWork, str]], schedule: Schedule) -> None:
     on: dict[str, list[tuple[float, float, bool]]] = {}
     for work, name in steps:
         fixed = work.operations[name].started is not None
@@ -174,24 +174,24 @@ def _check_resources(steps: Sequence[tuple[Work, str]], schedule: Schedule) -> N
         assert all(start >= last - 1e-6 for start, _, _ in moved)
 
 
-def shop(jobs: int, seed: int, operations: int = 3, tight: float = 1.0) -> list[Work]:
+def shop(jobs: int, seed: int, operations: int = 3, tight: float = 1.0) -> list[JobWork]:
     """Orders as they come to a station of several resources: each through some of them, due after about its share."""
     chance = random.Random(seed)
-    works: list[Work] = []
+    works: list[JobWork] = []
     for number in range(jobs):
         route = chance.sample(RESOURCES, min(operations, len(RESOURCES)))
         parts = {
-            f"o{place}": Operation(
+            f"o{place}": WorkOperation(
                 frozenset({f"o{place - 1}"} if place else ()), float(chance.randint(20, 120)), frozenset({resource})
             )
             for place, resource in enumerate(route)
         }
         due = NOW + tight * chance.uniform(0.2, 1.0) * jobs * 70
-        works.append(Work(f"order-{number}", chance.randint(0, 4), due, None, parts))
+        works.append(JobWork(f"order-{number}", chance.randint(0, 4), due, None, parts))
     return works
 
 
-def with_times(works: Sequence[Work], seconds: float) -> list[Work]:
+def with_times(works: Sequence[JobWork], seconds: float) -> list[JobWork]:
     """The same, but that every operation takes so long."""
     return [
         replace(work, operations={name: replace(each, seconds=seconds) for name, each in work.operations.items()})

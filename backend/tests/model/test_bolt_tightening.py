@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sequence_planner.automaton.structure import Kind
+from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.expressions.printing import print_assignment, print_expression
+from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.station import prepare_station
 
 STATION = prepare_station(Path(__file__).parents[3] / "models" / "bolt_tightening")

@@ -12,11 +12,10 @@ from ruamel.yaml.reader import ReaderError
 from yaml import YAMLError
 
 from core.budget import examples
-from sequence_planner.expressions.syntax import Span
-from sequence_planner.model import composing, reading
-from sequence_planner.model.composing import Node, compose_slowly
-from sequence_planner.model.reading import read_text
+from sequence_planner.language.syntax import Span
 from sequence_planner.model.source import ModelError, SourceText
+from sequence_planner.model.yaml import reader
+from sequence_planner.model.yaml.reader import Node, compose_slowly, read_text
 
 REPOSITORY = Path(__file__).parents[3]
 FILES = sorted(
@@ -140,8 +139,8 @@ def test_odd_documents(text: str) -> None:
 def fast(text: str) -> Node | None:
     """What libyaml makes of a text; nothing where it is left to ruamel.yaml."""
     try:
-        return None if composing._READ_ALIKE_UNLESS.search(text) else composing._Composer(text).root()
-    except (YAMLError, composing._NotAlike, RecursionError):
+        return None if reader._READ_ALIKE_UNLESS.search(text) else reader._Composer(text).root()
+    except (YAMLError, reader._NotAlike, RecursionError):
         return None
 
 
@@ -174,7 +173,7 @@ def ends_of(text: str, node: Node) -> list[str]:
 def said_of(text: str, root: Node) -> object:
     """Everything that is ever said of a text: content, types, places, and the places within texts."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reading, "compose", lambda _: root)
+        patch.setattr(reader, "compose", lambda _: root)
         try:
             document = read_text(text, "file")
         except ModelError as error:

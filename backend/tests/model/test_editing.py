@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.model.editing import Content, insert, move, remove, rename, replace
 from sequence_planner.model.paths import EditError, parse_path, shown_path
-from sequence_planner.model.reading import EntryPath, read_text
+from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
+from sequence_planner.model.yaml.reader import EntryPath, read_text
 
 STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
 TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(STATION.glob("**/*.yaml"))}

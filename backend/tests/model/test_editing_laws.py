@@ -11,8 +11,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from core.budget import examples
-from sequence_planner.model.editing import Content, insert, move, remove, rename, replace
-from sequence_planner.model.reading import EntryPath, read_text
+from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
+from sequence_planner.model.yaml.reader import EntryPath, read_text
 
 STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
 TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(STATION.glob("**/*.yaml"))}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.model.reading import MOST_ENTRIES, MOST_REPEATED
+from sequence_planner.model.yaml.reader import MOST_ENTRIES, MOST_REPEATED
 from sequence_planner.station import prepare_station
 
 from .breaking import assert_found, copy_of_cell, findings, replace, write

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.automaton.structure import Automaton, Kind, Timeouts
-from sequence_planner.expressions.printing import print_assignment, print_expression
-from sequence_planner.expressions.types import BOOLEAN, IntegerRange
+from sequence_planner.automaton.automaton import Automaton, Kind, Timeouts
+from sequence_planner.language.printer import print_assignment, print_expression
+from sequence_planner.language.types import BOOLEAN, IntegerRange
 from sequence_planner.station import prepare_station
 
 from .breaking import assert_found, copy_of_cell, findings, replace, write

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.model.plain_documents import load_plain, read_plain
+from sequence_planner.model.efa_document import load_plain, read_plain
 from sequence_planner.model.source import ModelError
 
 GOOD = """{

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.model.editing import replace
 from sequence_planner.model.paths import EditError
-from sequence_planner.model.saving import digest, edit_file
+from sequence_planner.model.yaml.editor import replace
+from sequence_planner.model.yaml.saving import digest, edit_file
 
 
 def change(text: str) -> str:

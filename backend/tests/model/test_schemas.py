@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from sequence_planner.model.reading import read_text
-from sequence_planner.model.schemas import FILES, schema_of
+from sequence_planner.model.json_schema import FILES, schema_of
+from sequence_planner.model.yaml.reader import read_text
 
 REPOSITORY = Path(__file__).parents[3]
 SCHEMAS = REPOSITORY / "docs" / "schemas"

@@ -7,15 +7,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sequence_planner.expressions.place import Place
-from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
-from sequence_planner.model.reading import read_text
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Place
 from sequence_planner.model.stage_documents import StageDocument
-from sequence_planner.pipelines.context import Context
+from sequence_planner.model.yaml.reader import read_text
+from sequence_planner.pipelines.field_paths import REAL, TEXT
 from sequence_planner.pipelines.record import FieldType, ListType, NestedType, Record, RecordType
-from sequence_planner.pipelines.stage import Course, Stage
-from sequence_planner.pipelines.stages.building import build_stage
-from sequence_planner.pipelines.stages.values import REAL, TEXT
+from sequence_planner.pipelines.stages.base import Stage, StageInstance
+from sequence_planner.pipelines.stages.registry import build_stage
+from sequence_planner.pipelines.stages.support import Context
 
 BYTE = IntegerRange(0, 255)
 POINT = NestedType("geometry_msgs/msg/Point", {"x": REAL, "y": REAL})
@@ -93,7 +92,7 @@ def findings(text: str, is_incoming: bool = True, folder: Path = Path()) -> list
     return build(text, fields, wanted, is_incoming, folder).findings
 
 
-def take(course: Course, now: float = 0.0, /, **values: object) -> dict[str, object] | None:
+def take(course: StageInstance, now: float = 0.0, /, **values: object) -> dict[str, object] | None:
     """What a record with these fields becomes; it must make sense."""
     record = course.take(Record(dict(values)), now)
     assert record is None or record.troubles == []

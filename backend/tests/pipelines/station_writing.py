@@ -6,8 +6,8 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
-from sequence_planner.expressions.types import Value
-from sequence_planner.pipelines.running import RunningPipelines
+from sequence_planner.language.types import Value
+from sequence_planner.pipelines.runtime import RunningPipelines
 from sequence_planner.station import ReadyStation, prepare_station
 
 CELL = Path(__file__).parents[1] / "stations" / "cell"

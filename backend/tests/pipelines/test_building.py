@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.emulation.commanded import CommandReader
-from sequence_planner.emulation.spoken import spoken
-from sequence_planner.expressions.types import EnumerationType, IntegerRange
+from sequence_planner.language.types import EnumerationType, IntegerRange
 from sequence_planner.model.source import ModelError
-from sequence_planner.pipelines.running_outgoing import RunningOutgoing, first_message
-from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.pipelines.chain_runtime import RunningOutgoing, first_message
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.simulation.devices import CommandReader
+from sequence_planner.simulation.messages import spoken
 
 from .station_writing import Heard, station_with
 

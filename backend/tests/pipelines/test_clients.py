@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from pipelines.station_writing import write_station
-from sequence_planner.automaton.structure import Kind
-from sequence_planner.checking.connections import check_connections
+from sequence_planner.analysis.checks.connections import check_connections
+from sequence_planner.automaton.automaton import Kind
 from sequence_planner.cli.loading import load_model
 from sequence_planner.model.source import ModelError
-from sequence_planner.pipelines.goal_states import GoalState
+from sequence_planner.pipelines.graph import GoalState
 from sequence_planner.station import ReadyStation, prepare_station
 
 TANK = """\

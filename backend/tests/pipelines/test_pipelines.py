@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sequence_planner.emulation.commanded import CommandReader
-from sequence_planner.emulation.spoken import spoken
-from sequence_planner.expressions.types import Value
-from sequence_planner.pipelines.running_outgoing import first_message
+from sequence_planner.language.types import Value
+from sequence_planner.pipelines.chain_runtime import first_message
+from sequence_planner.simulation.devices import CommandReader
+from sequence_planner.simulation.messages import spoken
 from sequence_planner.station import ReadyStation, prepare_station
 
 from .station_writing import CELL, Heard, station_with

@@ -10,7 +10,7 @@ from statistics import median
 import pytest
 
 from core.budget import ONLY_TIMED
-from sequence_planner.control.feeds import Feeds
+from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.ros.transport import Sample
 from sequence_planner.station import ReadyStation
 
@@ -88,7 +88,7 @@ def a_second(station: ReadyStation, second: int) -> list[Sample]:
     return samples
 
 
-def take(feeds: Feeds, samples: list[Sample]) -> None:
+def take(feeds: Inputs, samples: list[Sample]) -> None:
     """As the controller does it when every message comes alone."""
     for sample in samples:
         feeds.take([sample])
@@ -98,7 +98,7 @@ def take(feeds: Feeds, samples: list[Sample]) -> None:
 
 @ONLY_TIMED
 def test_twenty_topics_at_a_hundred_messages_a_second_take_less_than_half_a_core(station: ReadyStation) -> None:
-    feeds = Feeds(station.pipelines, station.registry)
+    feeds = Inputs(station.pipelines, station.registry)
     taken = []
     for second in range(5):
         samples = a_second(station, second)
@@ -110,7 +110,7 @@ def test_twenty_topics_at_a_hundred_messages_a_second_take_less_than_half_a_core
 
 
 def test_memory_does_not_grow_with_the_messages(station: ReadyStation) -> None:
-    feeds = Feeds(station.pipelines, station.registry)
+    feeds = Inputs(station.pipelines, station.registry)
     take(feeds, a_second(station, 0))
     gc.collect()
     tracemalloc.start()

@@ -21,23 +21,25 @@ from structlog.testing import capture_logs
 from typer.testing import CliRunner
 
 from pipelines.stage_texts import MESSAGE, VARIABLES, build
-from sequence_planner.cli import configuration
+from sequence_planner.cli.station import configuration
 from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.own import confinement, process
-from sequence_planner.pipelines.stages.own.confinement import CALLS, FILES, missing
-from sequence_planner.pipelines.stages.own.program import CONFINED
-from sequence_planner.pipelines.stages.own.stage import PythonStage
-from sequence_planner.pipelines.stages.own.system_calls import (
+from sequence_planner.pipelines.stages import confinement, python
+from sequence_planner.pipelines.stages.confinement import (
+    CALLS,
     CLONE,
     CLONE3,
     FCNTL,
+    FILES,
     FORBIDDEN,
     OPEN,
     OPENAT,
     OPENAT2,
     PRLIMIT64,
     TGKILL,
+    missing,
 )
+from sequence_planner.pipelines.stages.python import PythonStage
+from sequence_planner.pipelines.stages.python_program import CONFINED
 
 NUMBERS = {
     0: Path("/usr/include/x86_64-linux-gnu/asm/unistd_64.h"),
@@ -190,7 +192,7 @@ def test_a_stage_has_no_more_memory_than_it_may(model: Path) -> None:
 # With Landlock of this version, which knows fewer rights, and so on an older kernel.
 ON_OLDER = """
 import os, sys
-from sequence_planner.pipelines.stages.own import confinement
+from sequence_planner.pipelines.stages import confinement
 version, newest = int(sys.argv[1]), confinement._landlock_version()
 sys.path.append(os.getcwd())
 confinement._landlock_version = lambda: min(version, newest)
@@ -251,8 +253,8 @@ def test_where_the_system_does_not_offer_it_that_is_said(tmp_path: Path, monkeyp
     monkeypatch.setattr(platform, "machine", lambda: "m68k")
     assert missing() == [FILES, CALLS]
     with capture_logs() as logs:
-        process.note_unconfined([FILES, CALLS])
-        process.note_unconfined([FILES, CALLS])
+        python.note_unconfined([FILES, CALLS])
+        python.note_unconfined([FILES, CALLS])
     assert [each["open_to_them"] for each in logs] == [f"{FILES}, {CALLS}"]
     file = tmp_path / "station.toml"
     file.write_text("port = 8443\n", encoding="utf-8")

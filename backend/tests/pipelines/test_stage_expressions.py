@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, MODE
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
-from sequence_planner.expressions.syntax import ExpressionError
-from sequence_planner.expressions.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.syntax import ExpressionError
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
+from sequence_planner.pipelines.expressions import read_calculation, read_condition
+from sequence_planner.pipelines.field_paths import REAL, TEXT
 from sequence_planner.pipelines.record import FieldType, RecordType
-from sequence_planner.pipelines.stages.calculation.reading import read_calculation, read_condition
-from sequence_planner.pipelines.stages.values import REAL, TEXT
 
 RECORD: Mapping[str, object] = {
     "joints": [0.5, -1.0],
@@ -252,7 +252,7 @@ def _valuation(choose: Choices) -> dict[str, bool | int | str | None]:
 @given(made_by(_predicate), made_by(_valuation))
 @examples(300)
 def test_a_guard_means_the_same_here(text: str, valuation: dict[str, bool | int | str | None]) -> None:
-    guard = resolve_predicate(parse(text), Scope(SMALL))
+    guard = resolve_predicate(parse(text), NameScope(SMALL))
     found = read_calculation(text, dict(SMALL))
     assert isinstance(found.type, BooleanType)
     assert found.value(valuation, []) == evaluate(guard, valuation)

@@ -14,7 +14,7 @@ from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import outgoing, stage, take
 from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stage import Course, Overriding
+from sequence_planner.pipelines.stages.base import Overriding, StageInstance
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ EVENTS = made_by(_events)
 END = 100.0
 
 
-def run(course: Course, events: Sequence[Event], end: float = END) -> list[tuple[float, object]]:
+def run(course: StageInstance, events: Sequence[Event], end: float = END) -> list[tuple[float, object]]:
     """What goes on, with the times, when the course is woken whenever it wants to be."""
     out: list[tuple[float, object]] = []
 

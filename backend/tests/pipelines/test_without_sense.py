@@ -10,9 +10,9 @@ from hypothesis import given as for_all
 from hypothesis import strategies as st
 
 from core.budget import examples
-from sequence_planner.control.feeds import Feeds
+from sequence_planner.controller.io.inputs import Inputs
+from sequence_planner.pipelines.field_paths import REAL, fits
 from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.values import REAL, fits
 from sequence_planner.ros.transport import Sample
 
 from .stage_texts import given, stage
@@ -121,7 +121,7 @@ topics:
 measured: {strong: {type: bool}}
 """
     station = station_with(tmp_path, text, ARM)
-    feeds = Feeds(station.pipelines, station.registry)
+    feeds = Inputs(station.pipelines, station.registry)
     for moment, force in ((0.0, 2.0), (0.1, math.nan)):
         data = station.registry.encode("tank_msgs/msg/Arm", {"force": force})
         feeds.take([Sample("/arm", data, moment)])

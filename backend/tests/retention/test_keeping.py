@@ -13,19 +13,18 @@ from sqlalchemy import func, insert, select
 from core.budget import examples
 from journal.acts import EVA
 from journal.happened import happened
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
 from sequence_planner.journal import retention as cutting
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.archive import Archive, verified
-from sequence_planner.journal.run_tables import RUN
-from sequence_planner.journal.verification import verify
-from sequence_planner.journal.whole_run import WholeRun
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.journal.run_journal import RUN
+from sequence_planner.journal.verify import verify
 from sequence_planner.mes.tables import JOB_LEDGER
-from sequence_planner.retention import keeping
-from sequence_planner.retention.keeping import Done, Task
+from sequence_planner.retention import retention
+from sequence_planner.retention.retention import Blocks, Done, RetentionTask, run_blocks
 from sequence_planner.retention.settings import MOST_DAYS, Retention
-from sequence_planner.retention.sizes import Blocks, run_blocks
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
 
 KB = 1e-6  # GB
 Pass = Callable[..., Done]
@@ -43,7 +42,7 @@ def pass_of(database: Database, database_url: str, folder: Path) -> Pass:
 
     def done(everything: bool = True, **settings: float) -> Done:
         told = Retention(folder=folder, **settings)  # type: ignore[arg-type]
-        return keeping.do(Task(database_url, None, told, EVA, everything))
+        return retention.do(RetentionTask(database_url, None, told, EVA, everything))
 
     return done
 
@@ -91,7 +90,7 @@ def test_one_pass_does_so_much_and_says_that_there_is_more(
     database: Database, pass_of: Pass, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cutting, "MOST_IN_FILE", 10)
-    monkeypatch.setattr(keeping, "MOST_FILES", 3)
+    monkeypatch.setattr(retention, "MOST_FILES", 3)
     happened(database, range(1, 96))
     assert [(pass_of().more, first(database)) for _ in range(4)] == [(True, 30), (True, 60), (True, 90), (False, 90)]
 

@@ -8,10 +8,10 @@ import time
 from collections.abc import Awaitable, Callable
 from functools import cache
 
-from sequence_planner.ros.choice import TransportChoice, open_transport
-from sequence_planner.ros.memory import MemoryNetwork
-from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Transport
+from sequence_planner.ros.transports.choice import TransportChoice, open_transport
+from sequence_planner.ros.transports.memory import MemoryNetwork
+from sequence_planner.ros.types.messages import MessageRegistry
 
 #: Test runs side by side must not meet. Above 100 the ports of a domain can be those the system gives to others.
 DOMAIN = 1 + os.getpid() % 100

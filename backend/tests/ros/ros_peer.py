@@ -23,11 +23,11 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from sequence_planner.ros.action_server import ActionServer, Work
-from sequence_planner.ros.actions import GoalStatus, Outcome
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import QualityOfService, Sample
+from sequence_planner.ros.actions import ActionServer, GoalOutcome, GoalStatus, GoalWork
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Sample
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.types.messages import MessageRegistry
 
 TEXT = "std_msgs/msg/String"
 
@@ -66,9 +66,9 @@ async def device(domain: int) -> None:
         numbers = registry.decode(f"{ADD}_Request", request)
         return registry.encode(f"{ADD}_Response", {"sum": int(str(numbers["a"])) + int(str(numbers["b"]))})
 
-    async def wait(work: Work) -> Outcome:
+    async def wait(work: GoalWork) -> GoalOutcome:
         await work.cancel_wanted.wait()
-        return Outcome(GoalStatus.CANCELED, {"sequence": [1]})
+        return GoalOutcome(GoalStatus.CANCELED, {"sequence": [1]})
 
     transport.serve("/add", ADD, add)
     server = ActionServer(transport, registry, "/fibonacci", FIBONACCI, wait)

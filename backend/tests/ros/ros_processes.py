@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ros_networks import DOMAIN
 
-from sequence_planner.ros.cyclone_network import loopback_configuration
+from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
 
 
 async def start(kind: str) -> asyncio.subprocess.Process:

@@ -10,18 +10,21 @@ import pytest
 from ros_networks import Network, eventually, play, standard
 from structlog.testing import capture_logs
 
-from sequence_planner.ros.action_server import ActionServer, Execute, Work
 from sequence_planner.ros.actions import (
     ActionClient,
+    ActionServer,
+    Execute,
+    GoalOutcome,
     GoalRejectedError,
     GoalStatus,
+    GoalWork,
     LostGoalError,
-    Outcome,
     cancelled,
 )
-from sequence_planner.ros.derived import GOAL_STATUSES
-from sequence_planner.ros.messages import MessageValueError
-from sequence_planner.ros.transport import NoServerError, QualityOfService, Transport
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NoServerError, Transport
+from sequence_planner.ros.types.errors import MessageValueError
+from sequence_planner.ros.types.standard_types import GOAL_STATUSES
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -32,16 +35,16 @@ KINDS = ["memory", "cyclonedds", pytest.param("rclpy", marks=NO_RCLPY)]
 FIBONACCI = "example_interfaces/action/Fibonacci"
 
 
-async def count(work: Work) -> Outcome:
+async def count(work: GoalWork) -> GoalOutcome:
     """Make one number of the sequence after another, until it is cancelled."""
     order, sequence = work.goal["order"], [0, 1]
     assert isinstance(order, int)
     while len(sequence) < order:
         work.feedback({"sequence": sequence})
         if await cancelled(work.cancel_wanted, 0.01):
-            return Outcome(GoalStatus.CANCELED, {"sequence": sequence})
+            return GoalOutcome(GoalStatus.CANCELED, {"sequence": sequence})
         sequence = [*sequence, sequence[-1] + sequence[-2]] if len(sequence) < 40 else [*sequence, 0]
-    return Outcome(GoalStatus.SUCCEEDED, {"sequence": sequence})
+    return GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": sequence})
 
 
 def server_on(transport: Transport, execute: Execute = count) -> ActionServer:
@@ -68,7 +71,7 @@ def test_a_goal_gives_feedback_status_and_result(kind: str) -> None:
         told.clear()
         goal = await client.send_goal({"order": 7}, 10.0, lambda values: told.append(values["sequence"]))
         await eventually(lambda: goal.status == GoalStatus.EXECUTING, "the status is told")
-        assert await goal.result() == Outcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1, 2, 3, 5, 8]})
+        assert await goal.result() == GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1, 2, 3, 5, 8]})
         assert told == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], [0, 1, 1, 2, 3, 5]]
         server.close()
 
@@ -108,7 +111,7 @@ def test_a_goal_can_be_cancelled(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_goes_wrong_is_told(kind: str) -> None:
-    async def fail(work: Work) -> Outcome:
+    async def fail(work: GoalWork) -> GoalOutcome:
         raise RuntimeError("the arm is blocked")
 
     async def scenario(network: Network) -> None:
@@ -122,7 +125,7 @@ def test_what_goes_wrong_is_told(kind: str) -> None:
             await client.send_goal({"order": "many"}, 10.0)
         with capture_logs() as logs:
             goal = await client.send_goal({"order": 3}, 10.0)
-            assert await goal.result() == Outcome(GoalStatus.ABORTED, {"sequence": []})
+            assert await goal.result() == GoalOutcome(GoalStatus.ABORTED, {"sequence": []})
         assert "a goal could not be carried out" in [log["event"] for log in logs]
         server.close()
 
@@ -164,7 +167,7 @@ def test_nonsense_about_goals_is_counted_and_harms_nobody() -> None:
         goal = await client.send_goal({"order": 3}, 10.0)
         told = {"goal_info": {"goal_id": {"uuid": list(goal.id)}}, "status": 77}
         vandal.publish(status, GOAL_STATUSES, standard().encode(GOAL_STATUSES, {"status_list": [told]}))
-        assert await goal.result() == Outcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1]})
+        assert await goal.result() == GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1]})
         server.close()
 
     play("memory", scenario)

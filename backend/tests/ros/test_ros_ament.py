@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from sequence_planner.ros.ament import write_ament_package
-from sequence_planner.ros.messages import MessageDefinitionError
+from sequence_planner.ros.types.errors import MessageDefinitionError
+from sequence_planner.ros.types.interfaces import write_ament_package
 
 
 @pytest.fixture

@@ -21,12 +21,10 @@ from ros_networks import DOMAIN, Network, eventually, play, standard
 
 from core.budget import examples
 from sequence_planner.ros import names
-from sequence_planner.ros.action_server import ActionServer, Work
-from sequence_planner.ros.actions import ActionClient, GoalStatus, Outcome
+from sequence_planner.ros.actions import ActionClient, ActionServer, GoalOutcome, GoalStatus, GoalWork
 from sequence_planner.ros.call_header import CallHeader, split_header, with_header
-from sequence_planner.ros.cyclone_receiver import take_all
-from sequence_planner.ros.cyclone_types import RawSample, raw_types
 from sequence_planner.ros.transport import TransportError
+from sequence_planner.ros.transports.cyclonedds_network import RawSample, raw_types, take_all
 
 SET, FIBONACCI = "std_srvs/srv/SetBool", "example_interfaces/action/Fibonacci"
 IDENTITIES = ("serviceid", "clientid")
@@ -38,9 +36,9 @@ async def unasked(request: bytes) -> bytes:
     return request
 
 
-async def idle(work: Work) -> Outcome:
+async def idle(work: GoalWork) -> GoalOutcome:
     """Nobody asks for it."""
-    return Outcome(GoalStatus.SUCCEEDED, {"sequence": []})
+    return GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": []})
 
 
 def seen_by(participant: DomainParticipant) -> Iterator[tuple[tuple[str, str, str], dict[str, str]]]:

@@ -9,8 +9,8 @@ import sys
 import pytest
 from ros_networks import DOMAIN, standard
 
-from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.transport import TransportError
+from sequence_planner.ros.transports.choice import TransportChoice, open_transport
 
 RCLPY = importlib.util.find_spec("rclpy") is not None
 
@@ -38,6 +38,6 @@ def test_a_computer_without_rclpy_is_told(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_computer_without_cyclonedds_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "sequence_planner.ros.cyclone", None)
+    monkeypatch.setitem(sys.modules, "sequence_planner.ros.transports.cyclonedds", None)
     with pytest.raises(TransportError, match=r"cyclonedds is not importable.*elsewhere use ROS 2 with rclpy"):
         opened("cyclonedds")

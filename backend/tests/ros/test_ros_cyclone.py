@@ -17,12 +17,14 @@ from hypothesis import strategies as st
 from ros_networks import DOMAIN, Network, eventually, play, settle, standard
 from ros_processes import peer
 
-from sequence_planner.emulation.faulty import garbage
-from sequence_planner.ros import cyclone_network
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.cyclone_network import loopback_configuration
-from sequence_planner.ros.messages import MalformedMessageError, MessageRegistry
-from sequence_planner.ros.transport import QualityOfService, Sample, TransportError
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Sample, TransportError
+from sequence_planner.ros.transports import cyclonedds_network
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
+from sequence_planner.ros.types.errors import MalformedMessageError
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.simulation.faults import garbage
 
 TEXT = "std_msgs/msg/String"
 RELIABLE = QualityOfService.RELIABLE
@@ -232,7 +234,7 @@ def test_a_computer_without_the_interface_is_told_what_to_do(monkeypatch: pytest
             monkeypatch.context() as patch,
             pytest.raises(TransportError, match="Check that a loopback interface is up"),
         ):
-            patch.setattr(cyclone_network, "loopback_configuration", lambda: interface)
+            patch.setattr(cyclonedds_network, "loopback_configuration", lambda: interface)
             open_transport("cyclonedds", standard(), "station", loop, domain)
         # Once there is one, the same process can join.
         open_transport("cyclonedds", standard(), "station", loop, DOMAIN).close()

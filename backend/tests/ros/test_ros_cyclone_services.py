@@ -13,9 +13,8 @@ from ros_networks import DOMAIN, Network, eventually, play, settle, standard
 from structlog.testing import capture_logs
 
 from sequence_planner.ros.call_header import CallHeader, with_header
-from sequence_planner.ros.cyclone_network import release
-from sequence_planner.ros.cyclone_types import RawSample, raw_types
 from sequence_planner.ros.transport import NoServerError
+from sequence_planner.ros.transports.cyclonedds_network import RawSample, raw_types, release
 
 ADD = "example_interfaces/srv/AddTwoInts"
 REQUEST = standard().encode(f"{ADD}_Request", {"a": 1, "b": 2})

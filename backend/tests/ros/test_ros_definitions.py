@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.ros.messages import MessageDefinitionError, MessageRegistry
+from sequence_planner.ros.types.errors import MessageDefinitionError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 BAD_LINES = [
     ("wstring name", "use string"),

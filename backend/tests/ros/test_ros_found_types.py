@@ -12,16 +12,19 @@ from ros_processes import peer
 
 from core.budget import examples
 from core.choices import Choices, made_by
-from sequence_planner.ros.found_types import TypeNotFoundError, find_type, serve_types
-from sequence_planner.ros.messages import FoundType, MessageRegistry, UnknownMessageTypeError
-from sequence_planner.ros.transport import Endpoint, QualityOfService, Sample, Transport
-from sequence_planner.ros.type_description import (
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport
+from sequence_planner.ros.types.errors import UnknownMessageTypeError
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.ros.types.type_description import (
     BadDescriptionError,
+    FoundType,
     TypeDescription,
     check_hash,
     describe,
     read_description,
 )
+from sequence_planner.ros.types.type_discovery import TypeNotFoundError, find_type, serve_types
 
 KINDS = ["memory", "cyclonedds"]
 CELL = "cell_msgs/msg/Cell"
@@ -42,10 +45,10 @@ CELL_FILES = {
 }
 
 
-async def seen(transport: Transport, topic: str) -> Endpoint:
+async def seen(transport: Transport, topic: str) -> NetworkEndpoint:
     """Wait for the publisher of a topic, with its node."""
 
-    def publishers() -> list[Endpoint]:
+    def publishers() -> list[NetworkEndpoint]:
         return [e for e in transport.graph() if e.topic == topic and e.direction == "publisher" and e.node]
 
     await eventually(publishers, f"the publisher of {topic} is seen")

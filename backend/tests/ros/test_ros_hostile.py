@@ -19,9 +19,10 @@ from ros_networks import eventually, standard
 from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.ros.delivery import CAPACITY, Delivery
-from sequence_planner.ros.fields import FieldType
-from sequence_planner.ros.messages import MalformedMessageError, MessageDefinitionError, MessageRegistry
 from sequence_planner.ros.transport import Sample
+from sequence_planner.ros.types.definitions import FieldType
+from sequence_planner.ros.types.errors import MalformedMessageError, MessageDefinitionError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 SERVICES = [standard().service(name) for name in standard().service_names()]
 TYPES = [

@@ -8,8 +8,9 @@ from xml.etree import ElementTree
 import pytest
 from ros_networks import standard
 
-from sequence_planner.ros.ament import write_ament_package
-from sequence_planner.ros.messages import MessageDefinitionError, MessageRegistry, UnknownMessageTypeError
+from sequence_planner.ros.types.errors import MessageDefinitionError, UnknownMessageTypeError
+from sequence_planner.ros.types.interfaces import write_ament_package
+from sequence_planner.ros.types.messages import MessageRegistry
 
 # From the code that rosidl generated in ROS 2 Jazzy.
 GOLDEN_HASHES = {

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sequence_planner.ros.messages import (
-    FieldType,
+from sequence_planner.ros.types.definitions import FieldType
+from sequence_planner.ros.types.errors import (
     MalformedMessageError,
-    MessageRegistry,
     MessageValueError,
     UnknownMessageTypeError,
 )
+from sequence_planner.ros.types.messages import MessageRegistry
 
 
 @cache

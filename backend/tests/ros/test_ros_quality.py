@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from ros_networks import Network, eventually, play, settle, standard
 
 from core.budget import examples
-from sequence_planner.ros.quality import QualityEvent, QualityOfService, disagreements
+from sequence_planner.ros.qos import QualityEvent, QualityOfService, disagreements
 from sequence_planner.ros.transport import Sample
 
 NO_RCLPY = pytest.mark.skipif(

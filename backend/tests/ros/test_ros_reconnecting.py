@@ -8,7 +8,7 @@ from ros_networks import Network, eventually, play, standard
 from ros_processes import peer
 
 from sequence_planner.ros.actions import ActionClient, GoalStatus, LostGoalError
-from sequence_planner.ros.quality import QualityEvent, QualityOfService
+from sequence_planner.ros.qos import QualityEvent, QualityOfService
 from sequence_planner.ros.transport import NoAnswerError, Sample, Transport
 
 TEXT, ADD, FIBONACCI = "std_msgs/msg/String", "example_interfaces/srv/AddTwoInts", "example_interfaces/action/Fibonacci"

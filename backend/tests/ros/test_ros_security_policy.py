@@ -9,11 +9,11 @@ from xml.etree import ElementTree
 import pytest
 
 from cli.commands import TESTS, command
-from sequence_planner.control import process as controller_process
-from sequence_planner.emulation import node as emulated_devices
-from sequence_planner.ros import enclaves
+from sequence_planner.controller import service as controller_process
+from sequence_planner.export.sros2 import policy
+from sequence_planner.ros import environment
 from sequence_planner.ros.actions import ActionNames
-from sequence_planner.ros.security_policy import policy
+from sequence_planner.simulation import manual_interface as emulated_devices
 from sequence_planner.station import ReadyStation, prepare_station
 
 MODELS = TESTS.parents[1] / "models"
@@ -98,8 +98,8 @@ def test_the_controller_may_do_what_the_model_says_and_no_more(
         "request": set(pipelines.services),
         "call": set(pipelines.actions),
     }
-    assert found[enclaves.CONTROLLER] == {qualifier: names for qualifier, names in wanted.items() if names}
-    assert found[enclaves.TOOLS] == {}
+    assert found[environment.CONTROLLER] == {qualifier: names for qualifier, names in wanted.items() if names}
+    assert found[environment.TOOLS] == {}
 
 
 def test_who_looks_whether_it_would_be_alone_may_listen_to_what_it_would_say(
@@ -107,27 +107,27 @@ def test_who_looks_whether_it_would_be_alone_may_listen_to_what_it_would_say(
 ) -> None:
     pipelines, found = station.pipelines, allowed(root, checks=True)
     states = {ActionNames(name).status for name in pipelines.actions}
-    wanted = {enclaves.CONTROLLER: set(pipelines.outgoing), enclaves.EMULATED: {*pipelines.incoming, *states}}
+    wanted = {environment.CONTROLLER: set(pipelines.outgoing), environment.EMULATED: {*pipelines.incoming, *states}}
     assert {path: rights for path, rights in found.items() if rights} == {
         path: {"subscribe": names} for path, names in wanted.items() if names
     }
     for node in (controller_process.NODE, emulated_devices.NODE):
-        assert enclaves.enclave_of(f"{node}_check") == enclaves.enclave_of(node) != enclaves.TOOLS
+        assert environment.enclave_of(f"{node}_check") == environment.enclave_of(node) != environment.TOOLS
 
 
 def test_devices_may_do_the_other_half(station: ReadyStation, root: ElementTree.Element) -> None:
     found, pipelines = allowed(root), station.pipelines
     other = {"publish": "subscribe", "subscribe": "publish", "request": "reply", "call": "execute"}
-    controller = {other[qualifier]: names for qualifier, names in found[enclaves.CONTROLLER].items()}
-    assert found[enclaves.EMULATED] == controller
-    devices = {path: rights for path, rights in found.items() if path.startswith(f"{enclaves.DEVICES}/")}
+    controller = {other[qualifier]: names for qualifier, names in found[environment.CONTROLLER].items()}
+    assert found[environment.EMULATED] == controller
+    devices = {path: rights for path, rights in found.items() if path.startswith(f"{environment.DEVICES}/")}
     together: Rights = defaultdict(set)
     for path, rights in devices.items():
         for qualifier, names in rights.items():
             assert not names & together[qualifier]  # nobody may do what is another device's
             together[qualifier] |= names
         for name in rights.get("publish", ()):
-            assert path == f"{enclaves.DEVICES}/{pipelines.incoming[name].topic.resource}"
+            assert path == f"{environment.DEVICES}/{pipelines.incoming[name].topic.resource}"
     assert together == controller
 
 
@@ -146,11 +146,11 @@ def test_topics_of_ros_1_are_none_of_it() -> None:
 
 def test_a_node_is_told_its_enclave_where_security_is_wanted() -> None:
     on = {"ROS_SECURITY_ENABLE": "true"}
-    assert enclaves.arguments("sequence_planner", {}) == []
-    assert enclaves.arguments("sequence_planner", on) == ["--ros-args", "--enclave", enclaves.CONTROLLER]
-    assert enclaves.arguments("emulated_devices", on)[-1] == enclaves.EMULATED
-    assert enclaves.arguments("sequence_planner_look_77", on)[-1] == enclaves.TOOLS
-    assert enclaves.arguments("sequence_planner", {**on, enclaves.OVERRIDE: "/mine"}) == []
+    assert environment.arguments("sequence_planner", {}) == []
+    assert environment.arguments("sequence_planner", on) == ["--ros-args", "--enclave", environment.CONTROLLER]
+    assert environment.arguments("emulated_devices", on)[-1] == environment.EMULATED
+    assert environment.arguments("sequence_planner_look_77", on)[-1] == environment.TOOLS
+    assert environment.arguments("sequence_planner", {**on, environment.OVERRIDE: "/mine"}) == []
 
 
 def test_by_the_command_line(tmp_path: Path) -> None:
@@ -158,5 +158,5 @@ def test_by_the_command_line(tmp_path: Path) -> None:
     code, out, err = command("security", STATIONS[0], "--to", file, "--keystore", "/etc/keys")
     assert (code, err) == (0, "")
     check(ElementTree.fromstring(file.read_bytes()))
-    assert f"ros2 security create_permission /etc/keys {enclaves.CONTROLLER} {file}" in out.splitlines()
+    assert f"ros2 security create_permission /etc/keys {environment.CONTROLLER} {file}" in out.splitlines()
     assert command("security", STATIONS[0], "--to", tmp_path / "no" / "policy.xml")[0] == 2

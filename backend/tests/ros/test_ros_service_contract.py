@@ -14,8 +14,9 @@ from structlog.testing import capture_logs
 
 from core.budget import examples
 from sequence_planner.ros.call_header import CallHeader, split_header, with_header
-from sequence_planner.ros.messages import MessageRegistry, UnknownMessageTypeError
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport, TransportError
+from sequence_planner.ros.types.errors import UnknownMessageTypeError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,

@@ -9,14 +9,13 @@ from uuid import UUID
 
 from ros_networks import DOMAIN
 
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.memory import MemoryNetwork
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.environment import vendor_of
 from sequence_planner.ros.names import ros_service
-from sequence_planner.ros.quality import QualityOfService
-from sequence_planner.ros.service_graph import ServiceEnd, TellsServices
-from sequence_planner.ros.transport import Endpoint, Transport
-from sequence_planner.ros.vendors import vendor_of
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NetworkEndpoint, ServiceEnd, TellsServices, Transport
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.transports.memory import MemoryNetwork
+from sequence_planner.ros.types.messages import MessageRegistry
 
 TRIGGER = "std_srvs/srv/Trigger"
 
@@ -74,7 +73,7 @@ def test_an_endpoint_is_told_anew_when_its_node_is_known_and_gone_with_it() -> N
         registry, loop = MessageRegistry.from_folder(None), asyncio.get_running_loop()
         one, other = (open_transport("cyclonedds", registry, name, loop, DOMAIN) for name in ("one", "press"))
 
-        def seen() -> list[Endpoint]:
+        def seen() -> list[NetworkEndpoint]:
             return [each for each in one.graph() if each.topic == "/press/seen"]
 
         other.advertise("/press/seen", "std_msgs/msg/Bool", QualityOfService.LATCHED)

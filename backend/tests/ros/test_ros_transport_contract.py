@@ -16,8 +16,10 @@ from ros_networks import Network, eventually, play, settle, standard
 from ros_peer import ROUNDS, STREAMED
 from ros_processes import peer
 
-from sequence_planner.ros.messages import MessageRegistry, UnknownMessageTypeError
-from sequence_planner.ros.transport import Endpoint, QualityOfService, Sample, Transport, TransportError
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport, TransportError
+from sequence_planner.ros.types.errors import UnknownMessageTypeError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -51,7 +53,7 @@ def say(transport: Transport, topic: str, text: str) -> None:
     transport.publish(topic, TEXT, standard().encode(TEXT, {"data": text}))
 
 
-def seen(transport: Transport, topic: str, direction: str) -> list[Endpoint]:
+def seen(transport: Transport, topic: str, direction: str) -> list[NetworkEndpoint]:
     """Return the foreign endpoints of a topic."""
     return [
         endpoint
@@ -60,7 +62,7 @@ def seen(transport: Transport, topic: str, direction: str) -> list[Endpoint]:
     ]
 
 
-def own(transport: Transport, topic: str) -> list[Endpoint]:
+def own(transport: Transport, topic: str) -> list[NetworkEndpoint]:
     """Return the transport's own endpoints of a topic."""
     return [endpoint for endpoint in transport.graph() if endpoint.topic == topic and endpoint.own]
 
@@ -123,8 +125,10 @@ def test_the_graph_tells_own_from_foreign(kind: str) -> None:
         device.advertise("/tool/state", TEXT, LATCHED)
         station.subscribe("/tool/state", TEXT, SENSOR, Listener())
         await met(device, station, "/tool/state")
-        published = Endpoint("/tool/state", TEXT, "publisher", False, standard().type_hash(TEXT), "/device", True, True)
-        subscribed = Endpoint(
+        published = NetworkEndpoint(
+            "/tool/state", TEXT, "publisher", False, standard().type_hash(TEXT), "/device", True, True
+        )
+        subscribed = NetworkEndpoint(
             "/tool/state", TEXT, "subscriber", True, standard().type_hash(TEXT), "/station", False, False
         )
         fast = kind == "rclpy" and os.environ.get("RMW_IMPLEMENTATION") != "rmw_cyclonedds_cpp"

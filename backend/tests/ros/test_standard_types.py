@@ -7,8 +7,8 @@ import sys
 
 from rosbags.typesys import Stores, get_typestore
 
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.standard_types import known_to_rosbags, standard_store
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.ros.types.standard_types import known_to_rosbags, standard_store
 
 
 def test_the_fields_are_those_of_rosbags() -> None:
@@ -29,7 +29,7 @@ def test_the_bytes_are_those_of_rosbags() -> None:
 
 def test_no_class_is_made_before_one_is_used() -> None:
     code = (
-        "import sys; from sequence_planner.ros.messages import MessageRegistry; MessageRegistry()\n"
+        "import sys; from sequence_planner.ros.types.messages import MessageRegistry; MessageRegistry()\n"
         "print(*(name for name in sys.modules if name.startswith(('rosbags.typesys.stores.', 'numpy'))))"
     )
     printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

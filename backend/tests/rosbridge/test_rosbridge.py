@@ -19,12 +19,12 @@ from core.budget import examples
 from core.choices import Choices, made_by
 from rosbridge.server import RosbridgeServer
 from sequence_planner.ros.exclusivity import require_sole_publisher
-from sequence_planner.ros.fields import FieldType
-from sequence_planner.ros.messages import MalformedMessageError, MessageRegistry, MessageValueError
-from sequence_planner.ros.rosbridge import RosbridgeTransport
-from sequence_planner.ros.rosbridge_client import PING_EVERY, SILENCE
-from sequence_planner.ros.rosbridge_values import from_json, to_json
-from sequence_planner.ros.transport import Endpoint, QualityOfService, Sample, TransportError
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import NetworkEndpoint, Sample, TransportError
+from sequence_planner.ros.transports.rosbridge import PING_EVERY, SILENCE, RosbridgeTransport, from_json, to_json
+from sequence_planner.ros.types.definitions import FieldType
+from sequence_planner.ros.types.errors import MalformedMessageError, MessageValueError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 TEXT, NUMBER, JOINTS = "std_msgs/msg/String", "std_msgs/msg/Int32", "sensor_msgs/msg/JointState"
 IMAGE = "sensor_msgs/msg/CompressedImage"
@@ -99,7 +99,7 @@ def say(transport: RosbridgeTransport, topic: str, text: str) -> None:
     transport.publish(topic, TEXT, registry().encode(TEXT, {"data": text}))
 
 
-def foreign(transport: RosbridgeTransport) -> list[Endpoint]:
+def foreign(transport: RosbridgeTransport) -> list[NetworkEndpoint]:
     return [endpoint for endpoint in transport.graph() if not endpoint.own]
 
 

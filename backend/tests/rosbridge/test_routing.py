@@ -16,10 +16,11 @@ import pytest
 from rosbridge.server import RosbridgeServer
 from running.stations import REPOSITORY, RunningStation, eventually, finished, free_port, process
 from sequence_planner.model.source import ModelError
-from sequence_planner.ros.memory import MemoryNetwork
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.routing import ROSBRIDGE, open_routed
-from sequence_planner.ros.transport import QualityOfService, Sample, Transport, TransportError
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Sample, Transport, TransportError
+from sequence_planner.ros.transports.memory import MemoryNetwork
+from sequence_planner.ros.transports.routing import ROSBRIDGE, open_routed
+from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.station import prepare_station
 
 TEXT = "std_msgs/msg/String"
@@ -134,7 +135,7 @@ def test_a_station_without_an_address_is_told(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_computer_without_roslibpy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "sequence_planner.ros.rosbridge", None)
+    monkeypatch.setitem(sys.modules, "sequence_planner.ros.transports.rosbridge", None)
     with pytest.raises(TransportError, match=r"need roslibpy .*pip install 'sequence-planner\[ros1\]'"):
         play("ws://127.0.0.1:9090", nothing)
 

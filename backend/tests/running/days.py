@@ -16,12 +16,12 @@ from mes.receiver import Receiver, receiving
 from running.day_stations import DayStation
 from running.mortal import Mortal
 from running.stations import REPOSITORY
-from sequence_planner.actor import SYSTEM
-from sequence_planner.identity import keys
-from sequence_planner.identity.roles import Scope
+from sequence_planner.auth import api_keys
+from sequence_planner.auth.roles import Scope
+from sequence_planner.core.actor import SYSTEM
 from sequence_planner.mes import events
-from sequence_planner.mes.webhooks import webhook as webhooks
-from sequence_planner.mes.webhooks.sealing import Seal, key_file
+from sequence_planner.mes.webhooks import endpoints as webhooks
+from sequence_planner.mes.webhooks.endpoints import Seal, key_file
 
 EXAMPLES = REPOSITORY / "docs" / "examples"
 SCOPES = frozenset({Scope.READ, Scope.ORDERS_READ, Scope.ORDERS_WRITE, Scope.AUDIT})
@@ -74,7 +74,7 @@ def day(at: At, seed: str, orders: int, troubles: int) -> Counter[str]:
 def mes_key(station: Mortal) -> str:
     """The secret of a key as a MES needs it."""
     with station.database.writing() as connection:
-        secret, _ = keys.make_key(connection, "MES", SCOPES, 1, SYSTEM, time.time())
+        secret, _ = api_keys.make_key(connection, "MES", SCOPES, 1, SYSTEM, time.time())
     return secret
 
 

@@ -17,7 +17,7 @@ from typing import Any
 from running.back_to_work.floor import Floor, floor
 from running.back_to_work.person import Person
 from running.stations import PATIENCE, REPOSITORY, RunningStation, eventually, free_port, process
-from sequence_planner.automaton.structure import Automaton, Kind
+from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.station import prepare_station
 

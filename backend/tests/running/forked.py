@@ -30,29 +30,29 @@ from unittest.mock import patch
 
 import structlog
 
-from control.rig import truck_engine
+from controller.rig import truck_engine
 from running.judging import Judge, Kept
 from running.wire import Wire
-from sequence_planner.actor import SYSTEM
-from sequence_planner.control import questions
-from sequence_planner.control.answering_process import Listener
-from sequence_planner.control.commands import AcknowledgeTask, CommandRefused, StartProduction
-from sequence_planner.control.controller import Controller
-from sequence_planner.control.heard import Heard
-from sequence_planner.control.last_life import what_is_known
-from sequence_planner.control.restart_commands import DecideOutputs
-from sequence_planner.control.view import StationIdentity
-from sequence_planner.control.vocabulary import Production
-from sequence_planner.emulation.devices import EmulatedDevices
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Contract, PlanRequest, WayBackRequest
+from sequence_planner.controller import planner_client
+from sequence_planner.controller.commands.commands import AcknowledgeTask, CommandRefused, DecideOutputs
+from sequence_planner.controller.commands.production import StartProduction
+from sequence_planner.controller.controller import Controller
+from sequence_planner.controller.previous_run import what_is_known
+from sequence_planner.controller.views.station import StationIdentity
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
+from sequence_planner.execution.events import Heard
+from sequence_planner.execution.vocabulary import Production
+from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.questions import Answer, Request
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
-from sequence_planner.planning.way_back import WaysBack
-from sequence_planner.ros.memory import MemoryNetwork
+from sequence_planner.planning.portfolio.worker import Answer, Request
+from sequence_planner.planning.problem import Contract, PlanRequest, WayBackRequest
+from sequence_planner.planning.recovery_path import WaysBack
+from sequence_planner.process.budget import Budget
+from sequence_planner.process.worker import Listener
 from sequence_planner.ros.transport import Sample
-from sequence_planner.storage.database import Database
+from sequence_planner.ros.transports.memory import MemoryNetwork
+from sequence_planner.simulation.devices import EmulatedDevices
 
 SPEED = 20.0  # of the devices
 STEP, REPORT_EVERY = 0.01, 0.1  # seconds
@@ -129,7 +129,7 @@ class Child:
         self._types = {name: each.topic.type_name for name, each in station.pipelines.incoming.items()}
         transport = network.join(station.registry, "sequence_planner", loop)
         near = lambda automaton, supervisor, loop, listener: NearPlanner(planner, loop, listener)  # noqa: E731
-        with patch.object(questions, "PlannerProcess", near):
+        with patch.object(planner_client, "PlannerProcess", near):
             controller = Controller(
                 IDENTITY, station, supervisor, transport, database, what_is_known(database, station.automaton)
             )

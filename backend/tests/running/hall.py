@@ -13,13 +13,13 @@ from pathlib import Path
 
 import httpx
 
-from identity.cheap import CHEAP
+from auth.cheap import CHEAP
 from running.stations import MODEL, REPOSITORY, RunningStation, eventually, free_port, process
-from sequence_planner.actor import SYSTEM
-from sequence_planner.identity import people
-from sequence_planner.identity.roles import Role
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.location import default_url
+from sequence_planner.auth import users
+from sequence_planner.auth.roles import Role
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import default_url
 
 PEOPLE = {"Ada": Role.ADMINISTRATOR, "Bo": Role.OPERATOR}
 PASSWORD = "a long enough one"
@@ -73,7 +73,7 @@ def opened(folder: Path) -> Iterator[Hall]:
         with database.writing() as connection:
             for name, role in PEOPLE.items():
                 hashed = CHEAP.hash(PASSWORD)
-                people.create(connection, name, role, hashed, SYSTEM, time.time(), temporary=False)
+                users.create(connection, name, role, hashed, SYSTEM, time.time(), temporary=False)
     with process(log, "run", str(model), "--port", str(port), "--emulator", "--emulator-speed", "5") as running:
         station = RunningStation(running, port, log)
         try:

@@ -7,16 +7,16 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from sequence_planner.automaton.automaton import Automaton, State, target
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State, target
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.history.codec import BEGUN, TICKED
-from sequence_planner.history.replay import Replayed, replay
+from sequence_planner.db.database import Database
+from sequence_planner.execution.record.codec import BEGUN, TICKED
+from sequence_planner.execution.record.replay import Replayed, replay
 from sequence_planner.journal import run_journal
-from sequence_planner.journal.chain import START, Position, broken_at
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.journal.hash_chain import START, ChainPosition, broken_at
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.journal.whole_run import WholeRun
-from sequence_planner.storage.database import Database
+from sequence_planner.language.evaluator import holds
 
 
 @dataclass
@@ -24,7 +24,7 @@ class Kept:
     """Reads what is in the journal behind what it has read before. What it once has read must stay as it is."""
 
     database: Database
-    end: Position = START
+    end: ChainPosition = START
     kinds: Counter[str] = field(default_factory=Counter)
 
     def look(self) -> list[RunRecord]:
@@ -36,7 +36,7 @@ class Kept:
             while page := run_journal.after(connection, self.end.number + len(found), 1000):
                 found += page
         if found:
-            last = Position(found[-1].number, found[-1].hash)
+            last = ChainPosition(found[-1].number, found[-1].hash)
             assert broken_at(found, self.end, last) is None
             self.end = last
             self.kinds.update(each.kind for each in found)

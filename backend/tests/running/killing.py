@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from control.rig import truck_engine
+from controller.rig import truck_engine
 from running.judging import Judge
 from running.mortal import Mortal, mortal
 from running.wire import Wire, listening

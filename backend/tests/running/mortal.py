@@ -17,9 +17,9 @@ import httpx
 from running.judging import Kept
 from running.signing_in import signed_in
 from running.stations import MODEL, REPOSITORY, command, descendants, environment, eventually, free_port
+from sequence_planner.core.storage_error import DATABASE
+from sequence_planner.db.database import Database
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.environment import DATABASE
 
 SPEED = 10.0  # of the devices
 PATIENCE = 240.0  # on a machine that is busy with much else

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import httpx
 
-from sequence_planner.actor import SYSTEM, ActorKind
-from sequence_planner.identity import people
-from sequence_planner.identity.roles import Role
-from sequence_planner.identity.sessions import open_session
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.location import default_url
+from sequence_planner.auth import users
+from sequence_planner.auth.roles import Role
+from sequence_planner.auth.sessions import open_session
+from sequence_planner.core.actor import SYSTEM, ActorKind
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import default_url
 
 
 def signed_in(model: Path, port: int, url: str | None = None) -> httpx.Client:
@@ -23,7 +23,7 @@ def signed_in(model: Path, port: int, url: str | None = None) -> httpx.Client:
     with contextlib.closing(Database.open(url or default_url(model))) as database:
         database.upgrade()
         with database.writing() as connection:
-            person = people.create(connection, name, Role.ENGINEER, "none", SYSTEM, now, temporary=False)
+            person = users.create(connection, name, Role.ENGINEER, "none", SYSTEM, now, temporary=False)
             kind = ActorKind.PERSON
             token, _ = open_session(connection, person, now, kind=kind, address="127.0.0.1", agent="tests")
     # A connection for each request: the server may die between two.

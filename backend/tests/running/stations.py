@@ -20,9 +20,9 @@ from typing import Any
 import httpx
 
 from running.signing_in import signed_in
-from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Transport
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.ros.types.messages import MessageRegistry
 
 REPOSITORY = Path(__file__).parents[3]
 MODEL = Path("models") / "bolt_tightening"

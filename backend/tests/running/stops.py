@@ -15,15 +15,15 @@ from pathlib import Path
 
 import httpx
 
+from db.servers import binaries, running_server
 from running.mortal import Mortal, mortal
 from running.pairs import Pair, pair, standby
 from running.stations import eventually
 from running.takeovers import automatic
-from sequence_planner.history.codec import TICKED
+from sequence_planner.db.database import Database
+from sequence_planner.execution.record.codec import TICKED
 from sequence_planner.journal import run_journal
-from sequence_planner.lifeline import OVERTAKEN
-from sequence_planner.storage.database import Database
-from storage.servers import binaries, running_server
+from sequence_planner.process.parent_watch import OVERTAKEN
 
 MILLISECONDS = 0.005  # until a controller is killed after the answer, at most
 WATCHED = 16.0  # seconds: whoever takes over by itself waits until the other has left the network, about 10 s

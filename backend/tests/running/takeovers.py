@@ -9,11 +9,11 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
+from db.servers import binaries, running_server
 from running.mortal import Mortal
 from running.pairs import Pair, pair, standby, takes_over
 from running.stations import MODEL, REPOSITORY, eventually
-from sequence_planner.lifeline import OVERTAKEN
-from storage.servers import binaries, running_server
+from sequence_planner.process.parent_watch import OVERTAKEN
 
 SOON = 5.0  # seconds in which the other has to command
 AGAIN = "killed and started again at once"

@@ -12,9 +12,8 @@ import pytest
 from core.budget import SHARE
 from running.stations import eventually, finished, free_port, process
 from running.workshops import EditedStation, edited
-from sequence_planner.part import UNUSABLE
-from sequence_planner.storage.address import SqliteFile, address
-from sequence_planner.storage.location import default_url
+from sequence_planner.db.location import SqliteFile, address, default_url
+from sequence_planner.startup.station_process import UNUSABLE
 
 # That a last word counts only beside its own journal is tested in `journal/test_last_word.py`, too.
 IN_CAMPAIGNS = pytest.mark.skipif(SHARE < 1, reason="stations that begin one after another take long: `make campaign`")

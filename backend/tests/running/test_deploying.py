@@ -13,8 +13,8 @@ from typing import Any
 
 from running.stations import PATIENCE, eventually, finished, foreign_node, free_port
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
-from sequence_planner.part import UNUSABLE
-from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.startup.station_process import UNUSABLE
 
 TITLED = (STATION, "title: A single bolt", "title: Another title")
 OTHER_TOPIC = (ROBOT, "/robot/state:", "/robot/other_state:")

@@ -12,7 +12,7 @@ import pytest
 from running.signing_in import signed_in
 from running.stations import REPOSITORY, command, environment, eventually, free_port, process
 from running.workshops import EditedStation
-from web.test_docs_curl import typed
+from server.test_docs_curl import typed
 
 PAGE = REPOSITORY / "docs" / "rest.md"
 

@@ -16,7 +16,7 @@ import httpx
 import pytest
 
 from running.stations import MODEL, PATIENCE, REPOSITORY, command, environment, eventually, free_port, process
-from web.certificates import Certified, certify
+from server.certificates import Certified, certify
 
 NAME = "station.example"
 LINK = re.compile(r"https://station\.example:(\d+)/first-start#([\w-]+)")

@@ -16,9 +16,9 @@ import httpx
 import pytest
 
 from running.mortal import Mortal, mortal
-from sequence_planner.actor import SYSTEM
-from sequence_planner.identity import keys
-from sequence_planner.identity.roles import Scope
+from sequence_planner.auth import api_keys
+from sequence_planner.auth.roles import Scope
+from sequence_planner.core.actor import SYSTEM
 from sequence_planner.journal import run_journal
 
 Starts = list[tuple[int, str]]
@@ -31,7 +31,7 @@ class Mes:
         self._station = station
         scopes = frozenset({Scope.READ, Scope.ORDERS_READ, Scope.ORDERS_WRITE})
         with station.database.writing() as connection:
-            secret, _ = keys.make_key(connection, "MES", scopes, 1, SYSTEM, time.time())
+            secret, _ = api_keys.make_key(connection, "MES", scopes, 1, SYSTEM, time.time())
         # A connection for each request: the server may die between two.
         self.client = httpx.Client(
             base_url=f"http://127.0.0.1:{station.port}/api/v1/",

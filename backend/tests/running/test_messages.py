@@ -12,8 +12,8 @@ from pathlib import Path
 
 from core.budget import TIMED
 from running.stations import MODEL, PATIENCE, REPOSITORY, RunningStation, foreign_node, station
-from sequence_planner.emulation.spoken import Message, spoken
-from sequence_planner.pipelines.running import RunningPipelines
+from sequence_planner.pipelines.runtime import RunningPipelines
+from sequence_planner.simulation.messages import Message, spoken
 from sequence_planner.station import ReadyStation, prepare_station
 
 BURSTS, BURST = 50, 20  # of messages of each topic

@@ -12,8 +12,17 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import MODEL, RunningStation, eventually, finished, foreign_node, free_port, process, station
-from sequence_planner.ros.transport import QualityOfService
+from running.stations import (
+    MODEL,
+    RunningStation,
+    eventually,
+    finished,
+    foreign_node,
+    free_port,
+    process,
+    station,
+)
+from sequence_planner.ros.qos import QualityOfService
 
 AT_WORK = ("--emulator", "--start", "--emulator-speed", "5")
 

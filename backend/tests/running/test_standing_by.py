@@ -9,12 +9,12 @@ from pathlib import Path
 
 import httpx
 
+from db.servers import Server
 from running.mortal import Mortal
 from running.pairs import pair, standby, takes_over
 from running.stations import eventually
-from sequence_planner.lifeline import OVERTAKEN
+from sequence_planner.process.parent_watch import OVERTAKEN
 from sequence_planner.standby.lease import LASTS
-from storage.servers import Server
 
 
 def _taken_over(station: Mortal) -> None:

@@ -21,7 +21,7 @@ from running.stations import (
     process,
     station,
 )
-from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.ros.qos import QualityOfService
 
 
 def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -> None:

@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 from running.stations import DOMAIN
-from sequence_planner.automaton.structure import Kind
-from sequence_planner.emulation.commanded import CommandReader
-from sequence_planner.expressions.types import Value
-from sequence_planner.ros.choice import open_transport
+from sequence_planner.automaton.automaton import Kind
+from sequence_planner.language.types import Value
 from sequence_planner.ros.transport import OnBatch, Sample
+from sequence_planner.ros.transports.choice import open_transport
+from sequence_planner.simulation.devices import CommandReader
 from sequence_planner.station import ReadyStation
 
 Command = Mapping[str, Value | None]

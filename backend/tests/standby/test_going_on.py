@@ -11,23 +11,22 @@ from typing import Any, Literal, cast
 
 import pytest
 
-from sequence_planner.actor import SYSTEM
-from sequence_planner.control import process
-from sequence_planner.control.commands import Command, CommandRefused, SetMode, StartProduction
-from sequence_planner.control.controller import Controller
-from sequence_planner.control.execution import Execution
-from sequence_planner.control.moment import Moment
-from sequence_planner.control.preparation import Preparation
-from sequence_planner.control.process import _follows
-from sequence_planner.control.recording import Recording
-from sequence_planner.control.starting import go_on
-from sequence_planner.control.vocabulary import Mode, Production
-from sequence_planner.journal.ending import Ending
-from sequence_planner.journal.last_word import Life
-from sequence_planner.standby.keeper import Keeper
+from sequence_planner.controller import service
+from sequence_planner.controller.commands.audit import CommandAudit
+from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.production import Command, SetMode, StartProduction
+from sequence_planner.controller.controller import Controller
+from sequence_planner.controller.preparation import Preparation
+from sequence_planner.controller.service import _follows, go_on
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.db.database import Database
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.journal.last_accepted import LastEnding, Life
+from sequence_planner.standby.lease import LeaseKeeper
 from sequence_planner.station import prepare_station
-from sequence_planner.storage.database import Database
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 STATION = Path(__file__).parents[3] / "models" / "single_bolt"
 
@@ -37,8 +36,8 @@ class Taking:
 
     def __init__(self, database: Database) -> None:
         automaton = prepare_station(STATION).automaton
-        self.run = Execution(automaton, synthesise(automaton))
-        self.recording = Recording(database, lambda why: None)
+        self.run = Executor(automaton, synthesise(automaton))
+        self.recording = CommandAudit(database, lambda why: None)
         self.rivals = {"topic": "the station that died is still seen"}
         heard: Any = SimpleNamespace(blind=False)
         network = SimpleNamespace(rivals=self.rivals)
@@ -58,7 +57,7 @@ class Taking:
         if isinstance(command, StartProduction):
             self.run.start_production()
         elif isinstance(command, SetMode):
-            self.run.change_mode(Mode(command.mode), "Anna", Moment.now())
+            self.run.change_mode(Mode(command.mode), "Anna", Timestamp.now())
         _ = self.controller
 
 
@@ -100,7 +99,7 @@ def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_b
     async def going_on(controller: Controller, handle: object, before: str) -> None:
         went_on.append(before)
 
-    monkeypatch.setattr(process, "go_on", going_on)
+    monkeypatch.setattr(service, "go_on", going_on)
 
     async def scenario(database: Database) -> None:
         standing = SimpleNamespace(name="press-b", holder="press-a", active=False, trouble=None)
@@ -108,8 +107,8 @@ def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_b
         keeper: Any = SimpleNamespace(held=not stands_by, epoch=epoch, standing=standing, taken_from=None)
         running: Any = SimpleNamespace(model=STATION, socket=tmp_path / "socket", emulated=False, start=False)
         none: Any = None
-        recording = Recording(database, lambda why: None)
-        life = process._Life(running, Preparation(), recording, database, keeper, none, none, Mode.AUTOMATIC)
+        recording = CommandAudit(database, lambda why: None)
+        life = service._Life(running, Preparation(), recording, database, keeper, none, none, Mode.AUTOMATIC)
         if mode is not None:
             with pytest.raises(CommandRefused, match="goes on by itself before a person starts") as refused:
                 await life._handle(SetMode(actor=SYSTEM, mode=mode))
@@ -136,5 +135,5 @@ def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_b
 def test_what_a_station_knows_of_its_own_last_life_counts_only_where_nobody_commanded_since(
     before: int | None, now: int | None, follows: bool
 ) -> None:
-    ended = Ending(True, life=Life(turn=1, number=1, hash="0" * 64, epoch=before))
-    assert _follows(ended, cast(Keeper, SimpleNamespace(epoch=now))) is follows
+    ended = LastEnding(True, life=Life(turn=1, number=1, hash="0" * 64, epoch=before))
+    assert _follows(ended, cast(LeaseKeeper, SimpleNamespace(epoch=now))) is follows

@@ -13,12 +13,21 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
 from sqlalchemy import delete, event, select
 
-from sequence_planner.standby.keeper import Keeper, LeaseLostError
-from sequence_planner.standby.lease import EVERY, LASTS, LEAVES, MARGIN, Lease, open_lease
-from sequence_planner.standby.tables import LEASE, STANDBYS
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
-from storage.servers import Server
+from db.servers import Server
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.standby.lease import (
+    EVERY,
+    LASTS,
+    LEASE,
+    LEAVES,
+    MARGIN,
+    STANDBYS,
+    Lease,
+    LeaseKeeper,
+    LeaseLostError,
+    open_lease,
+)
 
 MODEL, OTHER = "1" * 64, "2" * 64
 NAMES = ("press-a", "press-b", "press-c")
@@ -196,7 +205,7 @@ def test_who_is_cut_off_for_long_leaves_the_network_to_others(url: str, tmp_path
         there, lease.engine = lease.engine, away.engine
 
         async def cut_off() -> None:
-            keeper = Keeper(lease)
+            keeper = LeaseKeeper(lease)
             keeper.begin()
             lost = asyncio.create_task(keeper.lost())
             now.seconds += LASTS

@@ -12,15 +12,15 @@ from pathlib import Path
 import pytest
 
 from core.budget import SHARE
+from db.servers import Server
 from running.mortal import Mortal
 from running.pairs import standby
 from running.signing_in import signed_in
 from running.stations import eventually, free_port, process
 from running.test_deploying import TITLED, deployed
 from running.workshops import SINGLE_BOLT, EditedStation
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.environment import DATABASE
-from storage.servers import Server
+from sequence_planner.core.storage_error import DATABASE
+from sequence_planner.db.database import Database
 
 LONG = 240.0  # seconds, on a machine that is busy with much else
 

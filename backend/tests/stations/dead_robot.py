@@ -15,7 +15,7 @@ from pathlib import Path
 import httpx
 
 from running.stations import RunningStation, eventually
-from sequence_planner.emulation.truck_station.poses import PAIRS
+from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.disturbing import summed
 from stations.hall import Hall, controlled, hall
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sequence_planner.emulation.truck_station.signals import NODES
+from sequence_planner.simulation.truck_station.signals import NODES
 from stations.hall import Hall, controlled, hall
 
 CALM = (1.5, 5.0)  # seconds between two faults

@@ -21,7 +21,7 @@ from typing import Any
 import httpx
 
 from running.stations import PATIENCE, REPOSITORY, RunningStation, environment, eventually, free_port
-from sequence_planner.emulation.truck_station.signals import COMPUTERS
+from sequence_planner.simulation.truck_station.signals import COMPUTERS
 
 MODEL = Path("models") / "truck_engine_station"
 
@@ -74,7 +74,7 @@ class Hall:
         """Start a node."""
         self.nodes[node] = started(
             self.folder / f"{node}.log",
-            "sequence_planner.emulation.truck_station",
+            "sequence_planner.simulation.truck_station",
             node,
             "--port",
             str(self.port),
@@ -112,7 +112,7 @@ def hall(folder: Path, speed: float = 1.0, seed: int = 0) -> Iterator[Hall]:
     place = Hall(folder, free_port(), free_port())
     world = started(
         folder / "world.log",
-        "sequence_planner.emulation.truck_station",
+        "sequence_planner.simulation.truck_station",
         *("world", "--port", str(place.port), "--mir-port", str(place.mir_port)),
         *("--speed", str(speed), "--seed", str(seed)),
     )

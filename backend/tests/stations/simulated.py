@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from control.rig import Rig, never
-from sequence_planner.control.tasks import TaskDesk
-from sequence_planner.emulation.truck_station.drivers import Driver
-from sequence_planner.emulation.truck_station.node import NODE_TYPES, PACKAGE, PREFIX
-from sequence_planner.emulation.truck_station.signals import put, read
-from sequence_planner.emulation.truck_station.world import World
-from sequence_planner.expressions.types import Value
-from sequence_planner.pipelines.running_outgoing import first_message
-from sequence_planner.ros.messages import MessageRegistry
+from controller.rig import Rig, never
+from sequence_planner.controller.commands.tasks import TaskHandler
+from sequence_planner.language.types import Value
+from sequence_planner.pipelines.chain_runtime import first_message
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.simulation.truck_station.drivers import Driver
+from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE, PREFIX
+from sequence_planner.simulation.truck_station.signals import put, read
+from sequence_planner.simulation.truck_station.world import World
 
 MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
 SAYS = {f"{PREFIX}/{kind.says[0]}": name for name, kind in NODE_TYPES.items()}
@@ -96,7 +96,7 @@ class HallRig(Rig):
 
     def __init__(self, seed: int = 0, folder: Path = MODEL) -> None:
         super().__init__(folder=folder, seed=seed, acknowledges=never)
-        self.desk = TaskDesk(self.station.automaton, self.station.pipelines.feeds)
+        self.desk = TaskHandler(self.station.automaton, self.station.pipelines.feeds)
         self.hall = SimulatedHall(self.station.registry, seed, self.now)
         self._spoke = dict.fromkeys(SAYS, self.now)
         self._repeated = self.now

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from sequence_planner.emulation.truck_station.__main__ import outlived
+from sequence_planner.simulation.truck_station.__main__ import outlived
 
 
 def test_a_computer_that_dies_takes_no_other_with_it_and_the_world_takes_all(

@@ -6,18 +6,18 @@ from itertools import product
 
 import pytest
 
-from sequence_planner.emulation.truck_station.drivers import (
+from sequence_planner.simulation.truck_station.drivers import (
     END_EFFECTOR,
     FORGOTTEN_AFTER,
     LIFTS,
     RUNS,
     EndEffectorDriver,
+    RobotDriver,
     SceneDriver,
     ToolDriver,
     WatchDriver,
 )
-from sequence_planner.emulation.truck_station.poses import POSES
-from sequence_planner.emulation.truck_station.robot_driver import RobotDriver
+from sequence_planner.simulation.truck_station.poses import POSES
 
 HOME = list(POSES["HomeJOINTPose"])
 STILL = [0.0] * 6

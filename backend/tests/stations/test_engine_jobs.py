@@ -8,12 +8,12 @@ from functools import partial
 import pytest
 
 from core.budget import SHARE
-from sequence_planner.actor import SYSTEM
-from sequence_planner.automaton.structure import target
-from sequence_planner.control.job_commands import CommandJob, SetByOrder, TakeJob
-from sequence_planner.control.job_desk import JobDesk
-from sequence_planner.control.moment import Moment
-from sequence_planner.emulation.truck_station.poses import PAIRS
+from sequence_planner.automaton.automaton import target
+from sequence_planner.controller.commands.commands import CommandJob, SetByOrder, TakeJob
+from sequence_planner.controller.commands.job_handler import JobHandler
+from sequence_planner.core.actor import SYSTEM
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.simulation.truck_station.poses import PAIRS
 from sequence_planner.station import prepare_station
 from stations.simulated import MODEL, HallRig
 
@@ -33,7 +33,7 @@ def test_a_job_is_all_the_work_on_an_engine_and_what_the_robot_holds_is_none() -
 
 def order(rig: HallRig, job: str) -> None:
     take = TakeJob(actor=SYSTEM, job=job, title=job, work_master="engine")
-    JobDesk(rig.execution).carry_out(take, Moment(rig.now, rig.now))
+    JobHandler(rig.execution).carry_out(take, Timestamp(rig.now, rig.now))
 
 
 def ended(rig: HallRig, job: str) -> bool:
@@ -51,13 +51,13 @@ def ended(rig: HallRig, job: str) -> bool:
 )
 def test_an_engine_whose_order_was_aborted_is_made_to_its_end_by_the_next(after: str) -> None:
     rig = HallRig()
-    now = Moment(rig.now, rig.now)
-    desk, events = JobDesk(rig.execution), rig.hall.world.verdict.events
+    now = Timestamp(rig.now, rig.now)
+    desk, events = JobHandler(rig.execution), rig.hall.world.verdict.events
     desk.carry_out(SetByOrder(actor=SYSTEM, on=True, reason="so"), now)
     rig.start_production()
     order(rig, "first")
     assert rig.live(300, lambda: any(event.startswith(after) for _, event in events))
-    desk.carry_out(CommandJob(actor=SYSTEM, job="first", what="abort"), Moment(rig.now, rig.now))
+    desk.carry_out(CommandJob(actor=SYSTEM, job="first", what="abort"), Timestamp(rig.now, rig.now))
     order(rig, "second")
     assert rig.live(300, lambda: ended(rig, "second"))
     counted = rig.hall.world.verdict.counted
@@ -67,8 +67,8 @@ def test_an_engine_whose_order_was_aborted_is_made_to_its_end_by_the_next(after:
 @LONG
 def test_engine_after_engine_is_made_to_order() -> None:
     rig = HallRig()
-    desk = JobDesk(rig.execution)
-    desk.carry_out(SetByOrder(actor=SYSTEM, on=True, reason="so"), Moment(rig.now, rig.now))
+    desk = JobHandler(rig.execution)
+    desk.carry_out(SetByOrder(actor=SYSTEM, on=True, reason="so"), Timestamp(rig.now, rig.now))
     rig.start_production()
     assert not rig.live(3, lambda: bool(rig.started)), "without a job there is nothing to do"
     for number in (1, 2):

@@ -10,24 +10,30 @@ from pathlib import Path
 import pytest
 
 from core.budget import ONLY_TIMED, TIMED
+from sequence_planner.automaton.automaton import Kind, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Kind, State
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.emulation.spoken import spoken
-from sequence_planner.emulation.truck_station.node import NODE_TYPES, PACKAGE, PREFIX
-from sequence_planner.emulation.truck_station.poses import PAIRS, POSES
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.pdr.certificate import check
-from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, Verdict, goal_of, goals_of
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.types import Value
+from sequence_planner.planning.diagnosis import MemberKind, diagnose
+from sequence_planner.planning.pdr.invariants import check
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.reasons.diagnosis import diagnose
-from sequence_planner.planning.reasons.why import Part
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import (
+    Circumstances,
+    Contract,
+    PlanAnswer,
+    PlanRequest,
+    Verdict,
+    goal_of,
+    goals_of,
+)
+from sequence_planner.process.budget import Budget
+from sequence_planner.simulation.messages import spoken
+from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE, PREFIX
+from sequence_planner.simulation.truck_station.poses import PAIRS, POSES
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.synthesis.fewer import FewerSpecifications
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
 
 MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
 LONGEST_SYNTHESIS, LONGEST_PLAN = 10.0, 1.0  # seconds of CPU time, on a busy machine
@@ -158,7 +164,7 @@ def test_without_its_planning_scene_the_robot_is_known_at_once_to_go_nowhere(ope
     answer = Planner(station.automaton, supervisor).answer(request)
     assert (answer.verdict, answer.engine) == (Verdict.NONE_AT_ALL, "relaxation")
     assert answer.proof is not None
-    check(station.automaton, supervisor, Task(silent, goals, circumstances), answer.proof, Budget.seconds(60))
+    check(station.automaton, supervisor, PlanningTask(silent, goals, circumstances), answer.proof, Budget.seconds(60))
 
 
 def test_what_a_robot_that_is_offline_makes_impossible_is_explained_by_that_alone() -> None:
@@ -166,15 +172,15 @@ def test_what_a_robot_that_is_offline_makes_impossible_is_explained_by_that_alon
     station, supervisor, _, _ = ready()
     automaton, state = station.automaton, situation({})
     goals = goals_of(automaton, ("mount_ladder_frame",))
-    task = Task(state, goals, Circumstances(offline=frozenset({"robot"})))
+    task = PlanningTask(state, goals, Circumstances(offline=frozenset({"robot"})))
     found = diagnose(automaton, supervisor, FewerSpecifications(automaton, supervisor), task, Budget.seconds(60))
     assert found.reason is not None
     assert found.reason.minimal
     assert {(each.part, each.name) for each in found.reason.members} == {
-        (Part.VALUE, "ladder_frame"),
-        (Part.VALUE, "robot.pose"),
-        (Part.OFFLINE, "robot"),
-        (Part.GOAL, "mount_ladder_frame"),
+        (MemberKind.VALUE, "ladder_frame"),
+        (MemberKind.VALUE, "robot.pose"),
+        (MemberKind.OFFLINE, "robot"),
+        (MemberKind.GOAL, "mount_ladder_frame"),
     }
     changes = [[change.name for change in each.changes] for each in found.corrections]
     assert changes[0] == ["robot"]

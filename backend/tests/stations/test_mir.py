@@ -9,11 +9,10 @@ from contextlib import asynccontextmanager
 import httpx
 import pytest
 
-from sequence_planner.emulation.truck_station.links import RestLink, WorldEndedError, WorldLink
-from sequence_planner.emulation.truck_station.mir import MirServer
-from sequence_planner.emulation.truck_station.rest import GOAL, STATUS
-from sequence_planner.emulation.truck_station.server import WorldServer
-from sequence_planner.emulation.truck_station.world import World
+from sequence_planner.simulation.truck_station.drivers import RestLink, WorldEndedError, WorldLink
+from sequence_planner.simulation.truck_station.rest import GOAL, STATUS
+from sequence_planner.simulation.truck_station.world import World
+from sequence_planner.simulation.truck_station.world_server import MirServer, WorldServer
 
 
 @asynccontextmanager

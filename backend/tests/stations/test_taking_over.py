@@ -6,16 +6,16 @@ import math
 
 import pytest
 
-from sequence_planner.control.moment import Moment
-from sequence_planner.control.vocabulary import Mode, ServiceKind
-from sequence_planner.emulation.truck_station.poses import PAIRS
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
+from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.simulated import HallRig
 
 HOME = "HomeJOINTPose"
 
 
-def moment(rig: HallRig) -> Moment:
-    return Moment(rig.now, rig.now)
+def moment(rig: HallRig) -> Timestamp:
+    return Timestamp(rig.now, rig.now)
 
 
 def put(rig: HallRig, *, in_service: bool) -> None:

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from core.budget import examples
 from core.choices import Choices, made_by
-from sequence_planner.emulation.truck_station.poses import HOME, PAIRS, POSES
-from sequence_planner.emulation.truck_station.server import WorldServer
-from sequence_planner.emulation.truck_station.signals import NODES, put, read
-from sequence_planner.emulation.truck_station.world import World
+from sequence_planner.simulation.truck_station.poses import HOME, PAIRS, POSES
+from sequence_planner.simulation.truck_station.signals import NODES, put, read
+from sequence_planner.simulation.truck_station.world import World
+from sequence_planner.simulation.truck_station.world_server import WorldServer
 
 STEP = 0.01
 FRAME_TOOL = ["PreAttachLFToolFarJOINTPose", "AttachLFToolTCPPose"]
@@ -301,7 +301,7 @@ def test_a_device_that_is_stuck_says_what_it_said_and_hears_nothing() -> None:
 
 def test_the_truth_knows_nothing_of_the_model() -> None:
     code = (
-        "import sys, sequence_planner.emulation.truck_station.__main__\n"
+        "import sys, sequence_planner.simulation.truck_station.__main__\n"
         "own = [name.split('.') for name in sys.modules if name.startswith('sequence_planner.')]\n"
         "print(sorted({'.'.join(name[1:3]) for name in own if name[1] not in ('ros', 'expressions', 'counting')}))\n"
     )

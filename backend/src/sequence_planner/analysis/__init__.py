@@ -1,5 +1,5 @@
 """What synthesis and the checks made with it find of a model.
 
-`analysis` gathers it, `process` has it done where it can be killed, `document` is its JSON, and `store` keeps what was
-found for the next one who asks.
+`analysis` gathers it, `worker` has it done where it can be killed, `report` is its JSON, and `store` and `cache`
+keep what was found for the next one who asks. `checks` says what is suspicious in a model that can be used.
 """

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from sequence_planner.automaton.state_set import Supervisor
 
 if TYPE_CHECKING:
-    from sequence_planner.checking.evidence import Evidence
-    from sequence_planner.checking.warning import ModelWarning
-    from sequence_planner.synthesis.guards import Guard
+    from sequence_planner.analysis.checks.evidence import Evidence
+    from sequence_planner.analysis.checks.warning import ModelWarning
+    from sequence_planner.synthesis.guards import SupervisorGuard
 
 FINDINGS = "the findings"
 GUARDS = "the guards"
@@ -32,7 +32,7 @@ class Analysis:
     pending: str | None
     supervisor: Supervisor | None = None
     guarded: tuple[str, ...] | None = None
-    guards: Mapping[str, Guard] | None = None
+    guards: Mapping[str, SupervisorGuard] | None = None
     reachable_states: int | None = None
     supervised_states: int | None = None
     supervised_at_most: int | None = None

@@ -8,20 +8,19 @@ from dataclasses import replace
 from math import prod
 
 from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
-from sequence_planner.analysis.remembering import remembered_evidence
+from sequence_planner.analysis.cache import remembered_evidence
+from sequence_planner.analysis.checks.connections import Connections
+from sequence_planner.analysis.checks.evidence import Evidence
+from sequence_planner.analysis.checks.rules import CheckProgress, conflicting, looked
+from sequence_planner.analysis.checks.supervised import SupervisionQuestion
+from sequence_planner.analysis.checks.unmeetable import unmeetable
+from sequence_planner.analysis.checks.warning import ModelWarning, place
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.checks import Looked, conflicting, looked
-from sequence_planner.checking.connections import Connections
-from sequence_planner.checking.evidence import Evidence
-from sequence_planner.checking.supervised import Asked
-from sequence_planner.checking.unmeetable import unmeetable
-from sequence_planner.checking.warning import ModelWarning, place
-from sequence_planner.synthesis.effort import Effort, TooMuchError
+from sequence_planner.synthesis.diagnosis import why_unmeetable
 from sequence_planner.synthesis.guards import Restrictions
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, alike, relevant, supervisor
-from sequence_planner.synthesis.unmeetable import why_unmeetable
+from sequence_planner.synthesis.supervisor import Supervision, alike, relevant, supervisor
+from sequence_planner.synthesis.transition_relation import NodeLimit, Plant, TooMuchError
 
 FAR = "the findings that too many states bear on"
 MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other things to do
@@ -37,10 +36,10 @@ def analyses(
 ) -> Iterator[Analysis]:
     """What is found of `automaton`, again and again, each time more of it.
 
-    No more is spent on `counting` states than so much `Effort`: with 0 they are not counted. Where they soon are, their
-    numbers come first. What too many states bear on is found out only with `far`: it can take a minute, so that guards
-    come before it; but with `evidence` of the model before an edit it is soon proven again, and is looked at first.
-    Without `guards` these are what is left at last.
+    No more is spent on `counting` states than so much `NodeLimit`: with 0 they are not counted. Where they soon are,
+    their numbers come first. What too many states bear on is found out only with `far`: it can take a minute, so that
+    guards come before it; but with `evidence` of the model before an edit it is soon proven again, and is looked at
+    first. Without `guards` these are what is left at last.
     """
     found = Analysis("the safe states")
     yield found
@@ -55,7 +54,7 @@ def analyses(
         yield found
         found = _counted(found, supervision, min(counting, _SOON))
         yield found
-        asked = Asked(automaton, supervision, evidence)
+        asked = SupervisionQuestion(automaton, supervision, evidence)
         made = found.supervisor
         assert made is not None
         if far and evidence is not None:
@@ -116,7 +115,7 @@ def guards_of(automaton: Automaton, names: frozenset[str], known: Supervisor | N
 
 def everything(
     automaton: Automaton, connections: Connections | None, synthesis: bool, evidence: Evidence | None = None
-) -> Iterator[Looked | Analysis]:
+) -> Iterator[CheckProgress | Analysis]:
     """What the checks find, and what synthesis finds where it is asked for, without numbers of states and guards.
 
     What may take longest comes last.
@@ -135,10 +134,10 @@ def _unmet(supervision: Supervision) -> ModelWarning:
 
 
 def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
-    """With the numbers of states that are not known yet, as far as so much `Effort` goes."""
+    """With the numbers of states that are not known yet, as far as so much `NodeLimit` goes."""
     if not most or (found.reachable_states is not None and found.supervised_states is not None):
         return found
-    effort = Effort(most)
+    effort = NodeLimit(most)
     with contextlib.suppress(TooMuchError):
         whole = _of_all_variables(supervision)
         count = whole.plant.diagrams.count

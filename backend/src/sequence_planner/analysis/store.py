@@ -1,6 +1,6 @@
 """What was found of a model, kept in the user's cache by the content of the model and of the program itself.
 
-It serves commands that are given one after the other. What a running station keeps lies beside it, see `remembering`.
+It serves commands that are given one after the other. What a running station keeps lies beside it, see `cache`.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from sequence_planner.analysis.document import AnalysisDocument, Document, SupervisorDocument
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.analysis.report import AnalysisDocument, Document, SupervisorDocument
+from sequence_planner.automaton.automaton import Automaton
 
 MOST_KEPT = 100  # files; the oldest are removed
 

@@ -1,12 +1,121 @@
-"""What depends on what: the order of flags."""
+"""Variable dependencies: the cone of influence of a query, and the evaluation order of flags."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 
-from sequence_planner.automaton.structure import Flag
-from sequence_planner.expressions.syntax import variables
+from sequence_planner.automaton.automaton import Automaton, Flag, reads, target
+from sequence_planner.automaton.transitions import Phase, Transition, transitions
+from sequence_planner.language.syntax import Assignment, Constant, Expression, Variable, variables
+from sequence_planner.language.types import Value
+
+# The variables that matter to a question: those its predicates read, and all that decides how these are written.
+
+
+def read_variables(automaton: Automaton, expressions: Iterable[Expression]) -> frozenset[str]:
+    """The variables that `expressions` read, with each flag replaced by what its predicate reads."""
+    pending = [name for expression in expressions for name in variables(expression)]
+    found = set(pending)
+    if found <= automaton.variables.keys():
+        return frozenset(found)
+    found.clear()
+    seen: set[str] = set()
+    while pending:
+        name = pending.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        if name in automaton.variables:
+            found.add(name)
+        else:
+            pending.extend(variables(automaton.flag_predicates[name]))
+    return frozenset(found)
+
+
+def cone_of_influence(automaton: Automaton, questions: Iterable[Expression]) -> tuple[str, ...]:
+    """The variables that can influence `questions` without restart abilities, in order of declaration.
+
+    The automaton restricted to them answers the questions as the whole does: whatever writes one of them depends on
+    them alone, and so does whether two effects, or two finishes, are compatible.
+    """
+    counted = [transition for transition in transitions(automaton) if not transition.restart]
+    phases = {phase: [t for t in counted if t.phase is phase] for phase in Phase}
+    relevant = set(read_variables(automaton, questions))
+    while True:
+        before = len(relevant)
+        for phase, members in phases.items():
+            inside = [transition for transition in members if not transition.writes.isdisjoint(relevant)]
+            for transition in inside:
+                relevant |= read_variables(automaton, (transition.guard,))
+                for action in transition.actions:
+                    if target(action) in relevant:
+                        relevant |= _read_by(automaton, action)
+            if automaton.one_at_a_time:
+                continue  # no two are ever taken together
+            if phase is Phase.SENSE:
+                # Without an effect from outside the one inside can still happen, so only these can stand in its way.
+                relevant |= _disputed(automaton, _sharing(inside, inside), relevant)
+            elif phase is Phase.FINISH:
+                # A finish is refused by any other that it conflicts with, also by one that writes nothing relevant.
+                relevant |= _disputed(automaton, _sharing(inside, members), relevant)
+        if len(relevant) == before:
+            return tuple(name for name in automaton.variables if name in relevant)
+
+
+def _read_by(automaton: Automaton, action: Assignment) -> frozenset[str]:
+    condition = () if action.condition is None else (action.condition,)
+    return read_variables(automaton, (action.value, *condition))
+
+
+def _sharing(some: Iterable[Transition], others: Iterable[Transition]) -> Iterator[tuple[Transition, Transition]]:
+    """The pairs of one of `some` and one of `others` that write common variables."""
+    writers: dict[str, list[Transition]] = defaultdict(list)
+    for other in others:
+        for name in other.writes:
+            writers[name].append(other)
+    return ((one, other) for one in some for name in one.writes for other in writers[name])
+
+
+def _disputed(
+    automaton: Automaton, pairs: Iterable[tuple[Transition, Transition]], relevant: set[str]
+) -> frozenset[str]:
+    """Further variables over which two transitions of one phase could conflict; conflicts decide what is applied."""
+    found: set[str] = set()
+    for one, other in pairs:
+        if one is other:
+            continue
+        writes_first = {target(action): action for action in one.actions}
+        writes_second = {target(action): action for action in other.actions}
+        shared = [n for n in writes_first if n in writes_second]
+        if any(n in relevant and _always_differ(writes_first[n], writes_second[n]) for n in shared):
+            continue  # never applied together, which the relevant variables already show
+        for name in shared:
+            if name not in relevant and not _always_equal(writes_first[name], writes_second[name]):
+                found |= {name, *reads(writes_first[name]), *reads(writes_second[name])} & set(automaton.variables)
+    return frozenset(found)
+
+
+def _possible(action: Assignment) -> frozenset[Value]:
+    if isinstance(action.value, Constant):
+        return frozenset({action.value.value})
+    if isinstance(action.value, Variable):
+        return frozenset(action.value.type.domain)
+    assert isinstance(action.target, Variable)
+    return frozenset(action.target.type.domain)
+
+
+def _always_differ(one: Assignment, other: Assignment) -> bool:
+    unconditional = one.condition is None and other.condition is None
+    return unconditional and not _possible(one) & _possible(other)
+
+
+def _always_equal(one: Assignment, other: Assignment) -> bool:
+    return one.value == other.value and isinstance(one.value, Constant | Variable)
+
+
+# What depends on what: the order of flags.
 
 
 def ordered_flags(flags: Sequence[Flag]) -> tuple[tuple[Flag, ...], tuple[str, ...]]:

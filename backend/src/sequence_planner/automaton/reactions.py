@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from itertools import chain
 
-from sequence_planner.automaton.structure import Automaton, Effect, State, reads, target
+from sequence_planner.automaton.automaton import Automaton, Effect, State, reads, target
 from sequence_planner.automaton.tick import writes
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import variables
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import Immutable
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.syntax import variables
+from sequence_planner.language.types import Value
 
 _DEPTH = 4  # effects one after the other, between two messages
 _MOST = 400  # states that are looked at for one change; what is more than that counts as explained

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 
-from sequence_planner.automaton.structure import State
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import Immutable
+from sequence_planner.automaton.automaton import State
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.types import Value
 
 # References to nodes: the two sets that test no variable, and then the nodes in their order.
 NOTHING, EVERYTHING = 0, 1

@@ -1,19 +1,20 @@
 """The reference tick of `docs/semantics.md`, step by step: plain, slow and obviously right.
 
-The controller calls these functions with measured values; planning, synthesis and tests call them with effects in place
-of measurements. No function changes a state: each returns a new one.
+A running station takes the compiled tick (`compiled_tick`), which tests hold against this one with measured values;
+planning, synthesis and tests call these functions with effects in place of measurements. No function changes a state:
+each returns a new one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State, target
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, State, target
-from sequence_planner.expressions.evaluation import evaluate, holds
-from sequence_planner.expressions.syntax import Assignment, conjunction
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import Immutable
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.evaluator import evaluate, holds
+from sequence_planner.language.syntax import Assignment, conjunction
+from sequence_planner.language.types import Value
 
 Writes = dict[str, Value]
 Conflicts = tuple[tuple[str, str, str], ...]  # two abilities and the variable

@@ -5,9 +5,9 @@ from __future__ import annotations
 from enum import StrEnum
 from functools import cached_property
 
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, reads, target
-from sequence_planner.expressions.syntax import Assignment, Expression, conjunction, variables
-from sequence_planner.immutable import Immutable
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, reads, target
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.syntax import Assignment, Expression, conjunction, variables
 
 
 class Phase(StrEnum):

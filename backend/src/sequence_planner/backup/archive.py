@@ -1,23 +1,36 @@
-"""The file of a backup: a tar archive with a manifest that says what is in it, and the SHA-256 of each member."""
+"""Backup files: the tar archive with its manifest, consistent database copies, and verification."""
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import hashlib
 import io
 import os
 import shutil
+import sqlite3
+import subprocess
 import tarfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias
+from urllib.parse import quote
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from sqlalchemy import Connection, inspect, text
 
-from sequence_planner.backup.trouble import BackupError, Trouble, trouble_of
-from sequence_planner.storage.error import StorageError
+from sequence_planner.backup.errors import BackupError, Trouble, no_space, trouble_of
+from sequence_planner.core.secrets import PASSWORD, environment
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import PostgresqlServer, SqliteFile, address
+from sequence_planner.journal.hash_chain import ChainPosition
+from sequence_planner.journal.verify import Verified, verify
+
+# The file of a backup: a tar archive with a manifest that says what is in it, and the SHA-256 of each member.
 
 MANIFEST: Final = "manifest.json"
 DATABASE: Final = "database"  # a file of SQLite, or what pg_dump has written
@@ -178,3 +191,201 @@ def _unpacked(tar: tarfile.TarFile, folder: Path, file: Path) -> Iterator[tuple[
             shutil.copyfileobj(content, out, _CHUNK)
         target.chmod(0o600)
         yield member.name, _sum(target)
+
+
+# PostgreSQL's own programs, with which its databases are copied: this machine needs its client.
+
+_INSTALLED: Final = Path("/usr/lib/postgresql")  # where Debian has the programs, by version
+
+
+def run(name: str, server: PostgresqlServer, *options: str) -> None:
+    """Run `pg_dump` or `pg_restore` on a database. Raises `StorageError` with what it says.
+
+    The password goes by the environment: everybody on this machine can read what stands on a command line.
+    """
+    from psycopg.conninfo import make_conninfo  # noqa: PLC0415 - stations with SQLite do without
+
+    url = server.url
+    words = {"host": url.host, "port": url.port, "user": url.username, "dbname": url.database, **url.query}
+    told = make_conninfo(**{name: str(value) for name, value in words.items() if value})
+    secret = {} if url.password is None else {"PGPASSWORD": str(url.password)}
+    _run(str(server), name, [f"--dbname={told}", "--no-password", *options], secret)
+
+
+def read_through(dump: Path) -> None:
+    """Read what `pg_dump` has written to its end. Raises `StorageError` where that cannot be done."""
+    _run(str(dump), "pg_restore", [f"--file={os.devnull}", str(dump)], {})
+
+
+def _run(of: str, name: str, arguments: Sequence[str], secret: Mapping[str, str]) -> None:
+    done = subprocess.run(
+        [program(name), *arguments],
+        env={**environment(PASSWORD), **secret, "LC_ALL": "C"},  # what it says of a full disk is looked for
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+    )
+    if done.returncode:
+        said = done.stderr.strip().splitlines() or [f"it ended with code {done.returncode}"]
+        full = any(os.strerror(errno.ENOSPC) in line for line in said)
+        raise BackupError(Trouble.NO_SPACE if full else Trouble.OTHER, f"{of}: {name} failed: {'; '.join(said[:3])}")
+
+
+def program(name: str) -> Path:
+    """The newest there is: it can speak to all servers that are no newer. Raises `BackupError`."""
+    by_version = sorted(_INSTALLED.glob(f"*/bin/{name}"), key=lambda file: float(file.parents[1].name), reverse=True)
+    found = by_version[0] if by_version else shutil.which(name)
+    if found is None:
+        raise BackupError(
+            Trouble.NO_PROGRAM,
+            f"{name} is not here, which copies a database of PostgreSQL: install its client, as in "
+            "sudo apt-get install postgresql-client",
+        )
+    return Path(found)
+
+
+# Copies of a database that are of one moment, while others write to it; and putting such a copy in place.
+
+Kind: TypeAlias = Literal["sqlite", "postgresql"]
+_BESIDE: Final = ("-wal", "-shm", "-journal")  # what SQLite keeps beside a file that is in use
+_OTHERS: Final = text(
+    "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"
+)
+
+
+def kind_of(url: str) -> Kind:
+    """Which of the two a URL names. Raises `StorageError`."""
+    return "sqlite" if isinstance(address(url), SqliteFile) else "postgresql"
+
+
+def copy(database: Database, to: Path) -> Verified:
+    """Copy a database to a file, and verify the journal as it is in the copy. Raises `StorageError`."""
+    place = database.place
+    if isinstance(place, SqliteFile):
+        _copy_file(place, to)
+        return _verified(to)
+    with database.reading() as connection:  # sees one moment, and pg_dump the same one
+        snapshot: str = connection.execute(text("SELECT pg_export_snapshot()")).scalar_one()
+        options = ("--format=custom", "--no-owner", "--no-privileges", f"--snapshot={snapshot}", f"--file={to}")
+        run("pg_dump", place, *options)
+        return verify(connection)
+
+
+def require_empty(url: str) -> None:
+    """Raises `StorageError` unless there is nothing yet where a copy is to be put, and nobody is at it."""
+    place = address(url)
+    if not isinstance(place, SqliteFile):
+        with contextlib.closing(Database.open(url)) as database, database.reading() as connection:
+            _require_nobody(connection, str(place))
+        return
+    if place.path.exists():
+        raise StorageError(
+            f"{place} is there already, and a station may be running on it: stop the station and move the file away "
+            "with those beside it, or name another database"
+        )
+    for left in (place.path.with_name(place.path.name + ending) for ending in _BESIDE):
+        if left.exists():
+            raise StorageError(
+                f"{left} is left of another database, and a station may be running on it: stop the station and move "
+                "this file away too"
+            )
+
+
+def put(url: str, copied: Path) -> Verified:
+    """Put a copy where a URL names, where nothing is yet, and verify the journal there. Raises `StorageError`.
+
+    A file of SQLite is verified before it is put in place, and on the same disk already.
+    """
+    place = address(url)
+    if not isinstance(place, SqliteFile):
+        run(
+            "pg_restore", place, "--no-owner", "--no-privileges", "--exit-on-error", "--single-transaction", str(copied)
+        )
+        return _verified_at(url)
+    verified = _verified(copied)
+    if not verified.wrong:
+        try:
+            os.link(copied, place.path)  # which takes no other file's place
+        except OSError as error:
+            raise StorageError(f"{place} cannot be written: {error.strerror}") from error
+    return verified
+
+
+def verified_copy(kind: Kind, copied: Path) -> Verified | None:
+    """The journal of a copy that is in no place yet; None where only a server reads it. Raises `StorageError`."""
+    if kind == "sqlite":
+        return _verified(copied)
+    read_through(copied)
+    return None
+
+
+def _require_nobody(connection: Connection, place: str) -> None:
+    if inspect(connection).get_table_names():
+        raise StorageError(
+            f"{place} is not empty, and a station may be running on it: stop the station, and name an empty database"
+        )
+    if connection.execute(_OTHERS).scalar_one():
+        raise StorageError(f"{place} is in use by somebody else: end what uses it, then try again")
+
+
+def _copy_file(file: SqliteFile, to: Path) -> None:
+    """All pages in one step, so that no writer makes it begin anew; no writer waits for it."""
+    try:
+        with (
+            contextlib.closing(sqlite3.connect(f"{file.path.as_uri()}?mode=rw", uri=True)) as source,
+            contextlib.closing(sqlite3.connect(to)) as target,
+        ):
+            source.backup(target)
+            (found,) = target.execute("PRAGMA integrity_check").fetchone()
+    except sqlite3.Error as error:
+        if error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_FULL:
+            raise no_space(to.parent, str(error)) from error
+        raise StorageError(f"{file} cannot be copied: {error}") from error
+    if found != "ok":
+        raise BackupError(Trouble.NOT_WHOLE, f"{file} is damaged: {found}")
+
+
+def _verified(file: Path) -> Verified:
+    return _verified_at(f"sqlite:///{quote(str(file.absolute()))}")
+
+
+def _verified_at(url: str) -> Verified:
+    """The journal of a copy, whose tables are brought up to date first."""
+    with contextlib.closing(Database.open(url, create=False)) as database:
+        database.upgrade()
+        with database.reading() as connection:
+            return verify(connection)
+
+
+# Whether a backup is whole: each member as it was written, and the journal in the copy as the manifest says.
+
+
+def verify_backup(file: Path, scratch: str) -> Manifest:
+    """Read all of a backup, unpacked to a folder beside it whose name begins with `scratch`. Raises `StorageError`.
+
+    What `pg_dump` has written is read to its end; only a database that it is put into shows more, as `restore` looks.
+    """
+    with opened(file, file.absolute().parent, scratch) as (manifest, unpacked):
+        try:
+            verified = verified_copy(manifest.database, unpacked / DATABASE)
+        except BackupError:
+            raise
+        except StorageError as error:
+            raise BackupError(Trouble.NOT_WHOLE, f"the database in {file} cannot be read: {error}") from error
+        if verified is not None and (wrong := [*not_as_told(verified, manifest)]):
+            raise BackupError(Trouble.NOT_WHOLE, f"the journal in {file} is not whole: {'; '.join(wrong)}")
+    return manifest
+
+
+def not_as_told(verified: Verified, manifest: Manifest) -> Iterator[str]:
+    """What is wrong with the journal of a copy, or other than the manifest says."""
+    yield from verified.wrong
+    for name, end, then in (("audit", verified.audit, manifest.audit), ("run", verified.run, manifest.run)):
+        if not _is(end, then):
+            yield f"the chain {name} ends with record {end.number}, and the backup says {then.number}"
+
+
+def _is(end: ChainPosition, then: ChainEnd) -> bool:
+    return (end.number, end.hash) == (then.number, then.hash)

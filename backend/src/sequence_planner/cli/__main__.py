@@ -1,5 +1,5 @@
 """`python -m sequence_planner.cli`."""
 
-from sequence_planner.cli import main
+from sequence_planner.cli.main import main
 
 main()

@@ -1,10 +1,11 @@
-"""What is found of a model that a command is given: kept from an earlier command, or found in a process."""
+"""Analysis results for commands: from the cache or a worker process, and printed as findings."""
 
 from __future__ import annotations
 
 import signal
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -15,38 +16,43 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
-from sequence_planner.analysis.document import (
-    AnalysisDocument,
-    document_of,
-    read_supervisor,
-    supervisor_document,
-)
-from sequence_planner.analysis.remembering import (
+from sequence_planner.analysis.cache import (
     known_supervisor,
     remember_evidence,
     remember_supervisor,
     remembered_evidence,
 )
+from sequence_planner.analysis.report import (
+    AnalysisDocument,
+    FindingDocument,
+    TraceDocument,
+    document_of,
+    read_supervisor,
+    supervisor_document,
+)
 from sequence_planner.analysis.store import Kept, keep, kept
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.options import FINDINGS as FOUND
 from sequence_planner.cli.options import refuse
-from sequence_planner.memory_limit import USUAL
+from sequence_planner.core.numerals import counted
+from sequence_planner.process.memory_limit import USUAL
 
-if TYPE_CHECKING:  # what is kept from before is shown without them
-    from sequence_planner.checking.checks import Looked
-    from sequence_planner.checking.connections import Connections
-    from sequence_planner.checking.evidence import Evidence
-    from sequence_planner.checking.warning import ModelWarning
+if TYPE_CHECKING:
+    from sequence_planner.analysis.checks.connections import Connections
+    from sequence_planner.analysis.checks.evidence import Evidence
+    from sequence_planner.analysis.checks.rules import CheckProgress
+    from sequence_planner.analysis.checks.warning import ModelWarning
+
+# What is found of a model that a command is given: kept from an earlier command, or found in a process.
 
 Deadline = Annotated[
     float,
     typer.Option("--deadline", min=0.1, max=86_400, help="Seconds that it may take to find out about the model."),
 ]
 USUAL_DEADLINE = 120.0
-_COUNTING = 120_000_000  # nodes, see `synthesis.effort`: ten seconds or so, whatever the deadline is
+_COUNTING = 120_000_000  # nodes, see `synthesis.transition_relation`: ten seconds or so, whatever the deadline is
 _QUIET = 1.0  # seconds before anything is said about what is being done
 
 
@@ -110,8 +116,8 @@ def guarded(automaton: Automaton, names: frozenset[str], limits: Limits) -> Foun
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
     """What synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
+    from sequence_planner.analysis.checks.rules import CONFLICTS  # noqa: PLC0415
     from sequence_planner.analysis.finding import everything  # noqa: PLC0415
-    from sequence_planner.checking.checks import CONFLICTS  # noqa: PLC0415
 
     unwanted = frozenset({GUARDS, COUNTING})
     known = _kept(automaton, unwanted)
@@ -151,8 +157,8 @@ def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervi
     """
     if (known := known_supervisor(automaton)) is not None:
         return known
-    from sequence_planner.analysis.process import SynthesisEndedError, told  # noqa: PLC0415
-    from sequence_planner.synthesis.supervision import SynthesisError, tried  # noqa: PLC0415
+    from sequence_planner.analysis.worker import SynthesisEndedError, told  # noqa: PLC0415
+    from sequence_planner.synthesis.supervisor import SynthesisError, tried  # noqa: PLC0415
 
     limits = limits or Limits()
     found = None
@@ -195,7 +201,7 @@ def within(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-Work = tuple[Callable[..., "Iterator[Looked | Analysis]"], *tuple[object, ...]]
+Work = tuple[Callable[..., "Iterator[CheckProgress | Analysis]"], *tuple[object, ...]]
 
 
 @dataclass
@@ -214,7 +220,7 @@ class _Hearing:
 
     def hear(self, limits: Limits) -> str | None:
         """Hear it until it is all, or `limits` are reached; returns what was not found then, and why."""
-        from sequence_planner.analysis.process import SynthesisEndedError, told  # noqa: PLC0415
+        from sequence_planner.analysis.worker import SynthesisEndedError, told  # noqa: PLC0415
 
         try:
             for word in told(limits.memory, limits.left, *self.work):
@@ -226,7 +232,7 @@ class _Hearing:
             return f"{self._left()} could not be computed: {ended}"
         return None
 
-    def _take(self, word: Looked | Analysis) -> None:
+    def _take(self, word: CheckProgress | Analysis) -> None:
         if isinstance(word, Analysis):
             self.analysis, self.evidence = word, word.evidence or self.evidence
         else:
@@ -247,3 +253,31 @@ class _Hearing:
     def _tell(self, seconds: float) -> None:
         if sys.stderr.isatty() and seconds > _QUIET and self._pending is not None:
             typer.echo(f"{seconds:5.1f} s: computing {self._pending}", err=True)
+
+
+# Findings for people: where, what, and a run that shows it.
+
+_LONG = 10  # steps: of a run that is longer it is only said how long it is
+
+
+def finding_lines(finding: FindingDocument, runs: bool = False) -> list[str]:
+    """A finding, and its trace indented below it: a long one only where `runs` are asked for."""
+    where = f"{finding.file}:{finding.line}:{finding.column}"
+    told = [] if finding.trace is None else _told(finding.trace)
+    if len(told) > _LONG and not runs:
+        told = [f"a run of {len(told)} steps shows it, which `check --runs` prints"]
+    return [f"{where}: {finding.severity}: {finding.message} [{finding.kind}]", *(f"  {line}" for line in told)]
+
+
+def counts_line(findings: Collection[FindingDocument]) -> str:
+    """How many findings there are, of which kinds."""
+    kinds = Counter(finding.kind for finding in findings)
+    return f"{counted(len(findings), 'finding')}: {', '.join(f'{number} {kind}' for kind, number in kinds.items())}"
+
+
+def _told(trace: TraceDocument) -> list[str]:
+    """The lines of a trace up to the first state that is forbidden: what comes after it is of less interest."""
+    lines = [step.text for step in trace.steps]
+    until = next((number for number, step in enumerate(trace.steps, start=1) if step.forbidden_by), len(lines))
+    left = len(lines) - until
+    return lines if left < 2 else [*lines[:until], f"and {left} further steps, which --json shows"]

@@ -6,19 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sequence_planner.analysis.read_before import automaton_read_before, content_key, keep_automaton
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.analysis.cache import automaton_read_before, content_key, keep_automaton
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.cli.options import refuse
 
 if TYPE_CHECKING:
-    from sequence_planner.checking.connections import Connections
+    from sequence_planner.analysis.checks.connections import Connections
     from sequence_planner.station import ReadyStation
 
 PLAIN_SUFFIX = ".efa.json"
 
 
 @dataclass(frozen=True)
-class Model:
+class LoadedModel:
     """An automaton, and the station that it is of; a plain automaton is of none."""
 
     automaton: Automaton
@@ -30,20 +30,20 @@ class Model:
         return None if self.station is None else self.station.connections
 
 
-def load_model(path: Path) -> Model:
+def load_model(path: Path) -> LoadedModel:
     """Read a model. Raises `ModelError` with the findings."""
     if path.name.endswith(PLAIN_SUFFIX):
         from sequence_planner.automaton.plain.meaning import plain_automaton  # noqa: PLC0415
-        from sequence_planner.model.plain_documents import load_plain  # noqa: PLC0415
+        from sequence_planner.model.efa_document import load_plain  # noqa: PLC0415
 
-        return Model(plain_automaton(load_plain(path)), None)
+        return LoadedModel(plain_automaton(load_plain(path)), None)
     from sequence_planner.station import prepare_station  # noqa: PLC0415 (a plain automaton needs no pipelines)
 
     station = prepare_station(path)
-    return Model(station.automaton, station)
+    return LoadedModel(station.automaton, station)
 
 
-def usable_model(path: Path) -> Model:
+def usable_model(path: Path) -> LoadedModel:
     """Read a model, or end with what is wrong with it."""
     from sequence_planner.model.source import ModelError  # noqa: PLC0415 (most commands read none: see below)
 

@@ -10,11 +10,10 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from sequence_planner.lifeline import leave_last_words
-from sequence_planner.memory_limit import LEAST, MOST, USUAL, VARIABLE
-from sequence_planner.storage.environment import DATABASE
-from sequence_planner.storage.error import StorageError
-from sequence_planner.storage.location import default_url
+from sequence_planner.core.storage_error import DATABASE, StorageError
+from sequence_planner.db.location import default_url
+from sequence_planner.process.memory_limit import LEAST, MOST, USUAL, VARIABLE
+from sequence_planner.process.parent_watch import leave_last_words
 
 FINE, FINDINGS, UNUSABLE = 0, 1, 2  # exit codes
 

@@ -1,8 +1,9 @@
-"""A process that a fork server has forked, as whoever has asked for it sees it."""
+"""Child process of a fork server: handle of the requester, and reaping of orphans."""
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
 import select
 import signal
@@ -13,6 +14,8 @@ import time
 from typing import Final
 
 from sequence_planner.forking.request import read_begun, read_code
+
+# A process that a fork server has forked, as whoever has asked for it sees it.
 
 LOST: Final = -signal.SIGKILL  # the exit code of a process that has ended when nobody was there to see how
 _PATIENCE: Final = 10.0  # seconds in which the server says how a process has ended that certainly has
@@ -169,3 +172,14 @@ def _poll(seconds: float | None, *descriptors: int) -> bool:
     for each in descriptors:
         looking.register(each, select.POLLIN)
     return bool(looking.poll(None if seconds is None else 1000 * seconds))
+
+
+# Processes whose fork server has died: who sees how they end.
+
+_SUBREAPER: Final = 36  # PR_SET_CHILD_SUBREAPER of prctl(2)
+
+
+def reap_orphans() -> None:
+    """Be the parent of all that descends from this process and has lost its own, where the system lets one be."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(_SUBREAPER, 1, 0, 0, 0)

@@ -23,7 +23,7 @@ LATER: Final = "--later"  # on the command line of a server: what is imported on
 
 
 @dataclass(frozen=True)
-class Request:
+class ForkRequest:
     """A process that calls `main`, a function such as `package.module:function`, with `arguments`, which are pickled.
 
     The server imports `modules` for it and for all later ones. What cannot be imported is an error of the process.
@@ -45,21 +45,21 @@ class Request:
     left: bool = False
 
 
-def send_request(to: socket.socket, request: Request, descriptors: list[int]) -> None:
+def send_request(to: socket.socket, request: ForkRequest, descriptors: list[int]) -> None:
     """Send a request. Raises OSError when nobody takes it."""
     content = pickle.dumps(request)
     socket.send_fds(to, [_LENGTH.pack(len(content))], descriptors)
     to.sendall(content)
 
 
-def read_request(of: socket.socket) -> tuple[Request, list[int]]:
+def read_request(of: socket.socket) -> tuple[ForkRequest, list[int]]:
     """The request that comes next, and its descriptors. Raises EOFError when it is not whole."""
     head, descriptors, _, _ = socket.recv_fds(of, _LENGTH.size, MOST_DESCRIPTORS)
     try:
         for each in descriptors:
             os.set_inheritable(each, False)
         head += _read(of, _LENGTH.size - len(head))
-        request: Request = pickle.loads(_read(of, _LENGTH.unpack(head)[0]))
+        request: ForkRequest = pickle.loads(_read(of, _LENGTH.unpack(head)[0]))
     except BaseException:
         for each in descriptors:
             os.close(each)

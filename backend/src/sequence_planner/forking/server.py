@@ -26,7 +26,7 @@ from typing import Any, Final
 
 from setproctitle import setproctitle
 
-from sequence_planner.forking.request import Request, read_request, send_begun, send_code
+from sequence_planner.forking.request import ForkRequest, read_request, send_begun, send_code
 
 _STANDARD_INPUT: Final = 0
 _LEAVING: Final = 0.5  # seconds after which one that was hung up is ended, unless that was the end of the launcher
@@ -182,7 +182,7 @@ class ForkServer:
             if not forked.left:
                 _kill(pid, forked)
 
-    def _become(self, request: Request, descriptors: list[int], connection: socket.socket) -> Life:
+    def _become(self, request: ForkRequest, descriptors: list[int], connection: socket.socket) -> Life:
         """Leave behind, in a process that was just forked, all that is the server's."""
         handle = os.pidfd_open(os.getpid())
         with contextlib.suppress(OSError):  # nobody waits for it any more, as is seen soon

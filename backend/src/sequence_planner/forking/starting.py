@@ -19,9 +19,9 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Final
 
+from sequence_planner.core.secrets import environment
 from sequence_planner.forking.child import Child
-from sequence_planner.forking.request import LATER, Request, send_request
-from sequence_planner.secret_variables import environment
+from sequence_planner.forking.request import LATER, ForkRequest, send_request
 
 VARIABLE: Final = "SEQUENCE_PLANNER_FORK_SERVER"  # of the environment: the socket of the station's fork server
 _BACKLOG: Final = 64
@@ -173,7 +173,7 @@ def start(
     where = main if isinstance(main, str) else f"{main.__module__}:{main.__qualname__}"
 
     def asked(server: Path) -> Child:
-        request = Request(
+        request = ForkRequest(
             where,
             pickle.dumps(arguments),
             modules,
@@ -218,7 +218,7 @@ def children() -> list[Child]:
     return [each for each in list(_children) if each.poll() is None]
 
 
-def ask(server: Path, request: Request, descriptors: list[int], name: str) -> Child:
+def ask(server: Path, request: ForkRequest, descriptors: list[int], name: str) -> Child:
     """Have a process forked by the server at that socket. Raises OSError when it cannot be asked."""
     to = socket.socket(socket.AF_UNIX)
     to.settimeout(_PATIENCE)

@@ -1,1 +1,1 @@
-"""What has happened to the running station, from the journal: restored, replayed, looked back on, and branched from."""
+"""What has happened to the running station, from the journal: looked back on, replayed, and branched from."""

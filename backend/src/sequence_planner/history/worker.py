@@ -15,21 +15,27 @@ from typing import Any
 
 import structlog
 
-from sequence_planner.analysis.remembering import supervisor_of
+from sequence_planner.analysis.cache import supervisor_of
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.history.branch import branch
-from sequence_planner.history.error import HistoryError
-from sequence_planner.history.looking_back import looking_back
-from sequence_planner.history.moment_view import moment_view, past_view
-from sequence_planner.history.view import Answer, BranchView, LookBack, Question, Refused, TakeBranch, record_view
-from sequence_planner.journal.archive import Archive
-from sequence_planner.journal.archive_file import ArchiveError
-from sequence_planner.journal.whole_run import WholeRun
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.execution.record.codec import HistoryError
+from sequence_planner.history.simulation import branch
+from sequence_planner.history.state_at import looking_back, moment_view, past_view
+from sequence_planner.history.timeline import (
+    Answer,
+    BranchView,
+    LookBack,
+    Question,
+    Refused,
+    TakeBranch,
+    record_view,
+)
+from sequence_planner.journal.archive import Archive, ArchiveError
+from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
-from sequence_planner.synthesis.supervision import SynthesisError
+from sequence_planner.synthesis.supervisor import SynthesisError
 
 LOG = structlog.get_logger(__name__)
 _NICENESS = 10  # ticks come first, and plans

@@ -1,27 +1,153 @@
-"""The archive of what happened: files with the records that were cut from the database, as the record of who did what
-tells of them.
-
-That record is chained and never cut. So it says for ever which files there are, and what each has to hold.
-"""
+"""Journal archive: compressed JSON-lines files of trimmed records, with index and integrity check."""
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import gzip
+import hashlib
 import json
+import os
+import zlib
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final
+from typing import IO, Any, Final
 
 from pydantic import JsonValue
 from sqlalchemy import Connection, select
 
-from sequence_planner.journal import archive_file, run_journal
-from sequence_planner.journal.archive_file import ArchiveError
+from sequence_planner.core.fsync import sync_folder
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.journal import run_journal
 from sequence_planner.journal.audit import AUDIT
-from sequence_planner.journal.chain import START, Position
+from sequence_planner.journal.hash_chain import START, ChainPosition
 from sequence_planner.journal.run_journal import RunRecord
+
+# A file of an archive: lines of JSON, compressed, written once and never changed.
+#
+# It is gzip (RFC 1952), which any machine can read in thirty years. The first line says what follows.
+
+ENDING: Final = ".jsonl.gz"
+_PARTIAL: Final = ".partial"
+_LEVEL: Final = 6  # of gzip: a higher one takes twice as long for a few per cent
+_CHUNK: Final = 1024 * 1024  # bytes
+
+
+class ArchiveError(StorageError):
+    """A file of the archive is not there, or is not as it was written; the message names it and says what to do."""
+
+
+class ArchiveFullError(ArchiveError):
+    """There is no room for another file of the archive."""
+
+
+@dataclass(frozen=True)
+class ArchiveFile:
+    """A file that is on the disk: how many bytes it has, and their SHA-256 in hexadecimal digits."""
+
+    size: int
+    sha256: str
+
+
+def write(file: Path, lines: Iterable[str]) -> ArchiveFile:
+    """Write a file for this user alone, whole and on the disk, or not at all. Raises `ArchiveError`.
+
+    One of this name that is there gives way: whoever writes has what it should hold.
+    """
+    partial = file.with_name(f".{file.name}{_PARTIAL}")
+    try:
+        partial.unlink(missing_ok=True)
+        descriptor = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
+        try:
+            with os.fdopen(descriptor, "wb") as out:
+                with gzip.GzipFile(filename="", fileobj=out, mode="wb", compresslevel=_LEVEL, mtime=0) as packed:
+                    for line in lines:
+                        packed.write(line.encode() + b"\n")
+                out.flush()
+                os.fsync(out.fileno())
+            written = _sum(partial)
+            partial.replace(file)
+            sync_folder(file.parent)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                partial.unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise _not_written(file, error) from error
+    return written
+
+
+def clear(folder: Path) -> None:
+    """Take away what a process has left that did not come to its end. Raises `ArchiveError`."""
+    try:
+        for left in folder.glob(f".*{ENDING}{_PARTIAL}"):
+            left.unlink(missing_ok=True)
+    except OSError as error:
+        raise _not_written(folder, error) from error
+
+
+def lines(file: Path, sha256: str | None = None) -> Iterator[str]:
+    """The lines of a file, whose bytes have this SHA-256 if one is given. Raises `ArchiveError`."""
+    try:
+        with file.open("rb") as opened:
+            if sha256 is not None and _digest(opened) != sha256:
+                raise _changed(file)
+            opened.seek(0)
+            with gzip.GzipFile(fileobj=opened, mode="rb") as packed:
+                for line in packed:
+                    yield line.decode().removesuffix("\n")
+    except FileNotFoundError as error:
+        raise ArchiveError(f"{file} is not there: put it back, from a copy of the archive") from error
+    except (EOFError, zlib.error, gzip.BadGzipFile, UnicodeDecodeError) as error:
+        raise _changed(file) from error
+    except OSError as error:
+        raise ArchiveError(f"{file} cannot be read: {error.strerror or error}") from error
+
+
+def check(file: Path, sha256: str) -> None:
+    """See whether the bytes of a file are those that were written. Raises `ArchiveError`."""
+    for _ in lines(file, sha256):
+        return
+    raise _changed(file)
+
+
+def _sum(file: Path) -> ArchiveFile:
+    with file.open("rb") as opened:
+        return ArchiveFile(file.stat().st_size, _digest(opened))
+
+
+def _digest(opened: IO[bytes]) -> str:
+    total = hashlib.sha256()
+    while chunk := opened.read(_CHUNK):
+        total.update(chunk)
+    return total.hexdigest()
+
+
+def _changed(file: Path) -> ArchiveError:
+    return ArchiveError(f"{file} is damaged, or is not as it was written: put it back, from a copy of the archive")
+
+
+def _not_written(file: Path, error: OSError) -> ArchiveError:
+    folder = file if file.is_dir() else file.parent
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        return ArchiveFullError(
+            f"there is no room on the disk of {folder}: make room, or name a folder elsewhere with --archive-folder. "
+            "Nothing was cut, and nothing is lost"
+        )
+    if error.errno in (errno.ENOENT, errno.ENOTDIR):
+        return ArchiveError(f"there is no folder {folder}: make or mount it, or name another with --archive-folder")
+    return ArchiveError(
+        f"nothing can be written to {folder}: let the user who runs the station do so ({error.strerror or error})"
+    )
+
+
+# The archive of what happened: files with the records that were cut from the database, as the record of who did what
+# tells of them.
+#
+# That record is chained and never cut. So it says for ever which files there are, and what each has to hold.
 
 TRIMMED: Final = "journal-trimmed"  # the action of a cut, in the record of who did what
 REMOVED: Final = "archive-removed"  # and of files that were too old or too many
@@ -58,9 +184,9 @@ class Segment:
         return cls(**{name: details[name] for name in cls.__dataclass_fields__})
 
     @property
-    def begin(self) -> Position:
+    def begin(self) -> ChainPosition:
         """The record before the first."""
-        return Position(self.first - 1, self.before)
+        return ChainPosition(self.first - 1, self.before)
 
 
 @dataclass(frozen=True)
@@ -71,7 +197,7 @@ class Index:
     """
 
     segments: tuple[Segment, ...]
-    begin: Position
+    begin: ChainPosition
 
     @property
     def whole(self) -> bool:
@@ -84,7 +210,7 @@ class Archive:
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder
-        self._index: tuple[tuple[int, Position], Index] | None = None
+        self._index: tuple[tuple[int, ChainPosition], Index] | None = None
         self._read: OrderedDict[str, list[str]] = OrderedDict()
 
     def index(self, connection: Connection) -> Index:
@@ -110,7 +236,7 @@ class Archive:
         found = self._read.pop(segment.sha256, None)
         if found is None:
             file = self.path(segment)
-            found = list(archive_file.lines(file, segment.sha256))[1:]
+            found = list(lines(file, segment.sha256))[1:]
             if len(found) != segment.last - segment.first + 1:
                 raise ArchiveError(
                     f"{file} has {len(found)} records and not those from {segment.first} to {segment.last}"
@@ -121,7 +247,7 @@ class Archive:
         return found
 
 
-def header(segment_of: tuple[Position, Position], since: float, until: float) -> str:
+def header(segment_of: tuple[ChainPosition, ChainPosition], since: float, until: float) -> str:
     """The first line of a file: what follows, and behind which hash."""
     begin, end = segment_of
     said = {"archive": "run", "first": begin.number + 1, "last": end.number, "before": begin.hash, "hash": end.hash}
@@ -146,7 +272,7 @@ def verified(archive: Archive, index: Index) -> Iterator[str]:
 def broken_at(archive: Archive, segment: Segment) -> int | None:
     """The first record of a file that is not as it was written. Raises `ArchiveError`."""
     number, last = segment.first, segment.before
-    for line in archive_file.lines(archive.path(segment), segment.sha256):
+    for line in lines(archive.path(segment), segment.sha256):
         if line.startswith('{"archive"'):
             continue
         record = RunRecord.of(line)
@@ -156,17 +282,17 @@ def broken_at(archive: Archive, segment: Segment) -> int | None:
     return None if (number - 1, last) == (segment.last, segment.hash) else number
 
 
-def _index(entries: list[tuple[str, dict[str, Any]]], begin: Position) -> Index:
+def _index(entries: list[tuple[str, dict[str, Any]]], begin: ChainPosition) -> Index:
     segments: list[Segment] = []
     first = START
     for action, details in entries:
         if action == REMOVED:
-            first = Position(details["number"], details["hash"])
+            first = ChainPosition(details["number"], details["hash"])
             segments = [each for each in segments if each.last > first.number]
             continue
         segment = Segment.of(details)
         if segment is None:
-            segments, first = [], Position(details["number"], details["hash"])
+            segments, first = [], ChainPosition(details["number"], details["hash"])
         else:
             if segments and segments[-1].hash != segment.before:
                 segments = []

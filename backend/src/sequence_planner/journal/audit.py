@@ -10,11 +10,11 @@ from typing import Final
 from pydantic import ValidationError
 from sqlalchemy import Column, Connection, Double, String, Table, Text, insert, select
 
-from sequence_planner.journal import chain
-from sequence_planner.journal.chain import BELOW_ALL, NUMBER, START, Link, Position, digest
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.metadata import METADATA
+from sequence_planner.journal import hash_chain
 from sequence_planner.journal.entry import Entry, Record
-from sequence_planner.storage.error import StorageError
-from sequence_planner.storage.metadata import METADATA
+from sequence_planner.journal.hash_chain import BELOW_ALL, NUMBER, START, ChainLink, ChainPosition, digest
 
 AUDIT: Final = Table(
     "audit",
@@ -28,14 +28,14 @@ AUDIT: Final = Table(
 )
 """`entry` is the JSON text of the entry, of which `action` and `actor` (its id) are copies to search by."""
 
-AUDIT_END: Final = chain.position_table("audit_end")
+AUDIT_END: Final = hash_chain.position_table("audit_end")
 """One row with the number and the hash of the last record, so that records missing at the end show."""
 
 _PAGE: Final = 1000  # records read at once
 
 
 @dataclass(frozen=True)
-class Stored(Link):
+class Stored(ChainLink):
     """A record as it is in the database."""
 
     number: int
@@ -84,13 +84,13 @@ def append(connection: Connection, entry: Entry, now: float) -> Record:
             "hash": hash_,
         },
     )
-    chain.move(connection, AUDIT_END, Position(number, hash_), before)
+    hash_chain.move(connection, AUDIT_END, ChainPosition(number, hash_), before)
     return Record(number=number, time=written.time, entry=entry, hash=hash_)
 
 
-def end(connection: Connection) -> Position | None:
+def end(connection: Connection) -> ChainPosition | None:
     """Where the record ends; None if somebody has taken that out."""
-    return chain.position(connection, AUDIT_END)
+    return hash_chain.position(connection, AUDIT_END)
 
 
 def read(
@@ -130,7 +130,7 @@ def page_after(connection: Connection, number: int, limit: int = _PAGE) -> list[
 
 def broken_at(connection: Connection) -> int | None:
     """The number of the first record that is not as it was written, or is missing; None when all are whole."""
-    return chain.broken_at(_everything(connection), START, end(connection))
+    return hash_chain.broken_at(_everything(connection), START, end(connection))
 
 
 def _everything(connection: Connection) -> Iterator[Stored]:

@@ -8,8 +8,9 @@ from typing import Final
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
 from sequence_planner.journal import checkpoints
-from sequence_planner.storage.database import Database, StorageError
 
 LOG = structlog.get_logger(__name__)
 RECORDS: Final = 10_000

@@ -1,23 +1,101 @@
-"""Signed checkpoints: statements of how far both chains had come, to be kept where nobody of the station can write.
-
-Whoever may change the database's structure could make a chain anew, with all its hashes. That does not fit a checkpoint
-that was made before, and they cannot sign another one without the key, which is not in the database.
-"""
+"""Signed checkpoints of both journal chains, for external storage, and their Ed25519 key."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 from collections.abc import Iterator
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sqlalchemy import Connection, RowMapping, func, insert, select
 
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.db.location import PostgresqlServer, SqliteFile, state_folder
 from sequence_planner.journal import audit, run_journal
-from sequence_planner.journal.chain import BELOW_ALL, Position
-from sequence_planner.journal.run_tables import RUN_CHECKPOINTS
-from sequence_planner.journal.signing_key import key_file, public_text, signing_key
-from sequence_planner.storage.database import Database, StorageError
+from sequence_planner.journal.hash_chain import BELOW_ALL, ChainPosition
+from sequence_planner.journal.run_journal import RUN_CHECKPOINTS
+
+if TYPE_CHECKING:
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+
+# The key that signs checkpoints: an Ed25519 key in a file of this user alone, never in the database.
+
+
+def key_file(place: SqliteFile | PostgresqlServer) -> Path:
+    """Where the key is: beside the file of SQLite; for PostgreSQL in this user's state folder."""
+    if isinstance(place, SqliteFile):
+        return place.path.with_name(f"{place.path.name}-checkpoint-key.pem")
+    mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
+    return state_folder() / f"checkpoint-key-{mark}.pem"
+
+
+def signing_key(file: Path) -> Ed25519PrivateKey:
+    """The key in a file, which is made if it is not there. Raises `StorageError`."""
+    try:
+        if not file.exists():
+            _make(file)
+        return _read(file)
+    except OSError as error:
+        raise StorageError(f"{file}, the key that signs checkpoints, cannot be used: {error.strerror}") from error
+
+
+def public_key(file: Path) -> str | None:
+    """The public key in hexadecimal digits; None where there is no key yet. Raises `StorageError`."""
+    return public_text(signing_key(file)) if file.exists() else None
+
+
+def public_text(key: Ed25519PrivateKey) -> str:
+    """The public half in hexadecimal digits."""
+    return key.public_key().public_bytes_raw().hex()
+
+
+def _read(file: Path) -> Ed25519PrivateKey:
+    # Most programs never sign, and start sooner for it.
+    from cryptography.exceptions import UnsupportedAlgorithm  # noqa: PLC0415
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey  # noqa: PLC0415
+    from cryptography.hazmat.primitives.serialization import load_pem_private_key  # noqa: PLC0415
+
+    try:
+        key = load_pem_private_key(file.read_bytes(), password=None)
+    except (ValueError, TypeError, UnsupportedAlgorithm):
+        key = None
+    if not isinstance(key, Ed25519PrivateKey):
+        raise StorageError(
+            f"{file} holds no Ed25519 key: put the right one in its place, or move it away for a new one"
+        )
+    return key
+
+
+def _make(file: Path) -> None:
+    """Write a new key, whole or not at all; of several that do so at once the first wins."""
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey  # noqa: PLC0415
+    from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat  # noqa: PLC0415
+
+    text = Ed25519PrivateKey.generate().private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
+    file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    new = file.with_name(f"{file.name}.{os.getpid()}.{os.urandom(4).hex()}")
+    descriptor = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
+    try:
+        with os.fdopen(descriptor, "wb") as opened:
+            opened.write(text)
+            opened.flush()
+            os.fsync(opened.fileno())
+        try:
+            os.link(new, file)
+        except FileExistsError:
+            return
+    finally:
+        new.unlink()
+
+
+# Signed checkpoints: statements of how far both chains had come, to be kept where nobody of the station can write.
+#
+# Whoever may change the database's structure could make a chain anew, with all its hashes. That does not fit a
+# checkpoint that was made before, and they cannot sign another one without the key, which is not in the database.
 
 _PAGE: Final = 1000  # checkpoints read at once
 _ALL: Final = select(RUN_CHECKPOINTS.c.content, RUN_CHECKPOINTS.c.public_key, RUN_CHECKPOINTS.c.signature)
@@ -31,9 +109,9 @@ class Place(BaseModel):
     number: int = Field(ge=0)
     hash: str
 
-    def position(self) -> Position:
+    def position(self) -> ChainPosition:
         """It as a place in a chain."""
-        return Position(self.number, self.hash)
+        return ChainPosition(self.number, self.hash)
 
 
 class Statement(BaseModel):

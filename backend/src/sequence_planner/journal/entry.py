@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
-from sequence_planner.actor import Actor
+from sequence_planner.core.actor import Actor
 
 LONGEST_REASON, LONGEST_SUBJECT = 500, 400  # characters
 

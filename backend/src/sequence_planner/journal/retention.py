@@ -17,15 +17,15 @@ from typing import Final
 from pydantic import JsonValue
 from sqlalchemy import ColumnElement, Connection, Table, delete, func, select
 
-from sequence_planner.actor import Actor
-from sequence_planner.journal import archive_file, audit, chain, checkpoints, run_journal
-from sequence_planner.journal.archive import TRIMMED, Archive, Segment, broken_at, header
-from sequence_planner.journal.archive_file import ArchiveError
-from sequence_planner.journal.chain import Position
+from sequence_planner.core.actor import Actor
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.journal import archive, audit, checkpoints, hash_chain, run_journal
+from sequence_planner.journal.archive import TRIMMED, Archive, ArchiveError, Segment, broken_at, header
 from sequence_planner.journal.entry import Entry
-from sequence_planner.journal.run_tables import RUN, RUN_BEGIN, RUN_CHECKPOINTS
-from sequence_planner.journal.whole_run import WholeRun
-from sequence_planner.storage.database import Database, StorageError
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.journal.hash_chain import ChainPosition
+from sequence_planner.journal.run_journal import RUN, RUN_BEGIN, RUN_CHECKPOINTS
 
 SNAPSHOT: Final = "snapshot"  # the kind of the records that hold all that comes after needs
 MOST_IN_FILE: Final = 50_000  # records, some 3 MB
@@ -98,7 +98,7 @@ def cut(database: Database, snapshot: int, by: Actor, folder: Path | None) -> Se
         last = run_journal.get(connection, chosen - 1)
         if last is None:
             raise StorageError(f"record {chosen - 1} of the journal is missing: verify it before it is trimmed")
-    end = Position(last.number, last.hash)
+    end = ChainPosition(last.number, last.hash)
     segment = None if folder is None else _archived(database, folder, begin, end)
     details: dict[str, JsonValue] = {"number": end.number, "hash": end.hash}
     entry = Entry(
@@ -108,7 +108,7 @@ def cut(database: Database, snapshot: int, by: Actor, folder: Path | None) -> Se
         details=details if segment is None else segment.details(),
     )
     with database.writing() as connection:
-        if not chain.move(connection, RUN_BEGIN, end, begin):
+        if not hash_chain.move(connection, RUN_BEGIN, end, begin):
             raise StorageError("somebody else cuts the journal just now: try again")
         audit.append(connection, entry, time.time())
     return segment or True
@@ -125,11 +125,11 @@ def clear(database: Database, folder: Path) -> None:
     """Take away what others have left in the folder that did not come to their end: parts of files, and files that
     nothing counts and whose records are all elsewhere. Raises `StorageError`.
     """
-    archive_file.clear(folder)
+    archive.clear(folder)
     with database.reading() as connection:
         run = WholeRun(connection)
         counted = {each.file for each in run.index.segments}
-        for file in sorted(folder.glob(f"run-*{archive_file.ENDING}")):
+        for file in sorted(folder.glob(f"run-*{archive.ENDING}")):
             if file.name not in counted and _is_double(run, file):
                 file.unlink(missing_ok=True)
 
@@ -137,7 +137,7 @@ def clear(database: Database, folder: Path) -> None:
 def _is_double(run: WholeRun, file: Path) -> bool:
     """Whether all that a file has is in the database, or in files that count: the last hash is over all before it."""
     try:
-        said = json.loads(next(archive_file.lines(file)))
+        said = json.loads(next(archive.lines(file)))
         last = run.get(said["last"])
         return last is not None and last.hash == said["hash"] and run.begin.number < said["first"]
     except (ArchiveError, StopIteration, ValueError, LookupError, TypeError):
@@ -152,19 +152,19 @@ def sign(database: Database) -> None:
     _remove(database, RUN_CHECKPOINTS, RUN_CHECKPOINTS.c.run_number, begin)
 
 
-def _archived(database: Database, folder: Path, begin: Position, end: Position) -> Segment:
+def _archived(database: Database, folder: Path, begin: ChainPosition, end: ChainPosition) -> Segment:
     """The file of the records behind `begin` up to `end`, on the disk and read again as a whole."""
     with database.reading() as connection:
         first, last = (run_journal.get(connection, number) for number in (begin.number + 1, end.number))
     if first is None or last is None:
         raise _broken(begin.number + 1)
-    name = f"run-{first.number:012}-{last.number:012}-{end.hash[:8]}{archive_file.ENDING}"
+    name = f"run-{first.number:012}-{last.number:012}-{end.hash[:8]}{archive.ENDING}"
 
     def lines() -> Iterator[str]:
         yield header((begin, end), first.time, last.time)
         yield from _lines(database, begin, end)
 
-    written = archive_file.write(folder / name, lines())
+    written = archive.write(folder / name, lines())
     segment = Segment(
         folder=str(folder),
         file=name,
@@ -182,7 +182,7 @@ def _archived(database: Database, folder: Path, begin: Position, end: Position) 
     return segment
 
 
-def _lines(database: Database, begin: Position, end: Position) -> Iterator[str]:
+def _lines(database: Database, begin: ChainPosition, end: ChainPosition) -> Iterator[str]:
     """Page by page, as a reader who takes long must not keep SQLite from clearing its log."""
     at = begin
     while at.number < end.number:
@@ -193,7 +193,7 @@ def _lines(database: Database, begin: Position, end: Position) -> Iterator[str]:
         for record in page:
             if record.number != at.number + 1 or not record.is_whole(at.hash):
                 raise _broken(at.number + 1)
-            at = Position(record.number, record.hash)
+            at = ChainPosition(record.number, record.hash)
             yield record.line()
 
 

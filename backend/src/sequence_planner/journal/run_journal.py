@@ -1,4 +1,4 @@
-"""Reading what has happened at the station, in the order in which it did."""
+"""Run journal: database tables of all station events, and queries in order of occurrence."""
 
 from __future__ import annotations
 
@@ -11,11 +11,67 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final, TypeAlias
 
-from sqlalchemy import ColumnElement, Connection, Select, and_, or_, select
+from sqlalchemy import (
+    Column,
+    ColumnElement,
+    Connection,
+    Double,
+    Index,
+    Select,
+    String,
+    Table,
+    Text,
+    and_,
+    or_,
+    select,
+)
 
-from sequence_planner.journal import chain
-from sequence_planner.journal.chain import BELOW_ALL, START, Link, Position
-from sequence_planner.journal.run_tables import RUN, RUN_BEGIN, RUN_END
+from sequence_planner.db.metadata import METADATA
+from sequence_planner.journal import hash_chain
+from sequence_planner.journal.hash_chain import (
+    BELOW_ALL,
+    NUMBER,
+    START,
+    ChainLink,
+    ChainPosition,
+    position_table,
+)
+
+# The tables of the run: all that has happened at the station, from which it can be done again.
+
+LONGEST_KIND: Final = 40  # characters
+
+RUN: Final = Table(
+    "run",
+    METADATA,
+    Column("number", NUMBER, primary_key=True, autoincrement=False),
+    Column("time", Double, nullable=False),
+    Column("kind", String(LONGEST_KIND), nullable=False),
+    Column("content", Text, nullable=False),
+    Column("hash", String(64), nullable=False),
+    Index("ix_run_kind_number", "kind", "number"),
+)
+"""`content` is JSON text."""
+
+RUN_BEGIN: Final = position_table("run_begin")
+"""One row with the last record that retention has cut off; the run begins behind it."""
+
+RUN_END: Final = position_table("run_end")
+"""One row with the last record, so that records missing at the end show, as does a second station that writes."""
+
+RUN_CHECKPOINTS: Final = Table(
+    "run_checkpoints",
+    METADATA,
+    Column("number", NUMBER, primary_key=True, autoincrement=False),
+    Column("run_number", NUMBER, nullable=False),
+    Column("content", Text, nullable=False),
+    Column("public_key", String(64), nullable=False),
+    Column("signature", String(128), nullable=False),
+)
+"""Signed statements of how far both chains had come. `content` is the text that is signed."""
+
+
+# Reading what has happened at the station, in the order in which it did.
 
 _Chosen: TypeAlias = Select[*tuple[Any, ...]]
 
@@ -23,7 +79,7 @@ _PAGE: Final = 1000  # records read at once
 
 
 @dataclass(frozen=True)
-class RunRecord(Link):
+class RunRecord(ChainLink):
     """What has happened: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
 
     `content` is JSON text on one line; what it says depends on the `kind`. `hash` chains it to the record before.
@@ -49,7 +105,7 @@ class RunRecord(Link):
 
 
 @dataclass(frozen=True)
-class Sought:
+class RecordQuery:
     """Which records are sought: those that name `who`, one of `names` (or what begins with it), and one of `texts`.
 
     What is left empty is not asked for. Texts are found whatever their case. Beside those of the kinds that are asked
@@ -103,7 +159,7 @@ def _within(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Place:
+class RecordPlace:
     """A record's number, and when it was written."""
 
     number: int
@@ -132,7 +188,7 @@ def before(
     number: int | None,
     limit: int,
     kinds: Collection[str] | None = None,
-    sought: Sought | None = None,
+    sought: RecordQuery | None = None,
 ) -> list[RunRecord]:
     """Up to `limit` records with numbers below `number` (None: the latest), the newest first; only of these kinds, and
     only what is sought.
@@ -165,15 +221,15 @@ def get(connection: Connection, number: int) -> RunRecord | None:
     return next(iter(_records(connection, select(RUN).where(RUN.c.number == number))), None)
 
 
-def bounds(connection: Connection) -> tuple[Place, Place] | None:
+def bounds(connection: Connection) -> tuple[RecordPlace, RecordPlace] | None:
     """The first record that there is and the last one; None if there is none."""
     ends = (select(RUN.c.number, RUN.c.time).order_by(order).limit(1) for order in (RUN.c.number, RUN.c.number.desc()))
     found = [connection.execute(each).one_or_none() for each in ends]
-    first, last_ = (None if each is None else Place(each.number, each.time) for each in found)
+    first, last_ = (None if each is None else RecordPlace(each.number, each.time) for each in found)
     return None if first is None or last_ is None else (first, last_)
 
 
-def at(connection: Connection, time: float, first: Place, last_: Place) -> int:
+def at(connection: Connection, time: float, first: RecordPlace, last_: RecordPlace) -> int:
     """The number of the last record up to a time, among those from `first` to `last_`; below `first` if there is none.
 
     Where the clock has been set back, one of the records at which it passes that time.
@@ -187,23 +243,23 @@ def _time(connection: Connection, number: int) -> float:
     return found
 
 
-def begin(connection: Connection) -> Position:
+def begin(connection: Connection) -> ChainPosition:
     """The last record that retention has cut off; `START` if it has cut nothing."""
-    return chain.position(connection, RUN_BEGIN) or START
+    return hash_chain.position(connection, RUN_BEGIN) or START
 
 
-def end(connection: Connection) -> Position | None:
+def end(connection: Connection) -> ChainPosition | None:
     """Where the run ends; None if somebody has taken that out."""
-    return chain.position(connection, RUN_END)
+    return hash_chain.position(connection, RUN_END)
 
 
 def broken_at(connection: Connection) -> int | None:
     """The number of the first record that is not as it was written, or is missing; None when all are whole."""
     first = begin(connection)
-    return chain.broken_at(_everything(connection, first), first, end(connection))
+    return hash_chain.broken_at(_everything(connection, first), first, end(connection))
 
 
-def _everything(connection: Connection, first: Position) -> Iterator[RunRecord]:
+def _everything(connection: Connection, first: ChainPosition) -> Iterator[RunRecord]:
     number = BELOW_ALL if first == START else first.number
     while page := after(connection, number, _PAGE):
         yield from page

@@ -13,9 +13,9 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict, JsonValue
 from sqlalchemy import Connection, func, insert, select
 
-from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.core.clock import iso
+from sequence_planner.mes.order import OrderRefused
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_EVENTS
-from sequence_planner.mes.times import iso
 
 _OF_STATION: Final = ""  # in the database, in place of an order
 

@@ -1,14 +1,109 @@
-"""A job order: what a MES wants to be made, and where that stands."""
+"""A job order: content, states and permitted commands (OPC 10031-4), and its refusal."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Final
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import RowMapping
 
-from sequence_planner.actor import Actor
-from sequence_planner.mes.states import OVER, OrderCommand, OrderState, Wish, allowed
+from sequence_planner.core.actor import Actor
+
+# The states of a job order and the commands that each allows, after OPC 10031-4.
+#
+# What is asked of an order that the station works on is a wish until the station has done it. Meanwhile the order
+# allows what it would once that has happened, so that the last word holds.
+
+
+class OrderState(StrEnum):
+    """Where an order stands."""
+
+    NOT_ALLOWED_TO_START = "NotAllowedToStart"
+    ALLOWED_TO_START = "AllowedToStart"
+    RUNNING = "Running"
+    INTERRUPTED = "Interrupted"
+    ENDED = "Ended"
+    ABORTED = "Aborted"
+
+
+class OrderCommand(StrEnum):
+    """What may be asked of an order."""
+
+    START = "Start"
+    REVOKE_START = "RevokeStart"
+    PAUSE = "Pause"
+    RESUME = "Resume"
+    STOP = "Stop"
+    ABORT = "Abort"
+    CANCEL = "Cancel"
+    CLEAR = "Clear"
+
+
+class Wish(StrEnum):
+    """What is asked of an order that is worked, in the words of the controller."""
+
+    PAUSE = "pause"
+    RESUME = "resume"
+    STOP = "stop"
+    ABORT = "abort"
+
+
+OVER: Final = frozenset({OrderState.ENDED, OrderState.ABORTED})
+BEFORE_START: Final = frozenset({OrderState.NOT_ALLOWED_TO_START, OrderState.ALLOWED_TO_START})
+
+_ALLOWED: Final[Mapping[OrderState, tuple[OrderCommand, ...]]] = MappingProxyType(
+    {
+        OrderState.NOT_ALLOWED_TO_START: (OrderCommand.START, OrderCommand.ABORT, OrderCommand.CANCEL),
+        OrderState.ALLOWED_TO_START: (OrderCommand.REVOKE_START, OrderCommand.ABORT, OrderCommand.CANCEL),
+        OrderState.RUNNING: (OrderCommand.PAUSE, OrderCommand.STOP, OrderCommand.ABORT),
+        OrderState.INTERRUPTED: (OrderCommand.RESUME, OrderCommand.STOP, OrderCommand.ABORT),
+        OrderState.ENDED: (OrderCommand.CLEAR,),
+        OrderState.ABORTED: (OrderCommand.CLEAR,),
+    }
+)
+_ALLOWED_WHILE: Final[Mapping[Wish, tuple[OrderCommand, ...]]] = MappingProxyType(
+    {
+        Wish.PAUSE: _ALLOWED[OrderState.INTERRUPTED],
+        Wish.RESUME: _ALLOWED[OrderState.RUNNING],
+        Wish.STOP: (OrderCommand.ABORT,),
+        Wish.ABORT: (),
+    }
+)
+WISHES: Final[Mapping[OrderCommand, Wish]] = MappingProxyType(
+    {
+        OrderCommand.PAUSE: Wish.PAUSE,
+        OrderCommand.RESUME: Wish.RESUME,
+        OrderCommand.STOP: Wish.STOP,
+        OrderCommand.ABORT: Wish.ABORT,
+    }
+)
+"""The commands that the station has to carry out where it works on the order."""
+
+AT_ONCE: Final[Mapping[OrderCommand, OrderState]] = MappingProxyType(
+    {
+        OrderCommand.START: OrderState.ALLOWED_TO_START,
+        OrderCommand.REVOKE_START: OrderState.NOT_ALLOWED_TO_START,
+        OrderCommand.ABORT: OrderState.ABORTED,
+    }
+)
+"""The state that a command leads to where the station does not work on the order."""
+
+
+def allowed(state: OrderState, *, handed_over: bool, wish: Wish | None) -> tuple[OrderCommand, ...]:
+    """The commands that an order allows. One that was `handed_over` may be at the station already."""
+    if state in OVER or not handed_over:
+        return _ALLOWED[state]
+    if wish is not None:
+        return _ALLOWED_WHILE[wish]
+    # Until the station has said that it works on it, nothing but this has a meaning in either case.
+    return (OrderCommand.ABORT,) if state is OrderState.ALLOWED_TO_START else _ALLOWED[state]
+
+
+# A job order: what a MES wants to be made, and where that stands.
 
 LONGEST_TITLE = 200  # characters
 
@@ -74,3 +169,24 @@ class JobOrder(OrderContent):
     def title(self) -> str:
         """What people at the station call it."""
         return (self.description.strip() or self.id)[:LONGEST_TITLE]
+
+
+# How this room says no.
+
+
+class OrderRefused(Exception):
+    """What was asked of an order is not done, and nothing has changed.
+
+    `slug`, `title`, `detail` and `status` are as in `controller.commands.production.CommandRefused`; `allowed` are
+    the commands that the order does allow, where another one was given.
+    """
+
+    def __init__(
+        self, slug: str, title: str, detail: str, status: int = 409, *, allowed: Sequence[OrderCommand] = ()
+    ) -> None:
+        super().__init__(detail)
+        self.slug = slug
+        self.title = title
+        self.detail = detail
+        self.status = status
+        self.allowed = tuple(allowed)

@@ -12,15 +12,24 @@ from typing import Final
 from pydantic import JsonValue
 from sqlalchemy import Connection, func, insert, select, update
 
-from sequence_planner.actor import Actor
-from sequence_planner.identity.tokens import new_id
+from sequence_planner.auth.tokens import new_id
+from sequence_planner.core.actor import Actor
 from sequence_planner.journal.audit import append as append_record
 from sequence_planner.journal.entry import Entry
 from sequence_planner.mes import events, responses
 from sequence_planner.mes.events import EventKind
-from sequence_planner.mes.order import JobOrder, OrderContent
-from sequence_planner.mes.refusal import OrderRefused
-from sequence_planner.mes.states import AT_ONCE, BEFORE_START, OVER, WISHES, OrderCommand, OrderState, Wish
+from sequence_planner.mes.order import (
+    AT_ONCE,
+    BEFORE_START,
+    OVER,
+    WISHES,
+    JobOrder,
+    OrderCommand,
+    OrderContent,
+    OrderRefused,
+    OrderState,
+    Wish,
+)
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_ORDERS, JOB_ORDERS_GONE
 
 MOST_OPEN: Final = 10_000  # orders that are not over

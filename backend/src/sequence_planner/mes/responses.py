@@ -12,10 +12,8 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict, JsonValue
 from sqlalchemy import Connection, Select, func, insert, select, update
 
-from sequence_planner.control.view_part import Value
-from sequence_planner.mes.order import JobOrder
-from sequence_planner.mes.refusal import OrderRefused
-from sequence_planner.mes.states import OrderState
+from sequence_planner.controller.views.part import Value
+from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_RESPONSES
 
 _FORM: Final = ConfigDict(frozen=True, extra="forbid")

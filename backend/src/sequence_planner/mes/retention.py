@@ -19,16 +19,16 @@ from typing import Any, Final
 from pydantic import JsonValue
 from sqlalchemy import Connection, Table, delete, func, insert, select, update
 
-from sequence_planner.actor import Actor
-from sequence_planner.journal import archive_file, audit
-from sequence_planner.journal.archive_file import ArchiveError
+from sequence_planner.core.actor import Actor
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.db.database import Database
+from sequence_planner.journal import archive, audit
+from sequence_planner.journal.archive import ArchiveError
 from sequence_planner.journal.audit import AUDIT
 from sequence_planner.journal.entry import Entry
-from sequence_planner.mes.states import OVER
+from sequence_planner.mes.order import OVER
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_EVENTS, JOB_ORDERS, JOB_ORDERS_GONE, JOB_RESPONSES
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.error import StorageError
 
 CUT: Final = "job-orders-cut"  # the action in the record of who did what
 FILES_REMOVED: Final = "job-orders-archive-removed"
@@ -96,7 +96,7 @@ def wrong_files(files: Sequence[OrderFile], folder: Path | None = None) -> Itera
     """What is wrong with the files, in words."""
     for each in files:
         try:
-            archive_file.check(each.path(folder), each.sha256)
+            archive.check(each.path(folder), each.sha256)
         except ArchiveError as error:
             yield f"{each.orders} job orders: {error}"
 
@@ -173,9 +173,9 @@ def _oldest(old: _Old) -> float:
 def _archived(folder: Path, old: _Old) -> OrderFile:
     lines = [*_lines(old)]
     mark = hashlib.sha256("\n".join(lines).encode()).hexdigest()[:8]
-    file = folder / f"orders-{old.begin[1] + 1:012}-{old.begin[2] + 1:012}-{mark}{archive_file.ENDING}"
-    written = archive_file.write(file, lines)
-    if list(archive_file.lines(file, written.sha256)) != lines:
+    file = folder / f"orders-{old.begin[1] + 1:012}-{old.begin[2] + 1:012}-{mark}{archive.ENDING}"
+    written = archive.write(file, lines)
+    if list(archive.lines(file, written.sha256)) != lines:
         raise ArchiveError(f"{file} was written, and is not read as it was written: is the disk sound?")
     counts = {"orders": len(old.orders), "events": len(old.events), "responses": len(old.responses)}
     return OrderFile(str(folder), file.name, **counts, until=old.until, size=written.size, sha256=written.sha256)

@@ -10,8 +10,8 @@ from typing import Final
 
 from sqlalchemy import Column, Double, Index, Integer, String, Table, Text, text
 
-from sequence_planner.journal.chain import NUMBER
-from sequence_planner.storage.metadata import METADATA
+from sequence_planner.db.metadata import METADATA
+from sequence_planner.journal.hash_chain import NUMBER
 
 LONGEST_ID: Final = 64  # characters
 ORDER: Final = String(LONGEST_ID)

@@ -1,16 +1,126 @@
-"""What each document of a station may hold. Texts keep their place (`SourceText`), so that errors can name it."""
+"""Document schemas of a station's model: resources, abilities, topics, services, operations, flows."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from sequence_planner.model.client_documents import ActionDocument, ServiceDocument
-from sequence_planner.model.document_part import DocumentPart, Given, Predicate, Seconds
-from sequence_planner.model.flow_documents import ExampleDocument, FlowDocument
+from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import StageDocument
+
+# What the services and actions of a resource may hold: the station is their client, the device their server.
+
+Period = Annotated[float, Field(gt=0, le=86_400)]
+
+
+class ServiceDocument(DocumentPart):
+    """A ROS 2 service of the device. It is called when an output rises, or every so often, or both."""
+
+    type: SourceText
+    """The service type, `package/srv/Name`."""
+    when: Given[SourceText] = None
+    """An output of type `bool`: the service is called when it becomes true."""
+    every: Given[Period] = None
+    """Seconds from one call to the next."""
+    deadline: Period = 1.0
+    """Seconds without an answer after which what the answer says is unknown."""
+    ignore: list[SourceText] = Field(default_factory=list)
+    """Fields of the request and of the response that are no variables."""
+    request: list[StageDocument] = Field(default_factory=list)
+    """Stages from variables to the request, as of an outgoing topic."""
+    response: list[StageDocument] = Field(default_factory=list)
+    """Stages from the response to variables, as of an incoming topic."""
+
+    @model_validator(mode="after")
+    def _is_called(self) -> ServiceDocument:
+        if self.when is None and self.every is None:
+            raise ValueError("say when the service is called: `when` an output rises, or `every` so many seconds")
+        return self
+
+
+class ActionDocument(DocumentPart):
+    """A ROS 2 action of the device. A goal is sent when an output rises, and cancelled when it falls."""
+
+    type: SourceText
+    """The action type, `package/action/Name`."""
+    when: SourceText
+    """An output of type `bool`: a goal is sent when it becomes true, and cancelled when it becomes false."""
+    status: SourceText
+    """The measured variable that says what has become of the goal."""
+    deadline: Period = 1.0
+    """Seconds without an answer of the server after which the goal is lost."""
+    ignore: list[SourceText] = Field(default_factory=list)
+    """Fields of the goal, of the feedback and of the result that are no variables."""
+    goal: list[StageDocument] = Field(default_factory=list)
+    """Stages from variables to the goal, as of an outgoing topic."""
+    feedback: list[StageDocument] = Field(default_factory=list)
+    """Stages from the feedback to variables, as of an incoming topic."""
+    result: list[StageDocument] = Field(default_factory=list)
+    """Stages from the result to variables, as of an incoming topic."""
+
+
+# What flows and the examples of pipelines may hold.
+
+Moment = Annotated[float, Field(ge=0, le=86_400)]
+
+
+class ExampleStepDocument(DocumentPart):
+    """What happens at one moment of an example, and what is so then."""
+
+    at: Moment
+    """Seconds from the beginning of the example."""
+    given: Given[Mapping[SourceText, Any]] = None
+    """What comes; without it only time passes."""
+    gives: Given[Mapping[SourceText, Any]] = None
+    """What comes of it; `null` is unknown. What is not mentioned may be anything."""
+
+
+class ExampleDocument(DocumentPart):
+    """An example of what a pipeline does: `given` and `gives`, or `steps` with time."""
+
+    name: SourceText
+    """What it is an example of."""
+    given: Given[Mapping[SourceText, Any]] = None
+    """The fields of a message (incoming), the records by alias (a merge), or the variables (outgoing)."""
+    gives: Given[Mapping[SourceText, Any]] = None
+    """The variables (incoming) or fields of the message (outgoing) that come of it; `null` is unknown."""
+    steps: Given[Annotated[list[ExampleStepDocument], Field(min_length=1)]] = None
+    """What happens when, in the order of time."""
+
+    @model_validator(mode="after")
+    def _one_form(self) -> ExampleDocument:
+        if (self.steps is None) == (self.given is None or self.gives is None):
+            raise ValueError("an example has either `given` and `gives`, or `steps`")
+        if self.steps is not None:
+            if self.given is not None or self.gives is not None:
+                raise ValueError("an example with `steps` has its `given` and `gives` in them")
+            moments = [step.at for step in self.steps]
+            if moments != sorted(moments):
+                raise ValueError("the `steps` of an example are in the order of time")
+        return self
+
+
+class FlowDocument(DocumentPart):
+    """Records of topics or other flows: of one, of several as they arrive, or of several as one."""
+
+    source: SourceText | list[SourceText] | dict[SourceText, SourceText] = Field(alias="from")
+    """A topic or flow; a list of them; or `{alias: topic or flow}`, whose fields are then `alias.field`."""
+    pipeline: list[StageDocument] = Field(default_factory=list)
+    """Stages."""
+    examples: list[ExampleDocument] = Field(default_factory=list)
+    """What comes of what, checked by `check`."""
+
+    @model_validator(mode="after")
+    def _has_sources(self) -> FlowDocument:
+        if not isinstance(self.source, str) and not self.source:
+            raise ValueError("`from` names at least one topic or flow")
+        return self
+
+
+# What each document of a station may hold. Texts keep their place (`SourceText`), so that errors can name it.
 
 __all__ = ["DocumentPart", "Given", "Predicate", "Seconds", "StageDocument"]
 

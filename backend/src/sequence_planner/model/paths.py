@@ -1,14 +1,25 @@
-"""How people name an entry of a document: `abilities.run_nut.start.do[0]`."""
+"""Paths of a model: files in a station's folder, and entries in a document (`abilities.run_nut.start`)."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
 
-from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.language.resolver import suggestion
 
 if TYPE_CHECKING:
-    from sequence_planner.model.reading import EntryPath
+    from sequence_planner.model.yaml.reader import EntryPath
+
+# What lies in a station's folder.
+
+FOLDERS = ("resources", "messages", "stages")
+# What files below `messages` define, by what their names end with.
+DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
+# The documents of a station beside its resources.
+FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
+
+
+# How people name an entry of a document: `abilities.run_nut.start.do[0]`.
 
 
 class EditError(Exception):

@@ -10,8 +10,8 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from sequence_planner.expressions.place import Place
-from sequence_planner.expressions.syntax import Span
+from sequence_planner.language.syntax import Span
+from sequence_planner.language.types import Place
 
 
 @dataclass(frozen=True, order=True)

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, ModelWrapValidatorHandler, PrivateAttr, model_validator
 
-from sequence_planner.expressions.place import Place
-from sequence_planner.model.document_part import DocumentPart, Given, Predicate
+from sequence_planner.language.types import Place
+from sequence_planner.model.fields import DocumentPart, Given, Predicate
 from sequence_planner.model.source import SourceText
 
 Period = Annotated[float, Field(gt=0, le=86_400)]

@@ -11,11 +11,11 @@ from typing import Any, cast
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from sequence_planner.complaints import complained
-from sequence_planner.expressions.place import Place
-from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.model.reading import Document, EntryPath
+from sequence_planner.core.validation_messages import complained
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import Place
 from sequence_planner.model.source import Finding
+from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
 
 # What was expected, by the first word of pydantic's name for the error.
 _EXPECTED = {
@@ -33,7 +33,7 @@ _EXPECTED = {
 }
 
 
-def findings_of(error: ValidationError, document: Document, at: EntryPath, kind: type[BaseModel]) -> list[Finding]:
+def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, kind: type[BaseModel]) -> list[Finding]:
     """The findings of `error`, which came of reading the entry of `document` at `at` as a `kind`."""
     findings: list[Finding] = []
     expected: dict[tuple[Place, str], dict[str, None]] = {}
@@ -76,7 +76,7 @@ def _path(loc: Sequence[str | int], content: object) -> Iterable[str | int]:
     yield from loc[-1:]
 
 
-def _content_at(document: Document, path: EntryPath) -> object:
+def _content_at(document: YamlDocument, path: EntryPath) -> object:
     """What stands at an entry; None where there is none."""
     content: Any = document.content
     for step in path:
@@ -100,7 +100,7 @@ def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
     return None
 
 
-def _misplaced(details: ErrorDetails, document: Document, at: EntryPath, kind: type[BaseModel]) -> str | None:
+def _misplaced(details: ErrorDetails, document: YamlDocument, at: EntryPath, kind: type[BaseModel]) -> str | None:
     """The message for a key that would be right with another indentation."""
     *around, name = details["loc"] or ("",)
     if details["type"] == "extra_forbidden":
@@ -120,7 +120,7 @@ def _misplaced(details: ErrorDetails, document: Document, at: EntryPath, kind: t
     return None
 
 
-def _entry_above(document: Document, path: EntryPath, name: str) -> tuple[str | None, object]:
+def _entry_above(document: YamlDocument, path: EntryPath, name: str) -> tuple[str | None, object]:
     """The entry that stands above `name` in the mapping at `path`, if it could hold others."""
     content = _content_at(document, path)
     names = list(content) if isinstance(content, dict) else []

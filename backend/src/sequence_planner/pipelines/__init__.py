@@ -1,8 +1,8 @@
 """From messages to variables and back: a typed graph of topics, flows, stages and variables.
 
-The graph is made once, when the station is loaded (`building`, from `model.stage_documents`), and every error of types
-is found then. Its description (`graph`) is immutable; `running` carries incoming messages through it, and
-`running_outgoing` makes messages of the state. Running is total: a message that means nothing to the model makes
-variables unknown, and says why. Each stage (`stage`, `stages`) can also be read backwards, which is what an emulated
-device does. `examples` are the tests of a station's pipelines, in time that is only told.
+The graph is made once, when the station is loaded (`builder`, from `model.stage_documents`), and every error of
+types is found then. Its description (`graph`) is immutable; `runtime` carries incoming messages through it, and
+makes messages of the state. Running is total: a message that means nothing to the model makes variables unknown,
+and says why. Each stage (`stages`) can also be read backwards, which is what a simulated device does. `examples`
+are the tests of a station's pipelines, in time that is only told.
 """

@@ -8,23 +8,22 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
-from sequence_planner.expressions.place import Place
-from sequence_planner.expressions.types import EnumerationType
+from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.model.stage_documents import MapDocument, Scalar, StageDocument
-from sequence_planner.pipelines.context import Context
+from sequence_planner.pipelines.field_paths import NoFieldError, find_field
 from sequence_planner.pipelines.graph import Chain
-from sequence_planner.pipelines.paths import NoFieldError, find_field
 from sequence_planner.pipelines.record import FieldType, RecordType
-from sequence_planner.pipelines.stage import Stage
-from sequence_planner.pipelines.stages.building import build_stage
+from sequence_planner.pipelines.stages.base import Stage
+from sequence_planner.pipelines.stages.registry import build_stage
+from sequence_planner.pipelines.stages.support import Context
 
 # Stages that give the fields which they read, each from itself alone.
 _PASSING = frozenset({"fold", "debounce", "timeout", "override"})
 
 
 @dataclass
-class Findings:
+class PipelineFindings:
     """What is wrong with the pipelines, all of it."""
 
     found: list[Finding] = field(default_factory=list)
@@ -46,7 +45,7 @@ class ChainBuilding:
     is_incoming: bool
     wanted: RecordType
     folder: Path
-    findings: Findings
+    findings: PipelineFindings
     fields: list[RecordType]
     stages: list[Stage] = field(default_factory=list)
     documents: list[StageDocument] = field(default_factory=list)

@@ -1,7 +1,4 @@
-"""The pipelines of a station as checked: a graph of topics, flows and variables, joined by chains of stages.
-
-Everything here is immutable and shared; what changes while the station runs is in `running`.
-"""
+"""The checked pipeline graph of a station, its edge statistics, and the goal states of actions."""
 
 from __future__ import annotations
 
@@ -9,10 +6,44 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from sequence_planner.expressions.types import Type
-from sequence_planner.pipelines.record import RecordType
-from sequence_planner.pipelines.stage import Stage
-from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.language.types import Type
+from sequence_planner.pipelines.record import Record, RecordType
+from sequence_planner.pipelines.stages.base import Override, Stage
+from sequence_planner.ros.qos import QualityOfService
+
+# What can become of the goal of an action, as a measured variable says it.
+
+
+class GoalState(StrEnum):
+    """The state of the goal of an action.
+
+    `IDLE`: none is wanted, or the one that is wanted has not been answered yet. `LOST`: nobody knows, for the server is
+    not there, does not answer or has been started anew.
+    """
+
+    IDLE = "idle"
+    ACCEPTED = "accepted"
+    EXECUTING = "executing"
+    SUCCEEDED = "succeeded"
+    CANCELED = "canceled"
+    ABORTED = "aborted"
+    REJECTED = "rejected"
+    LOST = "lost"
+
+
+# A goal that a server has taken up and not done with is in one of these states, for however short a time.
+GOAL_ON_ITS_WAY = (GoalState.ACCEPTED, GoalState.EXECUTING)
+
+# The enumeration that a `status` has without being declared.
+GOAL_STATE = "goal_state"
+
+# The state of a goal is told as a text.
+STATUS_TYPE, STATUS_FIELD = "std_msgs/msg/String", "data"
+
+
+# The pipelines of a station as checked: a graph of topics, flows and variables, joined by chains of stages.
+#
+# Everything here is immutable and shared; what changes while the station runs is in `runtime`.
 
 # Stages that look at the time, or ask something that may answer otherwise: the same record again is news to them.
 _TIMED = frozenset({"debounce", "limit", "tick", "override", "timeout", "python"})
@@ -47,7 +78,7 @@ class Chain:
 
 
 @dataclass(frozen=True)
-class Writing:
+class VariableField:
     """A field that is a variable at the end of a chain. `between` is what a discretised one is between its points."""
 
     field: str
@@ -63,7 +94,7 @@ class IncomingPipeline:
     topic: Topic
     deadline: float | None
     chain: Chain
-    writings: tuple[Writing, ...] = ()
+    writings: tuple[VariableField, ...] = ()
 
     @property
     def name(self) -> str:
@@ -93,7 +124,7 @@ class Flow:
     joining: Joining
     sources: Mapping[str, str]
     chain: Chain
-    writings: tuple[Writing, ...] = ()
+    writings: tuple[VariableField, ...] = ()
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -227,3 +258,50 @@ class StationPipelines:
     def readers(self, name: str) -> list[Flow]:
         """The flows that read a topic or a flow directly."""
         return [flow for flow in self.flows.values() if name in flow.sources.values()]
+
+
+# What can be seen of running pipelines: how much has passed each edge, and what last.
+#
+# An edge leads to a stage, or from the last one to the end. While a pipeline runs, an edge only counts and keeps a
+# reference to the record; a view of it is made when somebody asks.
+
+
+@dataclass(slots=True)
+class Edge:
+    """What has passed an edge while the station runs; `at` is on the clock of the pipelines."""
+
+    records: int = 0
+    last: Record | None = None
+    at: float | None = None
+
+    def passed(self, record: Record, now: float) -> None:
+        """A record passes."""
+        self.records += 1
+        self.last = record
+        self.at = now
+
+
+@dataclass(frozen=True)
+class EdgeView:
+    """One edge: where it leads (`3 discretise`, or the name of the end), and what has passed it.
+
+    `held` are the records the stage has not let through so far: dropped, held back, or made one of several.
+    """
+
+    to: str
+    records: int
+    held: int
+    last: Mapping[str, object] | None
+    troubles: tuple[str, ...]
+    at: float | None
+
+
+@dataclass(frozen=True)
+class PipelineView:
+    """The pipeline of one topic or flow, from its source to its end; `repeated` messages said nothing new."""
+
+    name: str
+    sources: tuple[str, ...]
+    edges: tuple[EdgeView, ...]
+    repeated: int
+    overrides: Mapping[str, Override | None]

@@ -10,19 +10,23 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from sequence_planner.automaton.grounding.declarations import FLAGS
-from sequence_planner.expressions.types import BooleanType, IntegerRange
+from sequence_planner.automaton.declarations import FLAGS
+from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.documents import ResourceDocument, TopicDocument, VariableDocument
-from sequence_planner.model.loading import Station
+from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stage_documents import StageDocument
-from sequence_planner.pipelines.client_parts import client_findings, parts
-from sequence_planner.pipelines.client_variables import with_client_variables, with_goal_states
+from sequence_planner.pipelines.client_builder import (
+    client_findings,
+    parts,
+    with_client_variables,
+    with_goal_states,
+)
+from sequence_planner.pipelines.field_paths import NoFieldError, find_field
 from sequence_planner.pipelines.message_types import message_fields
-from sequence_planner.pipelines.paths import NoFieldError, find_field
 from sequence_planner.pipelines.record import FieldType, RecordType
-from sequence_planner.ros.errors import UnknownMessageTypeError
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.types.errors import UnknownMessageTypeError
+from sequence_planner.ros.types.messages import MessageRegistry
 
 MOST_VALUES = 256  # of an integer that becomes a variable by itself: those of eight bits
 

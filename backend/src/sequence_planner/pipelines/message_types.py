@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sequence_planner.expressions.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
 from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, TextType
-from sequence_planner.ros import fields as ros
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.types import definitions as ros
+from sequence_planner.ros.types.messages import MessageRegistry
 
 
 def message_fields(registry: MessageRegistry, type_name: str) -> dict[str, FieldType]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from sequence_planner.expressions.types import Type
+from sequence_planner.language.types import Type
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
 """Planning: which abilities to start, in which order, so that the goals of all active operations are reached.
 
-`plan` has the questions and answers. `planner` answers a question by tasks for the `engines`: `sat` unrolls the tick
-into clauses, `relaxed` does so with what a relaxed plan touches, `heuristic` searches, `pdr` proves that there is no
-plan. They take turns in one thread or race in processes of their own (`racing`); `attempt` gathers what they report,
-and every plan is held against the tick (`replaying`) before it is an answer; `recollection` knows what has been
-answered, and `repair` leads back to it. `goals` follows formulas along runs, `reasons` says why there is no plan at
-all. `plain` plans for plain automata, `way_back` looks for the way into the safe states from outside them, `advice`
-for ways back to work from wherever a station has stopped, and `worker` does all but that in a process of its own.
+`problem` has the questions and answers. `planner` answers a question by tasks for the engines of `portfolio`: `sat`
+unrolls the tick into clauses, `heuristic` searches, `pdr` proves that there is no plan, and
+`operation_decomposition` plans for one operation after the other. Every plan is held against the tick
+(`validation`) before it is an answer; `plan_cache` knows what has been answered, and `repair` leads back to it.
+`goals` follows formulas along runs, `diagnosis` says why there is no plan at all. `efa_planner` plans for plain
+automata (with `single`), `recovery_path` looks for the way into the safe states from outside them, `recovery` for
+ways back to work from wherever a station has stopped.
 """

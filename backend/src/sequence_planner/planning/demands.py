@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping, Set
 from functools import cached_property
 from typing import NamedTuple
 
-from sequence_planner.automaton.cone import read_variables
+from sequence_planner.automaton.automaton import Ability, Automaton, State, target
+from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State, target
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import (
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.syntax import (
     Arithmetic,
     Assignment,
     Comparison,
@@ -21,8 +21,8 @@ from sequence_planner.expressions.syntax import (
     conjuncts,
     variables,
 )
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.known import Known
+from sequence_planner.language.types import Value
+from sequence_planner.planning.partial_states import PartialState
 
 Becomes = tuple[tuple[Value, Value], ...]  # for values of a variable, what is written to another
 Some = int  # of the values of a variable, a bit each, in the order of its domain
@@ -49,7 +49,7 @@ class Domains:
             return None
         if shape not in self._asked:
             each = enumerate(self.values[name])
-            found = sum(1 << n for n, value in each if evaluate(predicate, Known({name: value})) is True)
+            found = sum(1 << n for n, value in each if evaluate(predicate, PartialState({name: value})) is True)
             if shape is None:
                 return name, found
             self._asked[shape] = found
@@ -66,7 +66,7 @@ class Domains:
         key = None if shape is None else (shape, values, self._kind[name])
         if key not in self._became or key is None:
             domain = self.number[name]
-            results = ((each, evaluate(value, Known({source: each}))) for each in self.some(source, values))
+            results = ((each, evaluate(value, PartialState({source: each}))) for each in self.some(source, values))
             found = tuple((each, after) for each, after in results if after in domain)
             if key is None:
                 return source, found
@@ -160,9 +160,9 @@ class Demands:
         return left
 
     @cached_property
-    def _known(self) -> Known:
+    def _known(self) -> PartialState:
         """The values of those that can have but one."""
-        return Known(self._single(self.left))
+        return PartialState(self._single(self.left))
 
     def _single(self, some: Mapping[str, Some]) -> Iterator[tuple[str, Value]]:
         for name, values in some.items():
@@ -202,7 +202,7 @@ class Demands:
             return False
         if any(own[name] != others[name] for name in self.written & other.written):
             return False
-        known = Known({n: v for n, v in other._before.items() if n not in self.written})
+        known = PartialState({n: v for n, v in other._before.items() if n not in self.written})
         known.update(self._before)
         if not other._holds(self.written, known):
             return False

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.plain.events import event_of
-from sequence_planner.automaton.structure import State
-from sequence_planner.immutable import Immutable
-from sequence_planner.planning.plan import Proof, Verdict
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.planning.problem import Proof, Verdict
 
 
 class PlainAnswer(Immutable):

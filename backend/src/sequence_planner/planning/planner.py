@@ -1,26 +1,143 @@
-"""The planner: all goals together, or as many as can be planned together, and no answer that does not replay."""
+"""The planner: engine selection and attempts, all or most goals together, only replayed plans."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from functools import partial
+from math import inf
 from typing import Protocol
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.immutable import Immutable, replace
-from sequence_planner.planning.attempt import Attempt
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.engines import ALONE, Engines, Report
+from sequence_planner.core.immutable import Immutable, replace
+from sequence_planner.planning import problem
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
-from sequence_planner.planning.recollection import NAME, Recollection
+from sequence_planner.planning.plan_cache import NAME, PlanCache
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.portfolio.engines import ALONE, EngineReport, Engines
+from sequence_planner.planning.problem import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
 from sequence_planner.planning.repair import NAME as REPAIR
 from sequence_planner.planning.repair import Repair
-from sequence_planner.planning.replaying.acceptance import Acceptance, Course
-from sequence_planner.planning.replaying.replay import missing
-from sequence_planner.planning.replaying.tightening import tightened
+from sequence_planner.planning.validation.acceptance import Acceptance, AcceptedRun, tightened
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
+
+# One attempt at a task: what the engines have found so far, and whether it is worth while to wait for more.
+
+# For a shorter plan a fast one waits this share of the time it took, in seconds at least and at most.
+_SHARE, _LEAST_GRACE, _MOST_GRACE = 0.2, 0.002, 0.1
+_PROOF_GRACE = 0.5  # seconds, or as long as it took, for a proof, when it is known that no plan is short enough
+
+
+class PlanningAttempt:
+    """Collects reports on `task`; `accepts` says whether a plan is one. Plans that are none are their engines' errors.
+
+    When `share` is spent and there is no plan, the time that is left belongs to fewer goals.
+    """
+
+    def __init__(self, task: PlanningTask, accepts: Callable[[Plan], bool], share: Budget) -> None:
+        self.task = task
+        self.share = share
+        self.engine = ""  # that has found the plan or the proof
+        self.proof: Proof | None = None
+        self.exhausted = False  # all that can be reached has been looked at, and there is no plan
+        self.troubles: list[str] = []
+        self.heard = False  # of an engine that has not failed
+        self._accepts = accepts
+        self._began = time.monotonic()
+        self._grace_ends = inf
+        self._plan: Plan | None = None
+        self._searched = 0
+
+    @property
+    def took(self) -> float:
+        """The seconds since it has begun."""
+        return time.monotonic() - self._began
+
+    @property
+    def plan(self) -> Plan | None:
+        """The best plan so far; what is proven of it may have been proven by another engine."""
+        plan = self._plan
+        if plan is None or plan.minimal_ticks or len(plan.ticks) > self._fewest:
+            return plan
+        return replace(plan, minimal_ticks=True, minimal_starts=not plan.starts)
+
+    @property
+    def searched(self) -> int:
+        """The ticks up to which it is proven that there is no plan; with a plan, none has fewer."""
+        return self._searched if self._plan is None else min(self._fewest, len(self._plan.ticks))
+
+    @property
+    def answered(self) -> bool:
+        """Whether what the contract asks for has been found."""
+        plan = self.plan
+        if plan is None:
+            return self.impossible
+        return self.task.contract is Contract.FAST or (plan.minimal_ticks and plan.minimal_starts)
+
+    @property
+    def impossible(self) -> bool:
+        """Whether there is no plan at all."""
+        return self.proof is not None or self.exhausted
+
+    @property
+    def patience(self) -> float:
+        """The seconds for which it is still worth while to wait for another report."""
+        plan = self.plan
+        if self.impossible or (plan is not None and plan.minimal_ticks and plan.minimal_starts):
+            return 0.0
+        grace = max(self._grace_ends - time.monotonic(), 0.0)
+        return grace if plan is not None else min(grace, self.share.remaining)
+
+    @property
+    def _fewest(self) -> int:
+        """No plan has fewer ticks than that."""
+        return self._searched + 1
+
+    def take(self, report: EngineReport) -> None:
+        """Take note of a report."""
+        finding = report.finding
+        if report.trouble:
+            self.troubles.append(f"{report.engine}: {report.trouble}")
+        elif finding.plan is not None and not self._accepts(finding.plan):
+            problem.log("the plan %s by %s for %s does not replay", finding.plan, report.engine, self.task)
+            self.troubles.append(f"{report.engine}: its plan does not replay on the reference tick")
+        elif finding.plan is not None:
+            self.heard = True
+            self._take_plan(report.engine, finding.plan)
+            self._searched = max(self._searched, finding.searched - 1)
+        else:
+            self.heard = True
+            self._searched = max(self._searched, finding.searched)
+            if finding.decided and self._plan is None and not self.impossible:
+                self.proof, self.exhausted, self.engine = finding.proof, finding.exhausted, report.engine
+        self._wait()
+
+    def _take_plan(self, engine: str, plan: Plan) -> None:
+        if self.impossible:
+            problem.log("%s has a plan for %s, which %s has proven to have none", engine, self.task, self.engine)
+            self.proof, self.exhausted = None, False
+        if self._plan is None or _rank(plan) < _rank(self._plan):
+            self._plan, self.engine = plan, engine
+
+    def _wait(self) -> None:
+        """Say how long what is known now is worth waiting to be bettered."""
+        now, took = time.monotonic(), self.took
+        if self._grace_ends != inf:
+            return
+        if self._plan is not None and self.task.contract is Contract.FAST:
+            self._grace_ends = now + min(max(_SHARE * took, _LEAST_GRACE), _MOST_GRACE)
+        elif self._plan is None and self._searched >= self.task.longest:
+            self._grace_ends = now + max(_PROOF_GRACE, took)
+
+
+def _rank(plan: Plan) -> tuple[int, int, bool, bool]:
+    """Fewer ticks are better, then fewer starts, then more that is proven."""
+    return len(plan.ticks), len(plan.starts), not plan.minimal_ticks, not plan.minimal_starts
+
+
+# The planner: all goals together, or as many as can be planned together, and no answer that does not replay.
 
 _NOTHING_TO_DO = Finding(Plan((), minimal_ticks=True, minimal_starts=True))
 
@@ -32,7 +149,7 @@ class PlannerError(Exception):
 class Solvers(Protocol):
     """Engines that work on one task together."""
 
-    def solve(self, attempt: Attempt, budget: Budget) -> None:
+    def solve(self, attempt: PlanningAttempt, budget: Budget) -> None:
         """Have them report to `attempt` until that answers, or is not worth waiting for, or the budget is spent."""
 
 
@@ -42,7 +159,7 @@ class InTurn:
     def __init__(self, engines: Engines) -> None:
         self._engines = engines
 
-    def solve(self, attempt: Attempt, budget: Budget) -> None:
+    def solve(self, attempt: PlanningAttempt, budget: Budget) -> None:
         """As `Solvers.solve`; an attempt has no more time than its share of `budget`."""
         del budget
         for report in self._engines.work(attempt.task, attempt.share, lambda: attempt.patience):
@@ -60,7 +177,7 @@ class _Outcome(Immutable):
 
     possible: Goals
     goals: Goals
-    attempt: Attempt
+    attempt: PlanningAttempt
     proof: Proof | None = None
     undecided: Goals = ()
 
@@ -92,7 +209,7 @@ class Planner:
         self._automaton = automaton
         self._supervisor = supervisor
         self._acceptance = Acceptance.of(automaton, supervisor)
-        self._recollection = Recollection(automaton)
+        self._recollection = PlanCache(automaton)
         self._repair = Repair(automaton, self._acceptance, self._recollection)
         self._solvers = solvers or InTurn(Engines(automaton, supervisor, ALONE))
 
@@ -163,7 +280,7 @@ class Planner:
 
     def _reachable(self, request: PlanRequest, goals: Goals) -> tuple[Goals, Proof | None]:
         """The goals that the delete relaxation does not exclude, and the proof for others, if there are any."""
-        from sequence_planner.planning.relaxed.relaxation import reachable, unreached  # noqa: PLC0415
+        from sequence_planner.planning.heuristic.relaxation import reachable, unreached  # noqa: PLC0415
 
         relaxed = reachable(self._automaton, request.state, request.circumstances)
         possible = tuple(goal for goal in goals if relaxed.may(goal.predicate))
@@ -174,7 +291,7 @@ class Planner:
             return outcome
         return replace(outcome, attempt=self._attempt(request, outcome.goals, budget))
 
-    def _attempt(self, request: PlanRequest, goals: Goals, budget: Budget) -> Attempt:
+    def _attempt(self, request: PlanRequest, goals: Goals, budget: Budget) -> PlanningAttempt:
         """All of `goals`, in half of the time that is left if there are several, so that fewer have their turn.
 
         Where nothing was found fast, the same is asked as for a minimal plan: who looks for those knows how far it is.
@@ -182,14 +299,14 @@ class Planner:
         left = missing(goals, request.state)
         share = budget.part(0.5 if len(goals) > 1 else 1.0)
         for contract in dict.fromkeys((request.contract, Contract.MINIMAL)):
-            task = Task(request.state, left, request.circumstances, contract, request.longest)
-            attempt = Attempt(task, partial(self._accepts, task), share)
+            task = PlanningTask(request.state, left, request.circumstances, contract, request.longest)
+            attempt = PlanningAttempt(task, partial(self._accepts, task), share)
             if not left:
-                attempt.take(Report("", _NOTHING_TO_DO))
+                attempt.take(EngineReport("", _NOTHING_TO_DO))
             elif (known := self._recollection.finding(task)) is not None:
-                attempt.take(Report(NAME, known))
+                attempt.take(EngineReport(NAME, known))
             elif (repaired := self._repaired(task)) is not None:
-                attempt.take(Report(REPAIR, repaired))
+                attempt.take(EngineReport(REPAIR, repaired))
             if not attempt.answered:
                 self._solvers.solve(attempt, budget)
             if attempt.proof is not None:
@@ -212,7 +329,7 @@ class Planner:
         self._keep(task, early)
         return early.plan
 
-    def _accepts(self, task: Task, plan: Plan) -> bool:
+    def _accepts(self, task: PlanningTask, plan: Plan) -> bool:
         """Whether it replays; one that is known has been replayed, and one that does is known from now on."""
         if self._recollection.plan(task) == plan:
             return True
@@ -222,11 +339,11 @@ class Planner:
         self._keep(task, course)
         return True
 
-    def _keep(self, task: Task, course: Course) -> None:
+    def _keep(self, task: PlanningTask, course: AcceptedRun) -> None:
         self._recollection.keep_plan(task, course.plan, course.ends)
         self._repair.keep(task, course)
 
-    def _repaired(self, task: Task) -> Finding | None:
+    def _repaired(self, task: PlanningTask) -> Finding | None:
         """A repaired plan, which is known from now on: it has been replayed as it was made."""
         finding = self._repair.finding(task)
         if finding is not None and finding.plan is not None:

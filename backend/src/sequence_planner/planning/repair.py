@@ -14,14 +14,13 @@ from functools import cached_property
 from heapq import nsmallest
 from operator import ne
 
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import Immutable, replace
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import Contract, Plan, PlanTick
-from sequence_planner.planning.recollection import Recollection
-from sequence_planner.planning.replaying.acceptance import Acceptance, Course, Waypoint
-from sequence_planner.planning.replaying.reference_run import ReferenceRun
+from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.core.immutable import Immutable, replace
+from sequence_planner.language.types import Value
+from sequence_planner.planning.plan_cache import PlanCache
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import Contract, Plan, PlanTick
+from sequence_planner.planning.validation.acceptance import Acceptance, AcceptedRun, ReferenceRun, Waypoint
 
 NAME = "repair"  # as an engine
 
@@ -35,8 +34,8 @@ _Values = tuple[Value | None, ...]
 class _Way(Immutable):
     """An accepted plan and all that it leads through; what is looked for in it is put in order when it is needed."""
 
-    task: Task
-    course: Course
+    task: PlanningTask
+    course: AcceptedRun
     names: tuple[str, ...]  # of all variables and flags
 
     @cached_property
@@ -48,21 +47,21 @@ class _Way(Immutable):
 class Repair:
     """Repairs the plans that `recollection` has the rests of, for one automaton under one supervisor."""
 
-    def __init__(self, automaton: Automaton, acceptance: Acceptance, recollection: Recollection) -> None:
+    def __init__(self, automaton: Automaton, acceptance: Acceptance, recollection: PlanCache) -> None:
         self._variables = tuple(automaton.variables)
         self._names = tuple(automaton.types)
         self._acceptance = acceptance
         self._recollection = recollection
         self._ways: deque[_Way] = deque(maxlen=_MOST_PLANS)  # the last one first
 
-    def keep(self, task: Task, course: Course) -> None:
+    def keep(self, task: PlanningTask, course: AcceptedRun) -> None:
         """Note an accepted plan."""
         for way in tuple(self._ways):
             if way.task is task:
                 self._ways.remove(way)
         self._ways.appendleft(_Way(task, course, self._names))
 
-    def finding(self, task: Task) -> Finding | None:
+    def finding(self, task: PlanningTask) -> Finding | None:
         """A repaired plan, taken step by step on the reference tick up to a state from which the rest is known.
 
         By the minimal contract only if it is proven minimal. None if there is none.
@@ -100,7 +99,7 @@ class Repair:
                 starts = plan.ticks[point.tick].starts
                 yield _Place(plan, point.tick, tuple(name for name in starts if not begin.has_started(name)))
 
-    def _led(self, task: Task, place: _Place, begin: ReferenceRun, taken: int = 0) -> Plan | None:
+    def _led(self, task: PlanningTask, place: _Place, begin: ReferenceRun, taken: int = 0) -> Plan | None:
         """A plan whose first tick leads from `begin`, which is at or near `place`, to where its rest is known.
 
         So many ticks have been `taken` before.
@@ -118,7 +117,7 @@ class Repair:
                     return Plan((tick, *rest.ticks), minimal_ticks=False, minimal_starts=False)
         return None
 
-    def _led_slowly(self, task: Task, place: _Place, begin: ReferenceRun) -> Plan | None:
+    def _led_slowly(self, task: PlanningTask, place: _Place, begin: ReferenceRun) -> Plan | None:
         """The same, or, if one tick does not do, with one before it for what can be of what was missed."""
         plan = self._led(task, place, begin)
         if plan is not None:
@@ -162,7 +161,7 @@ class _Place(Immutable):
         yield PlanTick(begin.happening(self.late.effects), self.left)
 
 
-def _judged(task: Task, place: _Place, plan: Plan) -> Finding | None:
+def _judged(task: PlanningTask, place: _Place, plan: Plan) -> Finding | None:
     """What is proven of a plan from a place on the way itself; None if that is not enough."""
     if plan.minimal_starts:
         return Finding(plan, searched=len(plan.ticks))
@@ -200,7 +199,7 @@ def _reaches(plan: Plan, begin: ReferenceRun, number: int, left_out: int) -> boo
     return False
 
 
-def _asked(task: Task) -> frozenset[object]:
+def _asked(task: PlanningTask) -> frozenset[object]:
     return frozenset((goal.name, goal.predicate, goal.local) for goal in task.goals)
 
 

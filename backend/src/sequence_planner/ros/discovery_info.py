@@ -11,7 +11,7 @@ from uuid import UUID
 
 from pydantic import BaseModel
 
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.types.messages import MessageRegistry
 
 TOPIC = "ros_discovery_info"
 TYPE_NAME = "rmw_dds_common/msg/ParticipantEntitiesInfo"

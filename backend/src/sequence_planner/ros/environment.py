@@ -1,9 +1,4 @@
-"""What the environment says about the ROS 2 network.
-
-`ROS_DOMAIN_ID` and `ROS_AUTOMATIC_DISCOVERY_RANGE` mean what they mean to every ROS 2 program, with one difference: a
-range nobody set is LOCALHOST here and SUBNET there. A station that commands machines joins a network only when told to.
-ROS 2 has no variable for the network interface, so it is `SEQUENCE_PLANNER_INTERFACE`, by name as in `eth0`.
-"""
+"""ROS 2 environment: domain, discovery range, interface, SROS 2 enclaves and DDS vendor ids."""
 
 from __future__ import annotations
 
@@ -11,8 +6,16 @@ import os
 import socket
 from collections.abc import Mapping
 from enum import StrEnum
+from typing import Final
+from uuid import UUID
 
 from sequence_planner.ros.transport import TransportError
+
+# What the environment says about the ROS 2 network.
+#
+# `ROS_DOMAIN_ID` and `ROS_AUTOMATIC_DISCOVERY_RANGE` mean what they mean to every ROS 2 program, with one difference: a
+# range nobody set is LOCALHOST here and SUBNET there. A station that commands machines joins a network only when told
+# to. ROS 2 has no variable for the network interface, so it is `SEQUENCE_PLANNER_INTERFACE`, by name as in `eth0`.
 
 DOMAIN_ID = "ROS_DOMAIN_ID"
 DISCOVERY_RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
@@ -86,3 +89,73 @@ def refuse_interface(environ: Mapping[str, str] = os.environ) -> None:
 def security_wanted(environ: Mapping[str, str] = os.environ) -> bool:
     """Return whether the environment asks for DDS Security (SROS 2)."""
     return environ.get(SECURITY, "").lower() == "true"
+
+
+# Which enclave of SROS 2 each node of this program belongs to: who shares one shares its key and its rights.
+
+OVERRIDE: Final = "ROS_SECURITY_ENCLAVE_OVERRIDE"  # ROS 2's own variable; it comes before what is said here
+CONTROLLER: Final = "/sequence_planner/controller"
+EMULATED: Final = "/sequence_planner/emulated_devices"
+TOOLS: Final = (
+    "/sequence_planner/tools"  # what people look and intervene with at the command line, and the page's graph
+)
+DEVICES: Final = "/sequence_planner/devices"  # below it, one for each resource
+
+_OF_NODES: Final = {
+    "sequence_planner": CONTROLLER,
+    "sequence_planner_check": CONTROLLER,
+    "emulated_devices": EMULATED,
+    "emulated_devices_check": EMULATED,
+}
+
+
+def enclave_of(node: str) -> str:
+    """The enclave of a node, by its name."""
+    return _OF_NODES.get(node, TOOLS)
+
+
+def arguments(node: str, environ: Mapping[str, str] = os.environ) -> list[str]:
+    """What the context of a node is told of its enclave: nothing without security, or where ROS 2 is told itself."""
+    if not security_wanted(environ) or environ.get(OVERRIDE):
+        return []
+    return ["--ros-args", "--enclave", enclave_of(node)]
+
+
+# Whose DDS a peer uses, by the number that its participant bears.
+
+#: Vendor identifiers as the OMG has assigned them (https://www.dds-foundation.org/dds-vendor-ids).
+_VENDORS = {
+    0x0101: "RTI Connext DDS",
+    0x0102: "ADLINK OpenSplice DDS",
+    0x0103: "OCI OpenDDS",
+    0x0106: "TwinOaks CoreDX DDS",
+    0x010A: "RTI Connext DDS Micro",
+    0x010F: "eProsima Fast DDS",
+    0x0110: "Eclipse Cyclone DDS",
+    0x0111: "GurumDDS",
+    0x0112: "RustDDS",
+    0x0114: "Dust DDS",
+}
+
+#: The middleware of ROS 2 that each runs under, as RMW_IMPLEMENTATION names it.
+_MIDDLEWARES = {
+    "RTI Connext DDS": "rmw_connextdds",
+    "eProsima Fast DDS": "rmw_fastrtps_cpp",
+    "Eclipse Cyclone DDS": "rmw_cyclonedds_cpp",
+    "GurumDDS": "rmw_gurumdds_cpp",
+}
+
+
+def worded(vendor: str | None) -> str:
+    """Return what to call a vendor's DDS, with ROS 2's name for it.
+
+    >>> worded("eProsima Fast DDS")
+    'eProsima Fast DDS (rmw_fastrtps_cpp)'
+    """
+    middleware = _MIDDLEWARES.get(vendor or "")
+    return f"{vendor} ({middleware})" if middleware else vendor or "another DDS"
+
+
+def vendor_of(participant: UUID) -> str | None:
+    """Return the vendor in the first two bytes of a participant's identifier, where RTPS puts it; None if unknown."""
+    return _VENDORS.get(int.from_bytes(participant.bytes[:2]))

@@ -10,7 +10,8 @@ import asyncio
 import time
 from collections.abc import Mapping, Sequence
 
-from sequence_planner.ros.transport import QualityOfService, Sample, Transport, TransportError
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Sample, Transport, TransportError
 
 
 class NotAloneError(TransportError):

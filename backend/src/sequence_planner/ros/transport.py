@@ -1,23 +1,54 @@
-"""The port through which a station speaks ROS 2: bytes on topics, calls of services, and who else is there.
-
-A transport knows topics, services, type names and qualities of service, and carries CDR bytes; what they mean is for
-`sequence_planner.ros.messages`. Actions stand above it, in `sequence_planner.ros.actions`. All methods are called on
-the event loop's thread, and so are the callbacks: the threads of the middleware never show. Discovery takes time (a
-tenth of a second to several seconds, by vendor), so `graph` tells what is known now, and whoever needs a peer waits.
-"""
+"""Port to a network: publishers, subscribers, services and the graph of nodes; bytes only."""
 
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol, runtime_checkable
 
-from sequence_planner.ros.quality import Direction, QualityEvent, QualityOfService
+from sequence_planner.ros.qos import Direction, QualityEvent, QualityOfService
+
+# Who serves and who calls services, where a transport can tell.
+
+Role = Literal["server", "client"]
+
+
+@dataclass(frozen=True)
+class ServiceEnd:
+    """A server or a client of a service, `type_name` as in `package/srv/Name`; `own` is this transport's.
+
+    `node` and `vendor` (of its middleware) are None where it does not tell. It is `understood` where it puts the number
+    of a call in the same place as this transport does.
+    """
+
+    service: str
+    type_name: str
+    role: Role
+    own: bool
+    node: str | None
+    vendor: str | None = None
+    understood: bool = True
+
+
+@runtime_checkable
+class TellsServices(Protocol):
+    """A transport that knows the ends of services, those of actions among them."""
+
+    def services(self) -> list[ServiceEnd]:
+        """Return the servers and clients that were known when the graph was last asked for."""
+
+
+# The port through which a station speaks ROS 2: bytes on topics, calls of services, and who else is there.
+#
+# A transport knows topics, services, type names and qualities of service, and carries CDR bytes; what they mean is for
+# `sequence_planner.ros.messages`. Actions stand above it, in `sequence_planner.ros.actions`. All methods are called on
+# the event loop's thread, and so are the callbacks: the threads of the middleware never show. Discovery takes time (a
+# tenth of a second to several seconds, by vendor), so `graph` tells what is known now, and whoever needs a peer waits.
 
 __all__ = [
     "Direction",
-    "Endpoint",
     "Handler",
+    "NetworkEndpoint",
     "NoAnswerError",
     "NoServerError",
     "OnBatch",
@@ -72,7 +103,7 @@ def unhindered() -> None:
 
 
 @dataclass(frozen=True)
-class Endpoint:
+class NetworkEndpoint:
     """A publisher or subscriber on the network.
 
     `own` tells this transport's endpoints from everybody else's. `type_name` is `package/msg/Name`, or whatever the
@@ -137,7 +168,7 @@ class Transport(Protocol):
         Where it fails, the log says so and the client gets no answer.
         """
 
-    def graph(self) -> list[Endpoint]:
+    def graph(self) -> list[NetworkEndpoint]:
         """Return the endpoints of all topics known now, this transport's own among them."""
 
     def close(self) -> None:

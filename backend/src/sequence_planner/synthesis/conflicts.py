@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.effort import Effort
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.reaction import Reaction
-from sequence_planner.synthesis.saturation import reachable
-from sequence_planner.synthesis.shortest import Tracer
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.reachability import Tracer, reachable
 from sequence_planner.synthesis.traces import Trace
+from sequence_planner.synthesis.transition_relation import NodeLimit, Plant, Reaction
 
 
 @dataclass(frozen=True)
@@ -28,7 +25,7 @@ class Meeting:
 
 
 def conflicting_finishes(
-    automaton: Automaton, names: Sequence[str], abilities: tuple[str, str], variable: str, effort: Effort
+    automaton: Automaton, names: Sequence[str], abilities: tuple[str, str], variable: str, effort: NodeLimit
 ) -> Meeting | None:
     """Where two abilities both finish in a reachable state and would write `variable` differently; None if nowhere.
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import count
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:  # a controller that begins has no use for it, and waits for it
+if TYPE_CHECKING:
     from pysat.solvers import Solver
 
 Missed = Callable[[frozenset[int]], Collection[int] | None]

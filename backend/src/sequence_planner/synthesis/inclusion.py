@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from sequence_planner.synthesis.diagrams import Diagrams, Function
-from sequence_planner.synthesis.reaction import Reaction
-from sequence_planner.synthesis.steps import Change, Flip, Step, Stutter, Update, same
+from sequence_planner.synthesis.bdd import Diagrams, Function
+from sequence_planner.synthesis.transition_relation import (
+    BitUpdate,
+    Flip,
+    Reaction,
+    Stutter,
+    TransitionRelation,
+    TransitionStep,
+    same,
+)
 
 
-def included(diagrams: Diagrams, some: Iterable[Step], others: Sequence[Step], states: Function) -> bool:
+def included(
+    diagrams: Diagrams, some: Iterable[TransitionStep], others: Sequence[TransitionStep], states: Function
+) -> bool:
     """Whether each of `some`, taken from any of `states`, is one of `others` as well.
 
     False also where that is only not seen: a step is looked for among those of its kind that write the same.
@@ -17,15 +26,17 @@ def included(diagrams: Diagrams, some: Iterable[Step], others: Sequence[Step], s
     return all(_is_one_of(diagrams, step, others, states) for step in some)
 
 
-def _is_one_of(diagrams: Diagrams, step: Step, others: Sequence[Step], states: Function) -> bool:
+def _is_one_of(diagrams: Diagrams, step: TransitionStep, others: Sequence[TransitionStep], states: Function) -> bool:
     match step:
         case Stutter():
             return True  # it leads nowhere else
-        case Update(guard, values, written):
-            alike = (e.guard for e in others if isinstance(e, Update) and (e.values, e.written) == (values, written))
+        case BitUpdate(guard, values, written):
+            alike = (e.guard for e in others if isinstance(e, BitUpdate) and (e.values, e.written) == (values, written))
             return not (states & guard & ~diagrams.disjunction(alike)).satisfiable()
-        case Change(relation, now, afterwards):
-            found = [e for e in others if isinstance(e, Change) and (e.now, e.afterwards) == (now, afterwards)]
+        case TransitionRelation(relation, now, afterwards):
+            found = [
+                e for e in others if isinstance(e, TransitionRelation) and (e.now, e.afterwards) == (now, afterwards)
+            ]
             return not (states & relation & ~diagrams.disjunction(e.relation for e in found)).satisfiable()
         case Flip():
             return any(isinstance(each, Flip) and each.top == step.top for each in others)

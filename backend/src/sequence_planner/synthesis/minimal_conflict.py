@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, VariableDeclaration
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Kind, VariableDeclaration
 from sequence_planner.automaton.transitions import Phase, transitions
-from sequence_planner.expressions.syntax import FALSE, TRUE, Assignment, Expression, Not, Variable, conjunction
-from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, relevant
+from sequence_planner.language.syntax import FALSE, TRUE, Assignment, Expression, Not, Variable, conjunction
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.synthesis.supervisor import Supervision, relevant
 from sequence_planner.synthesis.traces import Trace
+from sequence_planner.synthesis.transition_relation import Plant
 
 MOST_SYNTHESES = 60
 

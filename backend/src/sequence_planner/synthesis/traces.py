@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 
-from sequence_planner.automaton.grounding.findings import without_arguments
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Kind, State
+from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     effect_writes,
@@ -23,9 +23,9 @@ from sequence_planner.automaton.tick import (
     writes,
 )
 from sequence_planner.automaton.transitions import Transition
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.printing import print_value
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.printer import print_value
+from sequence_planner.language.types import Value
 
 Valuation = Mapping[str, Value]
 

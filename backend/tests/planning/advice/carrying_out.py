@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.immutable import replace
-from sequence_planner.planning.advice.offer import Offer, OfferKind
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.syntax import TRUE
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.replaying.replay import Replay, missing
+from sequence_planner.planning.problem import Circumstances
+from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal
+from sequence_planner.planning.validation.replay import Replay, missing
 
 ANYTHING = Supervisor(StateSet((), ()), {})
 
@@ -29,7 +29,7 @@ class Stopped:
     circumstances: Circumstances
 
 
-def changed(stopped: Stopped, offer: Offer) -> tuple[State, Circumstances]:
+def changed(stopped: Stopped, offer: RecoveryProposal) -> tuple[State, Circumstances]:
     """The station after what a person does, each change of which is one that makes sense."""
     automaton, state = stopped.automaton, dict(stopped.state)
     for change in (*offer.corrections, *offer.physical, *offer.assumed):
@@ -54,7 +54,7 @@ def changed(stopped: Stopped, offer: Offer) -> tuple[State, Circumstances]:
     return synchronise(automaton, state), circumstances
 
 
-def carried_out(stopped: Stopped, offer: Offer) -> None:
+def carried_out(stopped: Stopped, offer: RecoveryProposal) -> None:
     """AssertionError where the offer does not keep what it says."""
     automaton, supervisor = stopped.automaton, stopped.supervisor
     state, circumstances = changed(stopped, offer)

@@ -9,20 +9,20 @@ from functools import cache
 from pathlib import Path
 
 from planning.advice.single_faults import Moment, asked, drawn, main_job
+from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Kind
 from sequence_planner.automaton.tick import finish, synchronise
-from sequence_planner.control.offer_showing import offer_title
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.printing import print_value
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import replace
-from sequence_planner.planning.advice.advisor import Advisor
-from sequence_planner.planning.advice.offer import Offer
-from sequence_planner.planning.advice.request import AdviceRequest
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.controller.views.wording import offer_title
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.printer import print_value
+from sequence_planner.language.types import Value
+from sequence_planner.planning.recovery.advisor import Advisor
+from sequence_planner.planning.recovery.proposals import RecoveryProposal
+from sequence_planner.planning.recovery.request import AdviceRequest
+from sequence_planner.planning.validation.replay import missing
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 MODELS = Path(__file__).parents[4] / "models"
 STATIONS = sorted(path.parent.name for path in MODELS.glob("*/station.yaml"))
@@ -69,7 +69,7 @@ def after_a_fault(name: str, seed: str, deadline: float) -> Counter[str]:
     return Counter({f"{name}: first {first}": 1, "proposals": len(kinds), f"after: {fault.kind}": 1})
 
 
-def keeps_the_rules(automaton: Automaton, request: AdviceRequest, offer: Offer) -> None:
+def keeps_the_rules(automaton: Automaton, request: AdviceRequest, offer: RecoveryProposal) -> None:
     """What is said of the product contradicts nobody, is named, and is marked where it says that work is done."""
     values = {change.name: change.new for change in offer.corrections}
     assert not values.keys() & request.fixed, "somebody has answered otherwise"
@@ -83,7 +83,7 @@ def keeps_the_rules(automaton: Automaton, request: AdviceRequest, offer: Offer) 
     assert not offer.only_if_checked or offer.corrections
 
 
-def _noted(automaton: Automaton, request: AdviceRequest, offer: Offer) -> list[tuple[str, Value]]:
+def _noted(automaton: Automaton, request: AdviceRequest, offer: RecoveryProposal) -> list[tuple[str, Value]]:
     """What the next tick notes of the product because of what a person does at devices, before anything starts."""
     changes = (*offer.corrections, *offer.physical)
     told = {**request.state, **{change.name: change.new for change in changes}}
@@ -92,6 +92,6 @@ def _noted(automaton: Automaton, request: AdviceRequest, offer: Offer) -> list[t
     return [(name, value) for name, value in values if value is not None]
 
 
-def _place(offer: Offer) -> tuple[bool, int]:
+def _place(offer: RecoveryProposal) -> tuple[bool, int]:
     done = offer.errand or offer.physical or offer.online or offer.in_service
     return offer.only_if_checked, 0 if not offer.corrections else 1 if done else 2

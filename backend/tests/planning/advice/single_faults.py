@@ -7,17 +7,17 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise, update_operations
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.advice.request import AdviceRequest
-from sequence_planner.planning.advice.stalling import stalled_effects
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, PlanRequest, goals_of
+from sequence_planner.language.types import Value
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import ORDINARY, Circumstances, Contract, PlanRequest, goals_of
+from sequence_planner.planning.recovery.manual_plans import stalled_effects
+from sequence_planner.planning.recovery.request import AdviceRequest
+from sequence_planner.planning.validation.acceptance import Acceptance
+from sequence_planner.planning.validation.replay import missing
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def main_job(automaton: Automaton, supervisor: Supervisor) -> list[Moment]:
         goals = missing(goals_of(automaton, sorted(active)), state)
         plan = planner.answer(PlanRequest(state, goals, 30.0, contract=Contract.FAST)).plan
         assert plan is not None
-        course = acceptance.course(Task(state, goals, contract=Contract.FAST), plan)
+        course = acceptance.course(PlanningTask(state, goals, contract=Contract.FAST), plan)
         assert course is not None
         moments += [Moment(dict(point.run.values), active) for point in course.way[:-1]]
         state = course.way[-1].run.values

@@ -13,18 +13,18 @@ from core.choices import Choices, made_by
 from core.exhaustive import can_reach
 from core.random_problems import problem
 from core.random_stations import state_of
-from sequence_planner.automaton.structure import Kind, State
+from sequence_planner.automaton.automaton import Kind, State
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.advice.advisor import Advisor
-from sequence_planner.planning.advice.offer import Advice, Offer, OfferKind
-from sequence_planner.planning.advice.request import AdviceRequest
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.language.syntax import TRUE
+from sequence_planner.language.types import Value
+from sequence_planner.planning.problem import Circumstances
+from sequence_planner.planning.recovery.advisor import Advisor
+from sequence_planner.planning.recovery.proposals import Advice, OfferKind, RecoveryProposal
+from sequence_planner.planning.recovery.request import AdviceRequest
+from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.planning.sat.search import SearchTimeoutError
-from sequence_planner.planning.way_back import WaysBack
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
 
 from .carrying_out import Stopped, carried_out
 
@@ -79,11 +79,11 @@ def corrected(given_: Stopped, size: int, kind: Kind = Kind.ESTIMATED) -> Iterat
                     yield frozenset(changes.items())
 
 
-def full(advice: Advice, kind: OfferKind) -> list[Offer]:
+def full(advice: Advice, kind: OfferKind) -> list[RecoveryProposal]:
     return [offer for offer in advice.offers if offer.kind is kind and not offer.left_out]
 
 
-def made_by_corrections(offer: Offer) -> Changes:
+def made_by_corrections(offer: RecoveryProposal) -> Changes:
     return frozenset((change.name, change.new) for change in offer.corrections)
 
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sequence_planner.automaton.structure import Kind
+from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import replace
-from sequence_planner.planning.advice.advisor import Advisor
-from sequence_planner.planning.advice.offer import OfferKind
-from sequence_planner.planning.advice.request import AdviceRequest
-from sequence_planner.planning.plan import Circumstances, goals_of
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.types import Value
+from sequence_planner.planning.problem import Circumstances, goals_of
+from sequence_planner.planning.recovery.advisor import Advisor
+from sequence_planner.planning.recovery.proposals import OfferKind
+from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import synthesise
 
 from .carrying_out import Stopped, carried_out
 

@@ -11,29 +11,27 @@ from queue import SimpleQueue
 import pytest
 
 from core.building import predicate_of
+from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.control.offer_showing import offer_title
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import FALSE
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import replace
-from sequence_planner.planning.advice.advisor import Advisor
-from sequence_planner.planning.advice.offer import Advice, Change, Offer, OfferKind
-from sequence_planner.planning.advice.questions import Answer, Request
-from sequence_planner.planning.advice.request import AdviceRequest, ErrandRequest
-from sequence_planner.planning.advice.stalling import stalled_effects, stalling, stalls
-from sequence_planner.planning.advice.worker import work
-from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Circumstances, Goal, PlanAnswer, PlanRequest, goals_of
-from sequence_planner.planning.racing.companion import Answered, Companion, Question, Word
-from sequence_planner.planning.reasons.diagnoser import Model
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
+from sequence_planner.controller.views.wording import offer_title
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import FALSE
+from sequence_planner.language.types import Value
+from sequence_planner.planning.diagnoser import DiagnosisModel
+from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Circumstances, Goal, PlanAnswer, PlanRequest, goals_of
+from sequence_planner.planning.recovery.advisor import Advisor, work
+from sequence_planner.planning.recovery.consultation import Answer, Request
+from sequence_planner.planning.recovery.manual_plans import stalled_effects, stalling, stalls
+from sequence_planner.planning.recovery.proposals import Advice, OfferKind, RecoveryProposal, ValueChange
+from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from sequence_planner.process.budget import Budget
+from sequence_planner.process.worker import Companion, Word, WorkerAnswered, WorkerQuestion
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.fewer import FewerSpecifications
-from sequence_planner.synthesis.supervision import synthesise
+from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
 
 from .carrying_out import Stopped, carried_out
 
@@ -81,11 +79,11 @@ def tightening(station: Automaton, changes: dict[str, Value | None]) -> AdviceRe
     return AdviceRequest(state_of(station, changes), goals_of(station, [TIGHTEN]), deadline=60)
 
 
-def advised(station: Automaton, advisor: Advisor, request: AdviceRequest) -> dict[OfferKind, list[Offer]]:
+def advised(station: Automaton, advisor: Advisor, request: AdviceRequest) -> dict[OfferKind, list[RecoveryProposal]]:
     """Offers by kind, each of which can be carried out."""
     advice = advisor.advise(request)
     assert advice.complete
-    found: dict[OfferKind, list[Offer]] = {}
+    found: dict[OfferKind, list[RecoveryProposal]] = {}
     real = stalling(station, stalls(station, request.state, request.stalled))
     for offer in advice.offers:
         carried_out(Stopped(real, synthesise(station), request.state, request.goals, request.circumstances), offer)
@@ -93,7 +91,7 @@ def advised(station: Automaton, advisor: Advisor, request: AdviceRequest) -> dic
     return found
 
 
-def starts(offer: Offer) -> list[str]:
+def starts(offer: RecoveryProposal) -> list[str]:
     assert offer.errand is not None
     return [name for _, name in offer.errand.starts]
 
@@ -115,14 +113,14 @@ def test_one_that_stands_still_is_sent_back_or_moved_by_hand(station: Automaton,
     assert print_expression(back.goal) == "robot.target_pose == above_engine and not robot.move_to_previous.executing"
     assert (back.restart, back.unsupervised, back.left_out) == (True, False, ())
     by_hand = offers[OfferKind.PHYSICAL][0]
-    assert Change("robot.pose", "unknown", "bolt_pair_1") in by_hand.physical
-    assert Change("robot.previous_pose", "above_engine", "bolt_pair_1") in by_hand.physical
+    assert ValueChange("robot.pose", "unknown", "bolt_pair_1") in by_hand.physical
+    assert ValueChange("robot.previous_pose", "above_engine", "bolt_pair_1") in by_hand.physical
     title = offer_title(station, by_hand)
     assert "robot.pose is bolt_pair_1" in title
     assert "previous_pose" not in title
     assert all({c.name for c in o.physical} & {"robot.pose"} for o in offers[OfferKind.PHYSICAL])
     said = [offer for offer in offers[OfferKind.CORRECTION] if offer.only_if_checked]
-    assert [offer.corrections for offer in said] == [(Change("bolts[bolt_pair_1]", "placed", "tightened"),)]
+    assert [offer.corrections for offer in said] == [(ValueChange("bolts[bolt_pair_1]", "placed", "tightened"),)]
 
 
 def test_a_tool_that_was_helped_is_counted_on_for_the_other_bolts_too(station: Automaton, advisor: Advisor) -> None:
@@ -138,7 +136,7 @@ def test_a_tool_that_was_helped_is_counted_on_for_the_other_bolts_too(station: A
     )
     offers = [offer for offer in advisor.advise(request).offers if offer.kind is OfferKind.PHYSICAL]
     assert not offers[0].left_out
-    assert Change("nutrunner.tool_is_running_forward", False, True) in offers[0].physical
+    assert ValueChange("nutrunner.tool_is_running_forward", False, True) in offers[0].physical
 
 
 def test_who_does_what_makes_the_station_believe_bolts_to_be_tight_is_told_so(
@@ -148,7 +146,7 @@ def test_who_does_what_makes_the_station_believe_bolts_to_be_tight_is_told_so(
     request = tightening(station, {**UNDER_WAY, **at_the_pair})
     request = replace(request, stalled=stalled_effects(station, request.state, ["nutrunner"]))
     (offer,) = (offer for offer in advisor.advise(request).offers if offer.physical)
-    assert offer.records == (Change("bolts[bolt_pair_1]", "placed", "tightened"),)
+    assert offer.records == (ValueChange("bolts[bolt_pair_1]", "placed", "tightened"),)
     assert offer_title(station, offer).startswith(
         "See to it that nutrunner.programmed_torque_reached is true, so that bolts[bolt_pair_1] counts as tightened"
     )
@@ -163,7 +161,7 @@ def test_a_robot_that_is_away_is_brought_back(station: Automaton, advisor: Advis
     )
     (offer,) = advised(station, advisor, request)[OfferKind.PHYSICAL]
     assert (offer.online, offer.physical) == (("robot",), ())
-    assert Change("robot.pose", None, "unknown") in offer.assumed
+    assert ValueChange("robot.pose", None, "unknown") in offer.assumed
 
 
 def test_outside_the_safe_states_written_guards_lead_back(station: Automaton, advisor: Advisor) -> None:
@@ -174,7 +172,7 @@ def test_outside_the_safe_states_written_guards_lead_back(station: Automaton, ad
     assert OfferKind.REPLAN not in offers
     way = offers[OfferKind.WAY_BACK][0]
     assert (starts(way), way.unsupervised) == (["nutrunner.run_nut"], True)
-    assert offers[OfferKind.CORRECTION][0].corrections == (Change("bolts[bolt_pair_1]", "placed", "empty"),)
+    assert offers[OfferKind.CORRECTION][0].corrections == (ValueChange("bolts[bolt_pair_1]", "placed", "empty"),)
 
 
 def test_what_was_given_up_is_put_back_and_corrections_contradict_nothing(station: Automaton, advisor: Advisor) -> None:
@@ -225,24 +223,24 @@ def test_errands_that_are_asked_for(station: Automaton, advisor: Advisor) -> Non
 class Asked:
     """The advisor's process."""
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: DiagnosisModel) -> None:
         self._words: SimpleQueue[Word] = SimpleQueue()
-        self.companion: Companion[Model, Request] = Companion(work, model, self._words.put, "advice")
+        self.companion: Companion[DiagnosisModel, Request] = Companion(work, model, self._words.put, "advice")
         self._number = 0
 
     def answer(self, request: Request) -> Answer | str:
         self._number += 1
-        self.companion.ask(Question(self._number, request.deadline, request))
+        self.companion.ask(WorkerQuestion(self._number, request.deadline, request))
         while True:
             match self._words.get(timeout=120):
-                case Answered(number, content) if number == self._number:
+                case WorkerAnswered(number, content) if number == self._number:
                     answer: Answer | str = content
                     return answer
 
 
 @pytest.fixture
 def asked(station: Automaton, supervisor: Supervisor) -> Iterator[Asked]:
-    process = Asked(Model(station, supervisor, FewerSpecifications(station, supervisor)))
+    process = Asked(DiagnosisModel(station, supervisor, FewerSpecifications(station, supervisor)))
     yield process
     process.companion.close()
 
@@ -273,7 +271,7 @@ def test_the_process_answers_all_that_it_can_be_asked(station: Automaton, asked:
 def test_advice_on_which_work_begins_late_takes_less_than_it_might(station: Automaton, supervisor: Supervisor) -> None:
     given: list[float] = []
 
-    def explain(task: Task, budget: Budget) -> Diagnosis:
+    def explain(task: PlanningTask, budget: Budget) -> Diagnosis:
         given.append(budget.remaining)
         return Diagnosis(None, ())
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from running.stations import RunningStation
-from sequence_planner.emulation.truck_station.poses import PAIRS
+from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.hall import Hall, controlled, hall
 
 SPEED = 4.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from running.back_to_work.engine import HallHands
 from running.back_to_work.stops import CORRECTION, PHYSICAL, RESET, RESTART, Stops, Ways
-from sequence_planner.emulation.truck_station.poses import PAIRS
+from sequence_planner.simulation.truck_station.poses import PAIRS
 
 
 @dataclass

@@ -10,9 +10,16 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from running.stations import PATIENCE, eventually, foreign_node
-from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC, SAID_TOPIC, TEXT_TYPE, answer_start
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import QualityOfService, Sample, Transport
+from sequence_planner.ros.qos import QualityOfService
+from sequence_planner.ros.transport import Sample, Transport
+from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.simulation.manual_interface import (
+    BY_HAND_TOPIC,
+    FAULTS_TOPIC,
+    SAID_TOPIC,
+    TEXT_TYPE,
+    answer_start,
+)
 
 Hear = Callable[[Mapping[str, object]], None]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.tick import writes
 from sequence_planner.automaton.transitions import Phase, Transition
-from sequence_planner.expressions.evaluation import holds
+from sequence_planner.language.evaluator import holds
 
 
 def plain_transitions(automaton: Automaton) -> Mapping[str, Transition]:

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from itertools import product
 from math import prod
 
-from sequence_planner.automaton.structure import target
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.fitting import fits_condition
-from sequence_planner.expressions.replacing import rebuilt
-from sequence_planner.expressions.simplification import simplify
-from sequence_planner.expressions.syntax import (
+from sequence_planner.automaton.automaton import target
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.fitting import fits_condition
+from sequence_planner.language.simplifier import simplify
+from sequence_planner.language.substitution import rebuilt
+from sequence_planner.language.syntax import (
     TRUE,
     Assignment,
     Comparison,

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from sequence_planner.expressions.evaluation import Valuation, evaluate
-from sequence_planner.expressions.fitting import narrowed
-from sequence_planner.expressions.syntax import Expression, conjuncts, variables
-from sequence_planner.expressions.types import Type, Value
+from sequence_planner.language.evaluator import Valuation, evaluate
+from sequence_planner.language.fitting import narrowed
+from sequence_planner.language.syntax import Expression, conjuncts, variables
+from sequence_planner.language.types import Type, Value
 
 MOST_CHOICES = 20_000
 

@@ -12,12 +12,12 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import ColumnElement, Connection, delete, func, insert, select, update
 
-from sequence_planner.actor import Actor
-from sequence_planner.identity.recording import record
+from sequence_planner.auth.tokens import record
+from sequence_planner.core.actor import Actor
+from sequence_planner.core.clock import iso
 from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
-from sequence_planner.mes.times import iso
-from sequence_planner.mes.webhooks import webhook as webhooks
+from sequence_planner.mes.webhooks import endpoints as webhooks
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
 
 MOST_WAITING: Final = 1000  # events for one webhook; further ones are looked at when some of these were delivered

@@ -6,9 +6,9 @@ from typing import Final
 
 from sqlalchemy import Column, Double, Index, Integer, String, Table, Text
 
-from sequence_planner.journal.chain import NUMBER
+from sequence_planner.db.metadata import METADATA
+from sequence_planner.journal.hash_chain import NUMBER
 from sequence_planner.mes.webhooks.targets import LONGEST_URL
-from sequence_planner.storage.metadata import METADATA
 
 ID: Final = String(40)
 

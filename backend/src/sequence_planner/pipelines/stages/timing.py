@@ -1,12 +1,246 @@
-"""`debounce`, `limit`, `tick` and `timeout`: when values count, and when records go on."""
+"""Stages with memory or time: `remember`, `fold`, `debounce`, `limit`, `tick`, `timeout`, `override`."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.transparent import TransparentStage, again
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import EnumerationType, IntegerRange, Place
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.stage_documents import (
+    BoundsDocument,
+    DebounceDocument,
+    EveryDocument,
+    OverrideDocument,
+    RememberDocument,
+    TimeoutDocument,
+)
+from sequence_planner.pipelines.field_paths import (
+    FieldPath,
+    as_written,
+    domain,
+    fits,
+    is_numeric,
+    shown,
+    written,
+)
+from sequence_planner.pipelines.record import FieldType, Record
+from sequence_planner.pipelines.stages.base import Override
+from sequence_planner.pipelines.stages.map import is_same
+from sequence_planner.pipelines.stages.support import (
+    Context,
+    Passing,
+    TransparentStage,
+    again,
+    are_alike,
+    narrowest,
+    only,
+    passing,
+    values_of,
+    wanted_type,
+)
+
+# `override`: a person's live values, within bounds, for a while.
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Which values are allowed: the numbers `between` two, or one of `among`."""
+
+    between: tuple[float, float] | None = None
+    among: tuple[object, ...] = ()
+
+    def allow(self, type_: FieldType, value: object) -> bool:
+        """Whether a field of `type_` may be given `value`."""
+        if not fits(type_, value):
+            return False
+        if self.between is None:
+            return any(is_same(value, allowed) for allowed in self.among)
+        return isinstance(value, int | float) and self.between[0] <= value <= self.between[1]
+
+    def described(self, type_: FieldType) -> str:
+        """What a field of `type_` may be given, for people."""
+        if self.between is None:
+            return f"one of {', '.join(map(as_written, self.among))}"
+        kind = "an integer" if isinstance(type_, IntegerRange) else "a number"
+        return f"{kind} from {self.between[0]:g} to {self.between[1]:g}"
+
+
+@dataclass(frozen=True)
+class OverrideStage(TransparentStage):
+    """Fields that a person may set, each within its bounds, for so many seconds."""
+
+    name: str
+    bounds: Mapping[str, Bounds]
+    expires: float
+    kind: ClassVar[str] = "override"
+
+    def begin(self) -> OverrideCourse:
+        """Begin with nothing set."""
+        return OverrideCourse(self)
+
+    def check(self, fields: Mapping[str, object]) -> None:
+        """Raises ValueError, with what is allowed, unless all of these values are."""
+        if not fields:
+            raise ValueError(f"nothing is set: `{self.name}` has the fields {', '.join(self.bounds)}")
+        for name, value in fields.items():
+            if name not in self.bounds:
+                near = suggestion(name, self.bounds) or f"; it has {', '.join(self.bounds)}"
+                raise ValueError(f"`{self.name}` has no field `{name}`{near}")
+            if not self.bounds[name].allow(self.gives[name], value):
+                allowed = self.bounds[name].described(self.gives[name])
+                raise ValueError(f"`{name}` cannot be {shown(value)}: it is {allowed}")
+
+
+@dataclass(slots=True)
+class OverrideCourse:
+    """Has what is set, and the last record as it came."""
+
+    stage: OverrideStage
+    override: Override | None = None
+    _last: Record | None = None
+
+    @property
+    def name(self) -> str:
+        """What it is called where it is set."""
+        return self.stage.name
+
+    @property
+    def due(self) -> float | None:
+        """When what is set expires."""
+        return None if self.override is None else self.override.until
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with what is set."""
+        self._expire(now)
+        self._last = again(record)
+        return self._apply(record)
+
+    def wake(self, now: float) -> Record | None:
+        """The last record as it came, once what was set has expired."""
+        return self._repeat() if self._expire(now) else None
+
+    def set_override(self, fields: Mapping[str, object], now: float, actor: str) -> Record | None:
+        """Set these fields and no others; returns the last record with them. Raises ValueError: nothing changes."""
+        self.stage.check(fields)
+        self.override = Override(dict(fields), actor, now + self.stage.expires)
+        return self._repeat()
+
+    def clear_override(self, now: float) -> Record | None:
+        """Take back what is set; returns the last record as it came."""
+        if self.override is None:
+            return None
+        self.override = None
+        return self._repeat()
+
+    def restore(self, override: Override) -> None:
+        """Go on with what was set before the pipeline began afresh."""
+        self.override = override
+
+    def _expire(self, now: float) -> bool:
+        if self.override is None or now < self.override.until:
+            return False
+        self.override = None
+        return True
+
+    def _repeat(self) -> Record | None:
+        return None if self._last is None else self._apply(again(self._last))
+
+    def _apply(self, record: Record) -> Record:
+        self.stage.put(record, self.stage.get(record))
+        if self.override is not None:
+            record.values.update(self.override.fields)
+        return record
+
+
+# `remember` and `fold`: values of earlier records.
+
+
+@dataclass(frozen=True)
+class RememberStage:
+    """A variable keeps the last known value of another field, but for those that are ignored."""
+
+    place: Place
+    variable: str
+    type: FieldType
+    of: FieldPath
+    ignored: frozenset[object]
+    kind: ClassVar[str] = "remember"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The field whose value is kept."""
+        return frozenset({self.of.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The value kept."""
+        return {self.variable: self.type}
+
+    def begin(self) -> RememberCourse:
+        """Begin with nothing remembered."""
+        return RememberCourse(self)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """A device says what is so now: where the state does not tell that, it is what is remembered."""
+        if self.of.text not in values and values.get(self.variable) is not None:
+            values[self.of.text] = values[self.variable]
+
+
+@dataclass(slots=True)
+class RememberCourse:
+    """Has the value that is kept."""
+
+    stage: RememberStage
+    kept: object = None
+    due: ClassVar[float | None] = None
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with the value kept, after this one has been looked at."""
+        value = self.stage.of.read(record.values, record.troubles)
+        if value is not None and value not in self.stage.ignored:
+            self.kept = value
+        record.values[self.stage.variable] = self.kept
+        return record
+
+    def wake(self, now: float) -> None:
+        """Nothing happens by itself."""
+
+
+@dataclass(frozen=True)
+class FoldStage(TransparentStage):
+    """Fields that are unknown or missing keep the value of the last record that had one."""
+
+    kind: ClassVar[str] = "fold"
+
+    def begin(self) -> FoldCourse:
+        """Begin with nothing remembered."""
+        return FoldCourse(self)
+
+
+@dataclass(slots=True)
+class FoldCourse:
+    """Has the last known value of each field."""
+
+    stage: FoldStage
+    known: dict[str, object] = field(default_factory=dict)
+    due: ClassVar[float | None] = None
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with what earlier ones said where it says nothing."""
+        values = record.values
+        given = ((each.path.text, each.path.read(values, record.troubles)) for each in self.stage.fields)
+        self.known |= {name: value for name, value in given if value is not None}
+        values |= {each.path.text: self.known.get(each.path.text) for each in self.stage.fields}
+        return record
+
+    def wake(self, now: float) -> None:
+        """Nothing happens by itself."""
+
+
+# `debounce`, `limit`, `tick` and `timeout`: when values count, and when records go on.
 
 _NOTHING = Record({})
 
@@ -168,3 +402,107 @@ class TimeoutCourse:
             return None
         self.due = None
         return self.stage.put(again(self._last), (None,) * len(self.stage.fields))
+
+
+# Stages through which fields pass, from documents: memory, times and overrides.
+
+
+def build_remember(document: RememberDocument, context: Context) -> RememberStage | None:
+    """A variable that keeps the last value of another."""
+    if not only(context, document.variable.place, True, "remember"):
+        return None
+    found = context.field(document.of)
+    if found is None:
+        return None
+    path, given = found
+    of = narrowest(context, path, given)
+    type_ = wanted_type(context, document.variable) or of
+    if not are_alike(of, type_):
+        remedy = "make one of the other by a stage before this"
+        context.found(document.of.place, f"`{path}` is {of} here, and `{document.variable}` is {type_}: {remedy}")
+        return None
+    ignored = {value: written(of, value) for value in document.ignored}
+    for value, meant in ignored.items():
+        if meant is None:
+            near = suggestion(value, of.values) if isinstance(of, EnumerationType) else ""
+            context.found(value.place, f"`{value}` is no value of `{document.of}`{near}")
+    kept = set(domain(of) or ()) - set(ignored.values())
+    if (holds := domain(type_)) is not None and (extra := kept - set(holds)):
+        names = ", ".join(sorted(map(as_written, extra)))
+        context.found(document.variable.place, f"`{document.variable}` cannot be {names}: put it into `except`")
+        return None
+    if None in ignored.values():
+        return None
+    return RememberStage(context.place, str(document.variable), type_, path, frozenset(ignored.values()))
+
+
+def build_fold(names: Sequence[SourceText], context: Context) -> FoldStage | None:
+    """Fields that keep their last value: those named, or all."""
+    if not names:
+        every = (Passing(FieldPath(name, name), type_) for name, type_ in context.fields.items())
+        return FoldStage(context.place, tuple(every))
+    fields = passing(context, names)
+    return None if fields is None else FoldStage(context.place, fields)
+
+
+def build_debounce(document: DebounceDocument, context: Context) -> DebounceStage | None:
+    """Fields whose values count when they have been there for some time."""
+    right = only(context, document.fields[0].place, True, "debounce")
+    fields = passing(context, document.fields) if right else None
+    return None if fields is None else DebounceStage(context.place, fields, document.seconds)
+
+
+def build_timeout(document: TimeoutDocument, context: Context) -> TimeoutStage | None:
+    """Fields that are unknown after a silence."""
+    right = only(context, document.fields[0].place, True, "timeout")
+    fields = passing(context, document.fields) if right else None
+    return None if fields is None else TimeoutStage(context.place, fields, document.seconds)
+
+
+def build_limit(document: EveryDocument, context: Context) -> LimitStage:
+    """At most one record per time."""
+    return LimitStage(context.place, (), document.every)
+
+
+def build_tick(document: EveryDocument, context: Context) -> TickStage:
+    """The last record again and again."""
+    return TickStage(context.place, (), document.every)
+
+
+def build_override(document: OverrideDocument, context: Context) -> OverrideStage | None:
+    """Fields that a person may set. One that no record has yet must be a field of the message."""
+    fields: list[Passing] = []
+    bounds: dict[str, Bounds] = {}
+    for name, written_bounds in document.fields.items():
+        wanted = wanted_type(context, name)
+        is_new = not context.is_incoming and wanted is not None and str(name) not in context.fields
+        found = (FieldPath(str(name), str(name)), wanted) if is_new and wanted is not None else context.field(name)
+        if found is None:
+            continue
+        path, type_ = found
+        allowed = _bounds(context, name, written_bounds, narrowest(context, path, type_))
+        if allowed is not None:
+            fields.append(Passing(path, type_))
+            bounds[str(name)] = allowed
+    if len(fields) != len(document.fields):
+        return None
+    return OverrideStage(context.place, tuple(fields), str(document.name), bounds, document.expires)
+
+
+def _bounds(context: Context, name: SourceText, document: BoundsDocument, type_: FieldType) -> Bounds | None:
+    if document.between is None:
+        among = values_of(context, type_, document.among or [], name.place)
+        return None if among is None else Bounds(among=tuple(among))
+    if not is_numeric(type_):
+        context.found(name.place, f"`{name}` is {type_}, which is not between two numbers: write `in: [values]`")
+        return None
+    return Bounds(document.between) if _reachable(context, name.place, document.between, type_) else None
+
+
+def _reachable(context: Context, place: Place, between: tuple[float, float], type_: FieldType) -> bool:
+    if not isinstance(type_, IntegerRange):
+        return True
+    beyond = [bound for bound in between if not type_.minimum <= bound <= type_.maximum]
+    for bound in beyond:
+        context.found(place, f"the field ranges over {type_}, and cannot be {bound:g}")
+    return not beyond

@@ -3,7 +3,7 @@
 A state is what remains of the formula: alternatives, each a set of formulas that the rest of the run must satisfy
 together. Steps follow the expansion laws of linear temporal logic over finite traces (De Giacomo and Vardi 2013); there
 are finitely many states since only parts of the formula can remain. What unknown values leave open counts against
-satisfaction, as in `expressions.progression.progress` without doubt.
+satisfaction, as in `language.ltl.progress` without doubt.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from collections.abc import Iterable
 from functools import cached_property, lru_cache
 from itertools import product
 
-from sequence_planner.expressions.evaluation import Valuation, evaluate
-from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import (
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.evaluator import Valuation, evaluate
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import (
     And,
     BinaryTemporal,
     Constant,
@@ -25,7 +26,6 @@ from sequence_planner.expressions.syntax import (
     UnaryTemporal,
     first_temporal,
 )
-from sequence_planner.immutable import Immutable
 
 MOST_STATES = 256  # of one automaton; nobody has written a formula that needs more
 
@@ -58,11 +58,11 @@ class Monitor(Immutable):
 
     def step(self, state: int, position: Valuation) -> int:
         """The state after a `position` that is not the last."""
-        return _decided(self.steps[state], position)
+        return _monitor_decided(self.steps[state], position)
 
     def satisfied(self, state: int, position: Valuation) -> bool:
         """Whether what remains in `state` is satisfied by `position` as the last one."""
-        return _decided(self.ends[state], position) == 1
+        return _monitor_decided(self.ends[state], position) == 1
 
     @cached_property
     def predicates(self) -> tuple[Expression, ...]:
@@ -270,7 +270,7 @@ def _negation_normal(formula: Expression, negated: bool) -> Expression:
 _DUAL = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "W"}
 
 
-def _decided(decision: Decision, position: Valuation) -> int:
+def _monitor_decided(decision: Decision, position: Valuation) -> int:
     while isinstance(decision, Choice):
         truth = evaluate(decision.predicate, position)
         decision = decision.unknown if truth is None else decision.true if truth else decision.false

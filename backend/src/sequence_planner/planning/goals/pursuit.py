@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sequence_planner.automaton.structure import State
-from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.immutable import replace
-from sequence_planner.planning.plan import Goal
+from sequence_planner.automaton.automaton import State
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.syntax import TRUE
+from sequence_planner.planning.problem import Goal
 
 if TYPE_CHECKING:
     from sequence_planner.planning.goals.monitor import Monitor

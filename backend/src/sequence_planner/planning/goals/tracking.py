@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.immutable import Immutable
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.syntax import TRUE
 from sequence_planner.planning.goals.monitor import Choice, Decision, Monitor, leaves, monitor_of
-from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.problem import Goal
 from sequence_planner.planning.sat.encoding import SymbolicTick
+from sequence_planner.planning.sat.solver import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, SymbolicState
 
 

@@ -1,30 +1,76 @@
-"""The positions of runs, and the moves between them: waiting a tick, and one start within the tick.
-
-Steps are those of `automaton.tick`, taken on compiled runs, with goals and circumstances as plans must respect them.
-"""
+"""Search space of the heuristic engines: positions, moves, and interference between abilities."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from functools import cached_property
+from collections.abc import Iterable, Mapping, Set
+from functools import cached_property, lru_cache
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
+from sequence_planner.automaton.automaton import Ability, Automaton, State, target
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
+from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import State, target
 from sequence_planner.automaton.tick import Writes
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.expressions.types import Value
-from sequence_planner.immutable import Immutable
-from sequence_planner.planning.engine import Task
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.syntax import TRUE
+from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
-from sequence_planner.planning.plan import PlanTick
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import PlanTick
+
+# Which abilities can get in each other's way: what either touches, while it runs, matters to the other.
+
+
+class Interference:
+    """What each ability of an automaton touches and reads, with the effects that it sets off."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self._automaton = automaton
+        self._effects = [
+            (read_variables(automaton, (effect.guard,)), frozenset(map(target, effect.actions)))
+            for effect in automaton.effects
+            if not effect.fault
+        ]
+        self._between = lru_cache(maxsize=None)(self._compared)
+        self._footprint = lru_cache(maxsize=None)(self._found)
+
+    def between(self, one: str, other: str) -> bool:
+        """Whether it can matter which of the two starts first."""
+        return self._between(one, other)
+
+    def _compared(self, one: str, other: str) -> bool:
+        (touched, read), (other_touched, other_read) = self._footprint(one), self._footprint(other)
+        return not (touched.isdisjoint(other_read) and other_touched.isdisjoint(read))
+
+    def _found(self, name: str) -> tuple[Set[str], Set[str]]:
+        """The variables it touches, and those as well as what it reads."""
+        ability = self._automaton.abilities[name]
+        touched = {target(action) for action in (*ability.start_actions, *ability.finish_actions)}
+        more = set(touched)
+        while more:
+            found = {name for reads, writes in self._effects if not more.isdisjoint(reads) for name in writes}
+            more = found - touched
+            touched |= more
+        return touched, touched | self._reads(ability)
+
+    def _reads(self, ability: Ability) -> Set[str]:
+        guards = [ability.enabled, ability.start_guard]
+        guards += [ability.finish_guard] if ability.finish_guard is not None else []
+        for action in (*ability.start_actions, *ability.finish_actions):
+            guards += [action.value] if action.condition is None else [action.value, action.condition]
+        return frozenset(read_variables(self._automaton, tuple(guards)))
+
+
+# The positions of runs, and the moves between them: waiting a tick, and one start within the tick.
+#
+# Steps are those of `automaton.tick`, taken on compiled runs, with goals and circumstances as plans must respect them.
 
 # Of a wait the effects that happen, of a start its name: what a run is made of.
 Move = tuple[str, ...] | str
 
 
-class Position(Immutable):
+class RunPosition(Immutable):
     """A moment after step 3 or a start, or, with nothing `begun`, before the first tick.
 
     `published` has the outputs as last published, `started` the abilities that have started in this tick, and `goals`
@@ -53,7 +99,7 @@ class Position(Immutable):
 class Space:
     """All runs of one task. With `at_once` a tick ends with its first start, as suits abilities done at their start."""
 
-    def __init__(self, compiled: CompiledTick, supervisor: Supervisor, task: Task, at_once: bool) -> None:
+    def __init__(self, compiled: CompiledTick, supervisor: Supervisor, task: PlanningTask, at_once: bool) -> None:
         self._compiled = compiled
         self._task = task
         self.at_once = at_once
@@ -68,12 +114,12 @@ class Space:
         self.idle_effects = frozenset(e.name for e in automaton.effects if e.resource in circumstances.offline)
         self.idle_abilities = frozenset(n for n, a in automaton.abilities.items() if circumstances.bars(a))
 
-    def begin(self) -> Position:
+    def begin(self) -> RunPosition:
         """Before the first tick."""
         run = CompiledRun(self._compiled, self._task.state)
-        return Position(run, {}, frozenset(), self._task.goals, begun=False)
+        return RunPosition(run, {}, frozenset(), self._task.goals, begun=False)
 
-    def effects(self, position: Position) -> dict[str, Writes]:
+    def effects(self, position: RunPosition) -> dict[str, Writes]:
         """The effects that could happen in the next sense and would change something, with all that they write."""
         values = position.run.values
         possible: dict[str, Writes] = {}
@@ -83,7 +129,7 @@ class Space:
                 possible[effect] = {name: value for name, value in written.items() if values[name] is not None}
         return possible
 
-    def everything(self, position: Position, first: Iterable[str] = ()) -> tuple[str, ...]:
+    def everything(self, position: RunPosition, first: Iterable[str] = ()) -> tuple[str, ...]:
         """A largest set of effects that can happen together, those of `first` first."""
         possible = self.effects(position)
         chosen: list[str] = []
@@ -95,7 +141,7 @@ class Space:
                 together |= written
         return tuple(chosen)
 
-    def wait(self, position: Position, effects: tuple[str, ...]) -> Position | None:
+    def wait(self, position: RunPosition, effects: tuple[str, ...]) -> RunPosition | None:
         """The position after the next step 3, `effects` having happened; None if it must not or cannot be."""
         before = position.run.values
         published = {name: before[name] for name in self._outputs}
@@ -115,9 +161,9 @@ class Space:
         goals = settled(position.goals, run.values)
         if goals is None or self._avoided(run.values):
             return None
-        return Position(run, published, frozenset(), goals)
+        return RunPosition(run, published, frozenset(), goals)
 
-    def start(self, position: Position, name: str) -> Position | None:
+    def start(self, position: RunPosition, name: str) -> RunPosition | None:
         """The position after the start of `name`, None if it may not start."""
         before = position.run.values
         if not position.begun or name in position.started or name in self.idle_abilities:
@@ -135,10 +181,10 @@ class Space:
         goals = moved(position.goals, after) if self._follows else position.goals
         if goals is None:
             return None
-        started = Position(run, position.published, position.started | {name}, goals)
+        started = RunPosition(run, position.published, position.started | {name}, goals)
         return self.wait(started, ()) if self.at_once else started
 
-    def moved(self, position: Position, move: Move) -> Position | None:
+    def moved(self, position: RunPosition, move: Move) -> RunPosition | None:
         """The position after a move, None if it may not or cannot be taken."""
         return self.start(position, move) if isinstance(move, str) else self.wait(position, move)
 

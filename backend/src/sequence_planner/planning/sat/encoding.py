@@ -11,16 +11,24 @@ from itertools import combinations
 from types import MappingProxyType
 from typing import NamedTuple
 
+from sequence_planner.automaton.automaton import Ability, Automaton, Flag, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
-from sequence_planner.expressions.types import Value
+from sequence_planner.language.types import Value
 from sequence_planner.planning.demands import Starts
-from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.sat.circuit import Circuit
-from sequence_planner.planning.sat.following import Following
+from sequence_planner.planning.problem import Circumstances
+from sequence_planner.planning.sat.flag_dependencies import FollowingFlags
 from sequence_planner.planning.sat.single_step import SingleStep
-from sequence_planner.planning.sat.symbolic import FollowingState, Reading, Symbol, SymbolicState
-from sequence_planner.planning.sat.writing import Write, Writes, Writing, sharing
+from sequence_planner.planning.sat.solver import Circuit
+from sequence_planner.planning.sat.symbolic import (
+    FollowingState,
+    Reading,
+    Symbol,
+    SymbolicState,
+    SymbolicWriter,
+    Write,
+    Writes,
+    sharing,
+)
 
 
 class SymbolicTick(NamedTuple):
@@ -68,9 +76,9 @@ class Encoding:
         self._starts = starts or Starts(automaton, supervisor) if automaton.one_at_a_time else None
         self._circuit = circuit
         self.reading = Reading(circuit)
-        self._writing = Writing(automaton, circuit)
+        self._writing = SymbolicWriter(automaton, circuit)
         self._effects = [effect for effect in automaton.effects if not effect.fault]
-        self._following = Following(automaton)
+        self._following = FollowingFlags(automaton)
         self._safe = supervisor.safe.for_all(unknown)
         # The guards speak of states whose flags are determined. With unknown values a flag can be older than the state,
         # and only the safe set itself tells where a start may lead.

@@ -11,12 +11,11 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from sequence_planner.automaton.structure import Ability
-from sequence_planner.expressions.types import BOOLEAN, Value
+from sequence_planner.automaton.automaton import Ability
+from sequence_planner.language.types import BOOLEAN, Value
 from sequence_planner.planning.demands import Domains, Some, Starts, Written
-from sequence_planner.planning.sat.circuit import Circuit
-from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
-from sequence_planner.planning.sat.writing import Writes, Writing
+from sequence_planner.planning.sat.solver import Circuit
+from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState, SymbolicWriter, Writes
 
 _FEW = 8  # values of a variable of which each is said to exclude the others: pairs of more are too many
 
@@ -32,7 +31,7 @@ class Choices(NamedTuple):
 class SingleStep:
     """Reads starts into a circuit, from safe states in which nothing is unknown."""
 
-    def __init__(self, starts: Starts, circuit: Circuit, reading: Reading, writing: Writing) -> None:
+    def __init__(self, starts: Starts, circuit: Circuit, reading: Reading, writing: SymbolicWriter) -> None:
         self._starts = starts
         self._circuit = circuit
         self._reading = reading

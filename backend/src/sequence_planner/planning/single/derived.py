@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from sequence_planner.automaton.automaton import Ability, Automaton, Flag, State
 from sequence_planner.automaton.plain.steps import plain_transitions
-from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.expressions.syntax import FALSE, TRUE
-from sequence_planner.immutable import replace
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.syntax import FALSE, TRUE
+from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.problem import Goal
+from sequence_planner.planning.validation.replay import missing
 
 
 def for_planning(automaton: Automaton) -> Automaton:
@@ -39,8 +39,8 @@ def with_flags(automaton: Automaton) -> Automaton:
     return replace(automaton, flags=flags, one_at_a_time=False)
 
 
-def as_station(automaton: Automaton, start: State, goals: Sequence[Goal]) -> tuple[Automaton, Task]:
+def as_station(automaton: Automaton, start: State, goals: Sequence[Goal]) -> tuple[Automaton, PlanningTask]:
     """The plain `automaton` for planning, and the task to reach those of `goals` that do not hold in `start`."""
     derived = for_planning(automaton)
     begin = synchronise(derived, {**dict.fromkeys(derived.types), **start})
-    return derived, Task(begin, missing(goals, start))
+    return derived, PlanningTask(begin, missing(goals, start))

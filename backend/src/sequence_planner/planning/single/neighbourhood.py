@@ -1,22 +1,51 @@
-"""Shorter plans near one that was found fast (plan neighbourhood graph search, Nakhost and Müller 2010).
-
-Around the states that a plan leads through others are looked at, nearer ones first, with all that leads from one to
-another. The shortest way through all of them is never longer than the plan, and often much shorter.
-"""
+"""Plan shortening by plan neighbourhood graph search (Nakhost and Müller 2010), for single starts."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
-from sequence_planner.automaton.compiled import CompiledRun
-from sequence_planner.automaton.structure import State
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.budget import Budget
+from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.automaton.compiled_tick import CompiledRun
+from sequence_planner.automaton.compiler import CompiledTick
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.replaying.replay import missing
-from sequence_planner.planning.single.stepping import Stepping
+from sequence_planner.planning.validation.replay import missing
+from sequence_planner.process.budget import Budget
+
+# What can follow a state, start by start.
+
+
+class Stepping:
+    """Runs of one automaton under one supervisor, whose starts are taken one at a time."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+        self._safe = None if supervisor.safe.everything else supervisor.safe
+
+    def begin(self, state: State) -> CompiledRun:
+        """A run that is in `state`."""
+        return CompiledRun(self._compiled, state)
+
+    def following(self, run: CompiledRun) -> Iterator[tuple[str, CompiledRun]]:
+        """The starts that can be taken, each with the run after it; the same ones in the same order each time."""
+        for name in sorted(run.startable()):
+            after = run.fork()
+            if after.start(name) and (self._safe is None or self._safe.includes(after.values)):
+                yield name, after
+
+    @cached_property
+    def _compiled(self) -> CompiledTick:
+        return CompiledTick(self._automaton, hot=False)
+
+
+# Shorter plans near one that was found fast (plan neighbourhood graph search, Nakhost and Müller 2010).
+#
+# Around the states that a plan leads through others are looked at, nearer ones first, with all that leads from one to
+# another. The shortest way through all of them is never longer than the plan, and often much shorter.
 
 _MOST = 20_000  # states: where there is time for more, there may be no memory for them
 

@@ -14,13 +14,13 @@ from functools import reduce
 from operator import or_
 from typing import NamedTuple
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.syntax import Expression, conjuncts
-from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.language.syntax import Expression, conjuncts
 from sequence_planner.planning.demands import Demands, Some, Starts, Written
-from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import Clause, Literal, Proof
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import Clause, Literal, Proof
+from sequence_planner.process.budget import Budget, SpentError
 
 NAME = "pairs"  # of proofs, too
 
@@ -55,13 +55,13 @@ class _Start(NamedTuple):
 class _Work:
     """What has been noted for a task so far, and the starts that it may matter to."""
 
-    def __init__(self, task: Task, noted: list[Facts], waiting: set[int]) -> None:
+    def __init__(self, task: PlanningTask, noted: list[Facts], waiting: set[int]) -> None:
         self.task = task
         self.noted = noted
         self.waiting = waiting
 
 
-class Pairs:
+class PairProver:
     """Proves for one automaton, whose starts are taken one at a time, that goals are never reached.
 
     Asked again, it goes on where the budget was spent.
@@ -86,7 +86,7 @@ class Pairs:
         self._unasked: set[int] = set()  # starts that ask for nothing, so that all values matter to them
         self._work: _Work | None = None
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         """A proof, or nothing."""
         if len(self._facts) > _MOST:
             return Finding()
@@ -116,7 +116,7 @@ class Pairs:
         inside = all(there & ~work.noted[number] == 0 for number in _bits(there))
         return inside and all(_beside(work.noted, each, self._all) for each in wanted)
 
-    def _begun(self, task: Task, budget: Budget) -> _Work:
+    def _begun(self, task: PlanningTask, budget: Budget) -> _Work:
         """The values that are there at first, and all starts. Raises `SpentError`; asked again, it goes on."""
         for name in self._names[len(self._starts) :]:
             budget.require()

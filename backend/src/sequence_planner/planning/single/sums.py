@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from typing import Final
 
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.expressions.syntax import Expression, conjuncts
-from sequence_planner.expressions.types import Value
-from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.language.syntax import Expression, conjuncts
+from sequence_planner.language.types import Value
 from sequence_planner.planning.demands import Demands, Some, Starts, Written
-from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.process.budget import Budget, SpentError
 
 NAME: Final = "sums"
 _PRIMES: Final = (2, 2**31 - 1)
@@ -47,7 +47,7 @@ class Sums:
         self._rows: list[Row] | None = None
         self._all = _Unchanged({c for each in self._values.values() for row in each.values() for c in row}, _PRIMES[-1])
 
-    def solve(self, task: Task, budget: Budget) -> Finding:
+    def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         """That there is no plan at all, or nothing."""
         if None in task.state.values():
             return Finding()

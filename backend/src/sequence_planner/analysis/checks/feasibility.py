@@ -1,0 +1,263 @@
+"""Whether starts and operations are possible, with the supervisor and without it.
+
+Each answer is about reachable states; a trace leads to where it can be seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from sequence_planner.analysis.checks.reachability import ReachabilityQuery
+from sequence_planner.analysis.checks.relaxed_reachability import Growth
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation
+from sequence_planner.automaton.findings import without_arguments
+from sequence_planner.automaton.plain.events import event_of
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.simplifier import simplify
+from sequence_planner.language.syntax import Expression, conjunction
+from sequence_planner.synthesis.bdd import Function
+from sequence_planner.synthesis.reachability import Tracer
+from sequence_planner.synthesis.traces import Trace
+
+UNKNOWN = "too-many-states"  # the kind of a finding that says that nothing is known
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Something that should be possible: the start of an ability, an event of a plain automaton, or an operation."""
+
+    name: str
+    keys: tuple[str, ...]  # of its place
+    abilities: tuple[Ability, ...] = ()
+    operation: Operation | None = None
+
+    @property
+    def expressions(self) -> list[Expression]:
+        """What is asked about it."""
+        if self.operation is not None:
+            return [self.operation.precondition, self.operation.goal]
+        return [condition for ability in self.abilities for condition in (ability.enabled, ability.start_guard)]
+
+
+@dataclass(frozen=True)
+class FeasibilityFinding:
+    """What is said of a subject; instances of which the same is said are named together.
+
+    What is `relative` is said only if it is so for all instances or for few: parameters choose which instances there
+    are. `cause` names the start, or what else happens, that the supervisor prevents; a `consequence` need not be said
+    where another finding has the same cause.
+    """
+
+    kind: str
+    subject: Subject
+    message: str
+    trace: Trace | None = None
+    relative: bool = False
+    cause: tuple[str, ...] = ()
+    consequence: bool = False
+
+
+class Possibility:
+    """What is possible where nothing leaves the states that are safe, as an inquiry answers."""
+
+    def __init__(self, automaton: Automaton, inquiry: ReachabilityQuery) -> None:
+        self._automaton = automaton
+        self._inquiry = inquiry
+        self._growth = Growth(automaton, any_measurement=False)
+
+    def findings(self, subject: Subject) -> Iterator[FeasibilityFinding]:
+        """What is not possible of `subject`. Raises `TooMuchError`."""
+        if subject.operation is None:
+            yield from self._start(subject)
+        else:
+            yield from self._operation(subject, subject.operation)
+
+    def _start(self, subject: Subject) -> Iterator[FeasibilityFinding]:
+        inquiry = self._inquiry
+        if any(inquiry.reached(inquiry.allowed(each)).satisfiable() for each in subject.abilities):
+            return
+        if (known := self._with_guards(subject.abilities, supervised=True)) is not None:
+            yield self._never_allowed(subject, *known)
+        elif (beyond := self._with_guards(subject.abilities, supervised=False)) is not None:
+            trace = inquiry.way(beyond[1], supervised=False)
+            message = (
+                f"never starts under the supervisor: its guards hold only {self._after(trace)}. Let another way lead "
+                "there, forbid less, or leave it out"
+            )
+            cause = self._cause(trace)
+            yield FeasibilityFinding("never-allowed", subject, message, trace, cause=cause, consequence=True)
+        elif self._is_news(*(conjunction(each.enabled, each.start_guard) for each in subject.abilities)):
+            first = subject.abilities[0]
+            guard = print_expression(simplify(conjunction(first.enabled, first.start_guard)))
+            yield FeasibilityFinding("never-starts", subject, f"never starts: {_never(guard)}", relative=True)
+
+    def _with_guards(self, members: Sequence[Ability], supervised: bool) -> tuple[Ability, Function] | None:
+        """One of `members` whose guards hold in some of the states that are reached, and those."""
+        inquiry = self._inquiry
+        for ability in members:
+            if (where := inquiry.reached(inquiry.may_start(ability), supervised=supervised)).satisfiable():
+                return ability, where
+        return None
+
+    def _is_news(self, *conditions: Expression) -> bool:
+        """Whether none of these ever holds, by any means, and no other check says so: they look at words and values."""
+        said = not all(map(self._may_by_its_words, conditions))
+        return not said and not any(self._inquiry.may_ever(each) for each in conditions)
+
+    def _may_by_its_words(self, condition: Expression) -> bool:
+        if self._automaton.one_at_a_time:
+            return True  # no other check looks at it
+        return self._growth.may(condition) and self._inquiry.plant.where(condition).satisfiable()
+
+    def _never_allowed(self, subject: Subject, ability: Ability, where: Function) -> FeasibilityFinding:
+        """The way to a state in which only the supervisor keeps it from starting, the start, and what may follow."""
+        inquiry = self._inquiry
+        trace = inquiry.way(where)
+        if trace is not None:
+            trace = Tracer(inquiry.plant).started(trace, ability.name)
+            broken = inquiry.diagrams.disjunction(inquiry.forbidden().values())
+            trace = Tracer(inquiry.plant, starts=False).onward(trace, broken) or trace
+        after = [step.after(where & inquiry.safe) for step in inquiry.plant.starts[ability.name]]
+        consequence = self._consequence(inquiry.diagrams.disjunction(after))
+        message = (
+            f"never starts, as the supervisor forbids it wherever it could: it would lead to {consequence}. Let "
+            "something else happen before it, forbid less, or leave it out"
+        )
+        return FeasibilityFinding("never-allowed", subject, message, trace, cause=_causes([ability.name]))
+
+    def _consequence(self, states: Function) -> str:
+        """What comes of `states`, in some of them one thing and in others another."""
+        broken, restless = self._inquiry.broken_unasked(states), self._inquiry.unbroken_unasked(states)
+        parts = [f"what {_quoted(broken)} forbids"] if broken else []
+        parts += ["states from which rest cannot be reached any more"] if restless else []
+        return ", or to ".join(parts)
+
+    def _after(self, trace: Trace | None) -> str:
+        """Where a trace leaves the safe states."""
+        number = self._leaving(trace)
+        if trace is None or number is None:
+            return "after states that are not safe"
+        step = trace.steps[number - 1]
+        if step.forbidden_by:
+            what = f"step {number} of the shortest way breaks {_quoted(step.forbidden_by)}"
+        elif broken := self._inquiry.broken_unasked(self._inquiry.diagrams.states(step.state)):
+            what = f"after step {number} of the shortest way {_quoted(broken)} could be broken without any start"
+        else:
+            what = f"after step {number} of the shortest way it is no longer certain that rest can be reached"
+        return f"after states that are not safe: {what}"
+
+    def _cause(self, trace: Trace | None) -> tuple[str, ...]:
+        """What leaves the safe states on it."""
+        number = self._leaving(trace)
+        return () if trace is None or number is None else _causes(trace.steps[number - 1].names)
+
+    def _leaving(self, trace: Trace | None) -> int | None:
+        """The number of the step that leaves the safe states."""
+        for number, step in enumerate(() if trace is None else trace.steps, start=1):
+            if not (self._inquiry.diagrams.states(step.state) & self._inquiry.safe).satisfiable():
+                return number
+        return None
+
+    def _operation(self, subject: Subject, operation: Operation) -> Iterator[FeasibilityFinding]:
+        inquiry = self._inquiry
+        active = inquiry.plant.where(operation.precondition)
+        if inquiry.reached(active).satisfiable():
+            yield from self._goal(subject, operation, active)
+        elif (beyond := inquiry.reached(active, supervised=False)).satisfiable():
+            trace = inquiry.way(beyond, supervised=False)
+            message = (
+                f"never becomes active under the supervisor: its precondition holds only {self._after(trace)}. Let "
+                "another way lead there, or forbid less"
+            )
+            cause = self._cause(trace)
+            yield FeasibilityFinding("never-active", subject, message, trace, cause=cause, consequence=True)
+        elif self._is_news(operation.precondition):
+            condition = print_expression(operation.precondition)
+            yield FeasibilityFinding(
+                "never-active", subject, f"never becomes active: {_never(condition)}", relative=True
+            )
+
+    def _goal(self, subject: Subject, operation: Operation, active: Function) -> Iterator[FeasibilityFinding]:
+        inquiry, plain = self._inquiry, self._automaton.one_at_a_time
+        goal = inquiry.plant.where(operation.goal)
+        if inquiry.reached(goal, faults=False).satisfiable():
+            if plain:
+                return  # a goal of the automaton, which nobody undertakes again in each state
+        elif (lost := inquiry.reached(goal, supervised=False, faults=False)).satisfiable():
+            trace = inquiry.way(lost, supervised=False, faults=False)
+            message = (
+                f"cannot be {'reached' if plain else 'completed'} under the supervisor, though it could without it: "
+                f"{'it' if plain else 'its goal'} holds only {self._after(trace)}. Let another way lead there, or "
+                "forbid less"
+            )
+            yield FeasibilityFinding("goal-lost", subject, message, trace, cause=self._cause(trace))
+            return
+        elif plain:
+            message = "cannot be reached, with or without the supervisor: write what was meant, or what is missing"
+            yield FeasibilityFinding("goal-out-of-reach", subject, message)
+            return
+        elif not self._may_by_its_words(operation.goal):
+            return
+        bad = inquiry.stuck(active, goal)
+        if bad.satisfiable():
+            yield self._out_of_reach(subject, goal, bad)
+
+    def _out_of_reach(self, subject: Subject, goal: Function, bad: Function) -> FeasibilityFinding:
+        inquiry = self._inquiry
+        trace = inquiry.way(bad)
+        fault = self._last_fault(trace)
+        if fault is not None and (without := inquiry.way(bad, faults=False)) is not None:
+            trace, fault = without, None
+        leads = inquiry.leads(bad if trace is None else inquiry.diagrams.states(trace.last), goal)
+        if leads is None:
+            cause = "nothing that the supervisor allows leads there"
+        elif leads:
+            cause = "the supervisor forbids all that would lead there"
+        else:
+            cause = "no ability and no effect leads there, with or without the supervisor"
+        if fault is not None:
+            return FeasibilityFinding("goal-out-of-reach", subject, self._after_a_fault(fault, cause), trace)
+        where = "in the initial state" if trace is not None and not trace.steps else "after some steps"
+        message = (
+            f"cannot always be completed: {where} its precondition holds, and its goal cannot be reached any more, as "
+            f"{cause}. Let the precondition exclude that, or add what is missing"
+        )
+        return FeasibilityFinding("goal-out-of-reach", subject, message, trace)
+
+    def _last_fault(self, trace: Trace | None) -> Effect | None:
+        """The last thing on it that nobody counts on."""
+        faults = {effect.name: effect for effect in self._automaton.effects if effect.fault}
+        steps = () if trace is None else reversed(trace.steps)
+        return next((faults[name] for step in steps for name in step.names if name in faults), None)
+
+    def _after_a_fault(self, fault: Effect, cause: str) -> str:
+        """What is said where no way without a fault leads there: a person may have meant it."""
+        abilities = [each for each in self._automaton.abilities.values() if each.resource == fault.resource]
+        by_person = bool(abilities) and all(each.human is not None for each in abilities)
+        what = "a person has done" if by_person else "there was the fault"
+        meant = (
+            "That is as it should be where the person meant it; let the precondition exclude it where not"
+            if by_person
+            else "Let the precondition exclude that, or add what is missing, unless that much is lost with the fault"
+        )
+        return (
+            f"cannot be completed once {what} `{fault.name}`, which nobody counts on: its precondition holds, "
+            f"and its goal cannot be reached any more, as {cause}. {meant}"
+        )
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
+
+
+def _causes(names: Iterable[str]) -> tuple[str, ...]:
+    """What happens, for all instances."""
+    return tuple(without_arguments(event_of(name)) for name in names)
+
+
+def _never(condition: str) -> str:
+    return (
+        f"`{condition}` holds in no state that can be reached, with or without the supervisor. Write what was meant, "
+        "or the action or effect that is missing"
+    )

@@ -1,0 +1,488 @@
+"""Checks of guards and finishes by SAT: constant conditions, conflicting writes in one tick."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import combinations, islice
+from math import prod
+
+from pysat.solvers import Solver
+
+from sequence_planner.analysis.checks.reachability import bits, cannot_be
+from sequence_planner.analysis.checks.relaxed_reachability import Growth
+from sequence_planner.analysis.checks.warning import (
+    ModelCondition,
+    ModelWarning,
+    described,
+    listed,
+    parts,
+    place,
+)
+from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
+from sequence_planner.automaton.dependencies import cone_of_influence
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import (
+    FALSE,
+    Arithmetic,
+    Assignment,
+    Comparison,
+    Constant,
+    Expression,
+    Membership,
+    Variable,
+    children,
+    conjunction,
+    conjuncts,
+    occurrences,
+    variables,
+)
+from sequence_planner.language.types import Value
+from sequence_planner.planning.sat.solver import Circuit
+from sequence_planner.planning.sat.symbolic import Reading, Symbol
+from sequence_planner.synthesis.conflicts import conflicting_finishes
+from sequence_planner.synthesis.transition_relation import MOST_BITS, NodeLimit, TooMuchError
+
+# Whether there is any state that satisfies something, reachable or not: one question to a SAT solver.
+
+MOST_COMBINATIONS = 100_000  # of the values in one comparison; beyond them a question is not asked
+MOST_CONFLICTS = 50_000  # of the solver; beyond them a question is given up
+
+
+class UndecidedError(Exception):
+    """A question was given up: its answer would have taken too long."""
+
+
+class SatisfiabilityQuestion:
+    """A circuit over states of which only what is read exists."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self._automaton = automaton
+        self._clauses: list[Sequence[int]] = []
+        self.circuit = Circuit(self)
+        self.reading = Reading(self.circuit)
+
+    def add_clause(self, clause: Sequence[int]) -> None:
+        """Take a clause of the circuit."""
+        self._clauses.append(clause)
+
+    def state(self) -> AnyState:
+        """A state of any values; its flags follow from them."""
+        state = AnyState(lambda name: self._flag(name, state) if self._is_flag(name) else self._any(self._type(name)))
+        return state
+
+    def with_old_flags(self) -> AnyState:
+        """A state of any values whose flags may be anything, as if they were of any other state."""
+        return AnyState(lambda name: self._any(self._type(name)))
+
+    def sensed(self, before: AnyState) -> AnyState:
+        """What a finish guard sees after `before`: new measured values, and all else as it was."""
+
+        def made(name: str) -> Symbol:
+            variable = self._automaton.variables.get(name)
+            measured = variable is not None and variable.kind is Kind.MEASURED
+            return self._any(self._type(name)) if measured else before[name]
+
+        return AnyState(made)
+
+    def after(self, actions: Sequence[Assignment], before: AnyState) -> AnyState:
+        """The state after `actions`, all taken at once in `before`, and after synchronisation."""
+        after = AnyState(lambda name: self._flag(name, after) if self._is_flag(name) else before[name])
+        for action in actions:
+            value = self.reading.symbol(action.value, before)
+            if action.condition is not None:
+                condition = self.reading.truth(action.condition, before).yes
+                value = self.reading.chosen(condition, value, before[target(action)])
+            after[target(action)] = value
+        return after
+
+    def models(self, *assumed: int) -> Iterator[frozenset[int] | None]:
+        """For each literal of `assumed`, the literals that are true in a solution with it, or None.
+
+        Raises `UndecidedError` when that is not known after `MOST_CONFLICTS`.
+        """
+        with Solver("minisat22", bootstrap_with=self._clauses) as solver:
+            for literal in assumed:
+                solver.conf_budget(MOST_CONFLICTS)
+                answer = solver.solve_limited([literal])
+                if answer is None:
+                    raise UndecidedError
+                yield frozenset(solver.get_model() or ()) if answer else None
+
+    def model(self) -> frozenset[int] | None:
+        """The literals that are true in a solution, or None if there is none. Raises `UndecidedError`."""
+        return next(self.models(self.circuit.TRUE))
+
+    def _is_flag(self, name: str) -> bool:
+        return name in self._automaton.flag_predicates
+
+    def _type(self, name: str) -> Sequence[Value]:
+        return self._automaton.types[name].domain
+
+    def _flag(self, name: str, state: AnyState) -> Symbol:
+        truth = self.reading.truth(self._automaton.flag_predicates[name], state)
+        return Symbol({False: truth.no, True: truth.yes})
+
+    def _any(self, domain: Sequence[Value]) -> Symbol:
+        circuit = self.circuit
+        if len(domain) == 2:
+            literal = circuit.fresh()
+            return Symbol({domain[0]: -literal, domain[1]: literal})
+        literals = {value: circuit.fresh() for value in domain}
+        circuit.require(*literals.values())
+        seen = Circuit.FALSE  # one of the values before
+        for literal in literals.values():
+            circuit.require(-literal, -seen)
+            seen = circuit.disjunction((seen, literal))
+        return Symbol(literals)
+
+
+class AnyState(dict[str, Symbol]):
+    """The values of a state, each made when it is first read."""
+
+    def __init__(self, made: Callable[[str], Symbol]) -> None:
+        super().__init__()
+        self._made = made
+
+    def __missing__(self, name: str) -> Symbol:
+        self[name] = self._made(name)
+        return self[name]
+
+    def valuation(self, model: frozenset[int]) -> State:
+        """What has been read of this state, as it is in a solution."""
+        return {
+            name: next((value for value, literal in symbol.literals.items() if _holds(literal, model)), None)
+            for name, symbol in self.items()
+        }
+
+
+def _holds(literal: int, model: frozenset[int]) -> bool:
+    return literal in model if literal > 0 else -literal not in model
+
+
+def satisfying(automaton: Automaton, predicate: Expression) -> State | None:
+    """A state, of any values, in which `predicate` holds, or None if there is none. Raises `UndecidedError`."""
+    question = SatisfiabilityQuestion(automaton)
+    state = question.state()
+    question.circuit.require(question.reading.truth(predicate, state).yes)
+    model = question.model()
+    return None if model is None else state.valuation(model)
+
+
+def differ(automaton: Automaton, one: Expression, other: Expression) -> bool:
+    """Whether there is a state, of any values, in which one of two predicates holds and the other does not.
+
+    Raises `UndecidedError`.
+    """
+    question = SatisfiabilityQuestion(automaton)
+    state, circuit = question.state(), question.circuit
+    first, second = (question.reading.truth(each, state) for each in (one, other))
+    either = (first.yes, second.no), (first.no, second.yes)
+    circuit.require(circuit.disjunction(tuple(circuit.conjunction(each) for each in either)))
+    return question.model() is not None
+
+
+def can_be_asked(automaton: Automaton, *expressions: Expression) -> bool:
+    """Whether `expressions`, and the predicates of the flags that they read, are small enough for a circuit."""
+    seen: set[str] = set()
+    pending = list(expressions)
+    while pending:
+        expression = pending.pop()
+        match expression:
+            case Variable(name) if name in automaton.flag_predicates and name not in seen:
+                seen.add(name)
+                pending.append(automaton.flag_predicates[name])
+            case Comparison(_, Variable(), Constant()):
+                continue
+            case Comparison() | Arithmetic() | Membership():
+                if prod({v.name: len(v.type.domain) for v in occurrences(expression)}.values()) > MOST_COMBINATIONS:
+                    return False
+            case _:
+                pending.extend(children(expression))
+    return True
+
+
+Shape = tuple[object, ...]
+
+
+def shape(automaton: Automaton, expression: Expression) -> Shape:
+    """What makes the answer about `expression`: two with the same shape differ in the names of variables alone."""
+    numbers: dict[str, int] = {}
+
+    def of(part: Expression) -> Shape:
+        match part:
+            case Constant(value):
+                return (type(value), value)
+            case Variable(name):
+                if name in numbers:
+                    return (numbers[name],)
+                numbers[name] = len(numbers)
+                if name in automaton.variables:
+                    return (automaton.variables[name].kind, part.type)
+                return ("flag", of(automaton.flag_predicates[name]))
+            case Comparison(operator) | Arithmetic(operator):
+                return (operator, *map(of, children(part)))
+            case _:
+                return (type(part), *map(of, children(part)))
+
+    return of(expression)
+
+
+# Two finishes in one tick that would write different values to one variable: neither would be applied.
+#
+# First a solver looks for any values with which that happens after a state that no specification forbids, and
+# `reachability` tries to prove that they never come about. Then it is computed over what matters which states the
+# station can reach, so that the state reported is a reachable one. Where there are too many of them, it is said that
+# it is not shown to be unreachable.
+
+MOST_EFFORT = 5_000_000  # nodes for each pair, see `synthesis.transition_relation`
+MOST_REPORTED = 3  # pairs for each variable
+MOST_TRIED = 50  # pairs for each variable: beyond them, conflicts of many finishes over one variable are not looked for
+
+
+def check_conflicts(automaton: Automaton) -> Iterator[ModelWarning]:
+    """The pairs of abilities whose finishes conflict, with a state in which they do."""
+    writers: dict[str, list[tuple[Ability, Assignment]]] = defaultdict(list)
+    for ability in automaton.abilities.values():
+        for action in ability.finish_actions if ability.finish_guard is not None else ():
+            writers[target(action)].append((ability, action))
+    seen: set[tuple[str, str]] = set()
+    for variable, written in writers.items():
+        if len(written) < 2 or _one_value([action for _, action in written]):
+            continue
+        reported = 0
+        for one, other, witness in islice(_possible(automaton, variable, written), MOST_TRIED):
+            warning = None
+            if (one.name, other.name) not in seen:
+                warning = _confirmed(automaton, variable, one, other, witness)
+            if warning is not None:
+                seen.add((one.name, other.name))
+                reported += 1
+                yield warning
+            if reported == MOST_REPORTED:
+                break
+
+
+def _one_value(actions: Sequence[Assignment]) -> bool:
+    """Whether all write the same, whatever the state that all of them read."""
+    return all(action.value == actions[0].value for action in actions)
+
+
+def _possible(
+    automaton: Automaton, variable: str, written: Sequence[tuple[Ability, Assignment]]
+) -> Iterator[tuple[Ability, Ability, State]]:
+    """Pairs that conflict over `variable` with some values, each with what they see then."""
+    question = SatisfiabilityQuestion(automaton)
+    circuit, reading = question.circuit, question.reading
+    before = question.state()
+    state = question.sensed(before)
+    for specification in automaton.specifications.values():
+        if can_be_asked(automaton, specification.forbidden):
+            circuit.require(-reading.truth(specification.forbidden, before).yes)
+    values: dict[object, list[int]] = defaultdict(list)
+    chosen: dict[str, int] = {}  # of which writers we speak, so that one pair after the other can be ruled out
+    for ability, action in written:
+        assert ability.finish_guard is not None
+        conditions = [ability.finish_guard, *(() if action.condition is None else (action.condition,))]
+        if not can_be_asked(automaton, *conditions, action.value):
+            continue
+        chosen[ability.name] = circuit.fresh()
+        for condition in conditions:
+            circuit.require(-chosen[ability.name], reading.truth(condition, state).yes)
+        for value, literal in reading.symbol(action.value, state).literals.items():
+            values[value].append(circuit.conjunction((chosen[ability.name], literal)))
+    two, before_it = [], Circuit.FALSE  # a value is written, and one of those before it as well
+    for literals in values.values():
+        written_now = circuit.disjunction(literals)
+        two.append(circuit.conjunction((written_now, before_it)))
+        before_it = circuit.disjunction((written_now, before_it))
+    circuit.require(*two)
+    by_name = {ability.name: (ability, action) for ability, action in written}
+    while (model := _decided(question)) is not None:
+        seen = state.valuation(model)
+        values_now = {name: evaluate(by_name[name][1].value, seen) for name in chosen if chosen[name] in model}
+        one, other = next((a, b) for a, b in combinations(values_now, 2) if values_now[a] != values_now[b])
+        yield by_name[one][0], by_name[other][0], seen
+        circuit.require(-chosen[one], -chosen[other])
+
+
+def _decided(question: SatisfiabilityQuestion) -> frozenset[int] | None:
+    """A solution; None if there is none, or none is found with reasonable effort."""
+    try:
+        return question.model()
+    except UndecidedError:
+        return None
+
+
+def _confirmed(
+    automaton: Automaton, variable: str, one: Ability, other: Ability, witness: State
+) -> ModelWarning | None:
+    """The warning, with a reachable state if there are few enough to look at; none if no such state is reachable."""
+    actions = [next(a for a in ability.finish_actions if target(a) == variable) for ability in (one, other)]
+    conditions = [
+        each
+        for ability, action in zip((one, other), actions, strict=True)
+        for each in (ability.finish_guard, action.condition)
+        if each is not None
+    ]
+    if cannot_be(automaton, conditions):
+        return None
+    own = [*conditions, *(action.value for action in actions)]
+    read = dict.fromkeys(name for each in own for name in variables(each))
+    cone = cone_of_influence(automaton, [*own, Variable(variable, automaton.variables[variable].type)])
+    trace = None
+    try:
+        if bits(automaton, cone) > MOST_BITS:
+            raise TooMuchError
+        found = conflicting_finishes(automaton, cone, (one.name, other.name), variable, NodeLimit(MOST_EFFORT))
+        if found is None:
+            return None
+        how, seen, trace = "meet in a reachable state", found.seen, found.trace
+    except TooMuchError:
+        how, seen = "might meet (there are too many states to say whether such a one can be reached)", witness
+    message = (
+        f"the finishes of `{one.name}` and `{other.name}` would write different values to `{variable}`, and then "
+        f"neither is applied. They {how}: {described(seen, read)}. Let their finish guards exclude each other"
+    )
+    return ModelWarning(place(automaton, f"{other.name}.finish", other.name), "write-conflict", message, trace)
+
+
+# Conditions that cannot hold, or always do: by their own words, or because nothing ever brings them about.
+#
+# Of the instances of something with parameters, all are reported under one name. When only some cannot hold but most
+# can, they are named, except those with one argument twice (`carry(left, left)`); when most cannot, the parameters are
+# seen as choosing which instances there are. What only follows from another finding is left out, and so is what was
+# written as `true` or `false`, or became so by the values of its parameters.
+
+
+def check_guards(automaton: Automaton) -> Iterator[ModelWarning]:
+    """All conditions of `automaton` that are no conditions."""
+    everything = list(parts(automaton))
+    written = [part for part in everything if not isinstance(part.expression, Constant)]
+    reporting = _Reporting(automaton, everything)
+    never, always = _constant(automaton, written)
+    for part, others in reporting.worth_saying(always, instances=False):
+        text = print_expression(part.expression)
+        message = f"`{text}` always holds, whatever the values of its variables: leave it out, or write what was meant"
+        yield reporting.warning("always-holds", part, others, message)
+    for part, others in reporting.worth_saying(never):
+        message = f"{_contradiction(automaton, part)}{_so(part)}: write what was meant"
+        yield reporting.warning("never-holds", part, others, message)
+    reporting.dead |= {part.name for part in never}
+    for growth in (Growth(automaton, any_measurement=True), Growth(automaton, any_measurement=False)):
+        left = [part for part in written if part.name not in reporting.dead]
+        stuck = [part for part in left if not growth.may(part.expression)]
+        for part, others in reporting.worth_saying(growth.roots(stuck, reporting.dead)):
+            kind, message = _stuck(growth, part)
+            yield reporting.warning(kind, part, others, message)
+        reporting.dead |= {part.name for part in stuck}
+
+
+class _Reporting:
+    """Chooses what is said of many instances. `dead` are the parts that never hold, by name."""
+
+    def __init__(self, automaton: Automaton, everything: Iterable[ModelCondition]) -> None:
+        self._automaton = automaton
+        self._families: dict[str, list[ModelCondition]] = defaultdict(list)
+        self.dead: set[str] = set()
+        for part in everything:
+            self._families[part.family].append(part)
+            if part.expression == FALSE:
+                self.dead.add(part.name)
+
+    def worth_saying(
+        self, found: Collection[ModelCondition], instances: bool = True
+    ) -> Iterator[tuple[ModelCondition, Sequence[ModelCondition]]]:
+        """A part of each family, and those of its instances that are meant; none stands for all of them.
+
+        With `instances` also those families of which only some are `found`.
+        """
+        of_family: dict[str, list[ModelCondition]] = defaultdict(list)
+        found_names = {part.name for part in found}
+        for part in found:
+            if not any(need in self.dead or need in found_names for need in part.needs):
+                of_family[part.family].append(part)
+        for family, members in of_family.items():
+            written = self._families[family]
+            if len(members) == len(written):
+                yield next((part for part in members if not part.repeats_an_argument), members[0]), ()
+            elif instances and 2 * len(members) < len(written):
+                named = [part for part in members if not part.repeats_an_argument]
+                if named:
+                    yield named[0], named
+
+    def warning(
+        self, kind: str, part: ModelCondition, instances: Sequence[ModelCondition], message: str
+    ) -> ModelWarning:
+        """What is said of `part`, or of some `instances`."""
+        some = f"of {listed([each.key for each in instances])}: " if len(self._families[part.family]) > 1 else ""
+        where = place(self._automaton, part.key, part.key.rpartition(".")[0])
+        return ModelWarning(where, kind, f"{some if instances else ''}{message}")
+
+
+def _constant(
+    automaton: Automaton, written: Iterable[ModelCondition]
+) -> tuple[list[ModelCondition], list[ModelCondition]]:
+    """The parts that hold for no values of their variables, and those that hold for all."""
+    never: list[ModelCondition] = []
+    always: list[ModelCondition] = []
+    answers: dict[tuple[bool, Shape], tuple[bool, bool]] = {}
+    for part in written:
+        key = (part.old_flags, shape(automaton, part.expression))
+        if key not in answers:
+            answers[key] = _can_hold_and_fail(automaton, part)
+        holds, fails = answers[key]
+        if not holds:
+            never.append(part)
+        elif not fails:
+            always.append(part)
+    return never, always
+
+
+def _can_hold_and_fail(automaton: Automaton, part: ModelCondition) -> tuple[bool, bool]:
+    """Whether some state satisfies a part, and whether some does not; both where it is too hard to tell."""
+    if not can_be_asked(automaton, part.expression):
+        return True, True
+    question = SatisfiabilityQuestion(automaton)
+    before = question.state()
+    literal = question.reading.truth(part.expression, question.sensed(before) if part.old_flags else before).yes
+    try:
+        holds, fails = question.models(literal, -literal)
+    except UndecidedError:
+        return True, True
+    return holds is not None, fails is not None
+
+
+def _contradiction(automaton: Automaton, part: ModelCondition) -> str:
+    """Which words of a part exclude each other."""
+    few: list[tuple[Expression, ...]] = [(each,) for each in conjuncts(part.expression)]
+    few += combinations(conjuncts(part.expression), 2)
+    for words in few:
+        piece = ModelCondition(part.key, part.what, conjunction(*words), old_flags=part.old_flags)
+        if _constant(automaton, [piece])[0]:
+            texts = [f"`{print_expression(word)}`" for word in words]
+            return f"{texts[0]} never holds" if len(texts) == 1 else f"{' and '.join(texts)} exclude each other"
+    return f"`{print_expression(part.expression)}` never holds"
+
+
+def _stuck(growth: Growth, part: ModelCondition) -> tuple[str, str]:
+    """What is said of a part that nothing brings about."""
+    lacking = [f"`{print_expression(each)}`" for each in conjuncts(part.expression) if not growth.may(each)]
+    what = " and ".join(lacking)
+    if growth.any_measurement:
+        return "unreachable", (
+            f"nothing ever makes {what} true, neither an action nor a message{_so(part)}: "
+            "write what was meant, or the action that is missing"
+        )
+    if part.what == "effect's condition":
+        return "effect-never-happens", (
+            f"nothing ever makes {what} true, so this effect never happens: no output and no other effect leads to it"
+        )
+    return "nothing-brings-about", (
+        f"no effect brings about {what}{_so(part)} in any plan: write the effect with which the device does it"
+    )
+
+
+def _so(part: ModelCondition) -> str:
+    return f", {part.consequence}" if part.consequence else ""

@@ -1,0 +1,139 @@
+"""Warnings of the model checks: the conditions of a model, and the names of its parts in a warning."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from sequence_planner.automaton.automaton import Ability, Automaton, State
+from sequence_planner.automaton.findings import without_arguments
+from sequence_planner.language.printer import print_value
+from sequence_planner.language.syntax import TRUE, Expression, conjunction
+from sequence_planner.language.types import Place
+from sequence_planner.synthesis.traces import Trace
+
+# The conditions of a model, each with what it is and what it depends on.
+
+
+@dataclass(frozen=True)
+class ModelCondition:
+    """A condition of the model. Its place is under `key`; without the parts `needs` it means nothing.
+
+    With `old_flags` it is read over new measured values and the flags of the tick before.
+    """
+
+    key: str
+    what: str
+    expression: Expression
+    consequence: str = ""  # of its never holding
+    needs: tuple[str, ...] = ()
+    old_flags: bool = False
+
+    @property
+    def name(self) -> str:
+        """What tells it from all other parts."""
+        return f"{self.key}: {self.what}"
+
+    @property
+    def family(self) -> str:
+        """The name of what was written, for all its ground instances."""
+        return without_arguments(self.name)
+
+    @property
+    def repeats_an_argument(self) -> bool:
+        """Whether it is of an instance such as `carry(left, left)`, which is often meant to be impossible."""
+        found = re.search(r"\(([^)]*)\)", self.key)
+        arguments = found[1].split(", ") if found else []
+        return len(set(arguments)) < len(arguments)
+
+
+def parts(automaton: Automaton) -> Iterator[ModelCondition]:
+    """All conditions, those first on which others depend."""
+    for ability in automaton.abilities.values():
+        yield from _of_ability(ability)
+    for effect in automaton.effects:
+        ability_name = effect.name.rpartition(".")[0]
+        needs = _start_parts(ability_name)
+        yield ModelCondition(effect.name, "effect's condition", effect.guard, "so the effect never happens", needs)
+    for operation in automaton.operations.values():
+        key = f"operation.{operation.name}"
+        precondition = ModelCondition(
+            key, "precondition", operation.precondition, "so the operation never becomes active"
+        )
+        yield precondition
+        yield ModelCondition(key, "goal", operation.goal, "so the operation is never completed", (precondition.name,))
+
+
+def _of_ability(ability: Ability) -> Iterator[ModelCondition]:
+    name = ability.name
+    needs: tuple[str, ...] = _start_parts(name)
+    yield ModelCondition(f"{name}.enabled", "condition", ability.enabled, "so the ability never starts")
+    if ability.start_guard != TRUE:
+        both = conjunction(ability.enabled, ability.start_guard)
+        yield ModelCondition(
+            f"{name}.start", "start guard with `enabled`", both, "so the ability never starts", needs[:1]
+        )
+    executing = ModelCondition(f"{name}.executing", "condition", ability.executing, "", needs)
+    yield executing
+    yield ModelCondition(f"{name}.finished", "condition", ability.finished, "", needs)
+    if ability.finish_guard is not None:
+        needs = (*needs, executing.name)
+        yield ModelCondition(
+            f"{name}.finish", "finish guard", ability.finish_guard, "so the ability never finishes", needs, True
+        )
+
+
+def _start_parts(ability: str) -> tuple[str, str]:
+    return f"{ability}.enabled: condition", f"{ability}.start: start guard with `enabled`"
+
+
+# A suspicion about a model, and how the parts of a model are named in it.
+
+MOST_NAMED = 4  # of several names in a message
+
+
+@dataclass(frozen=True, order=True)
+class ModelWarning:
+    """Where something is suspicious, a stable name for what it is, and what to do about it.
+
+    A `trace` shows how it comes about, where there is one to show.
+    """
+
+    place: Place
+    kind: str
+    message: str
+    trace: Trace | None = field(default=None, compare=False)
+
+    def __str__(self) -> str:
+        return f"{self.place}: warning: {self.message} [{self.kind}]"
+
+
+def place(automaton: Automaton, *names: str) -> Place:
+    """Where the first of `names` that is known was written; else the beginning of the model."""
+    return next((automaton.places[name] for name in names if name in automaton.places), Place(automaton.name, 1, 1))
+
+
+def families(names: Iterable[str]) -> Mapping[str, tuple[str, ...]]:
+    """Ground names by what was written: the instances of `move(p)` under `move`."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for name in names:
+        found[without_arguments(name)].append(name)
+    return {family: tuple(members) for family, members in found.items()}
+
+
+def listed(names: Sequence[str], most: int | None = MOST_NAMED) -> str:
+    """Several names, in backticks; of more than `most` only the first."""
+    shown = ", ".join(f"`{name}`" for name in names[:most])
+    return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"
+
+
+def described(state: State, names: Iterable[str]) -> str:
+    """The values of `names`, as a condition of the language."""
+    return " and ".join(f"{name} == {_shown(state, name)}" for name in names)
+
+
+def _shown(state: State, name: str) -> str:
+    value = state[name]
+    return "unknown" if value is None else print_value(value)

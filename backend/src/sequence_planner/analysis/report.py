@@ -1,0 +1,212 @@
+"""What was found of a model, as one JSON document: what programs and pages are given, and what is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, ConfigDict
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.language.printer import print_expression
+
+if TYPE_CHECKING:
+    from sequence_planner.analysis.analysis import Analysis
+    from sequence_planner.analysis.checks.warning import ModelWarning
+    from sequence_planner.model.source import Finding
+    from sequence_planner.synthesis.guards import SupervisorGuard
+    from sequence_planner.synthesis.traces import Trace
+
+Value = bool | int | str
+
+
+class Document(BaseModel):
+    """Base of all parts: immutable, and nothing beside what is declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class GuardDocument(Document):
+    """What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
+
+    Then `blocked` are some conditions wherever one of which holds they must wait, the one nearest to the initial state
+    first. `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could
+    be reached any more.
+    """
+
+    guard: str | None
+    literals: int | None
+    starts: list[str]
+    specifications: list[str]
+    rest: bool
+    blocked: list[str]
+
+
+class StepDocument(Document):
+    """A step of a trace: what happens (`kind` and `names`), what changes, and the specifications that forbid the state
+    after it; `text` says it in a line.
+    """
+
+    kind: str
+    names: list[str]
+    finished: list[str]
+    changes: dict[str, Value]
+    forbidden_by: list[str]
+    text: str
+
+
+class TraceDocument(Document):
+    """A run from an initial state, which the specifications `forbidden_by` forbid; null is unknown."""
+
+    initial: dict[str, Value | None]
+    forbidden_by: list[str]
+    steps: list[StepDocument]
+
+
+class FindingDocument(Document):
+    """Something suspicious, where it is written, and a run that shows it."""
+
+    severity: str
+    kind: str
+    file: str
+    line: int
+    column: int
+    message: str
+    trace: TraceDocument | None
+
+
+class SetDocument(Document):
+    """A `StateSet`, without the domains of its variables."""
+
+    names: list[str]
+    nodes: list[tuple[int, list[int]]]
+    root: int
+
+
+class SupervisorDocument(Document):
+    """A `Supervisor`."""
+
+    safe: SetDocument
+    guards: dict[str, SetDocument]
+
+
+class AnalysisDocument(Document):
+    """An `Analysis`: what is null has not been computed, or there is none.
+
+    `supervised` says whether there is a supervisor. Where the states that are reached with it are not counted, they are
+    no more than `supervised_at_most`. `guarded` are the abilities that it restricts, and `guards` what it
+    adds to them, by ability, and in a plain automaton by event.
+    """
+
+    pending: str | None
+    supervised: bool | None
+    reachable_states: int | None
+    supervised_states: int | None
+    supervised_at_most: int | None
+    guarded: list[str] | None
+    guards: dict[str, GuardDocument] | None
+    findings: list[FindingDocument] | None
+
+
+def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
+    """What was found of `automaton`."""
+    warnings = analysis.warnings
+    return AnalysisDocument(
+        pending=analysis.pending,
+        supervised=True if analysis.supervisor is not None else None if analysis.warnings is None else False,
+        reachable_states=analysis.reachable_states,
+        supervised_states=analysis.supervised_states,
+        supervised_at_most=analysis.supervised_at_most,
+        guarded=None if analysis.guarded is None else list(analysis.guarded),
+        guards=None if analysis.guards is None else {name: _guard(guard) for name, guard in analysis.guards.items()},
+        findings=None if warnings is None else findings_of(automaton, warnings),
+    )
+
+
+def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[FindingDocument]:
+    """The warnings of a model that can be used."""
+    return [
+        FindingDocument(
+            severity="warning",
+            kind=warning.kind,
+            file=warning.place.file,
+            line=warning.place.line,
+            column=warning.place.column,
+            message=warning.message,
+            trace=None if warning.trace is None else trace_document(automaton, warning.trace),
+        )
+        for warning in warnings
+    ]
+
+
+def error_document(finding: Finding) -> FindingDocument:
+    """Something that makes a model unusable."""
+    return FindingDocument(
+        severity="error",
+        kind="unusable",
+        file=finding.place.file,
+        line=finding.place.line,
+        column=finding.place.column,
+        message=finding.message,
+        trace=None,
+    )
+
+
+def _guard(guard: SupervisorGuard) -> GuardDocument:
+    return GuardDocument(
+        guard=None if guard.expression is None else print_expression(guard.expression),
+        literals=guard.literals,
+        starts=list(guard.starts),
+        specifications=list(guard.specifications),
+        rest=guard.rest,
+        blocked=list(map(print_expression, guard.blocked)),
+    )
+
+
+def trace_document(automaton: Automaton, trace: Trace) -> TraceDocument:
+    """A trace as JSON."""
+    return TraceDocument(
+        initial={name: trace.initial[name] for name in automaton.variables},
+        forbidden_by=list(trace.forbidden_by),
+        steps=[
+            StepDocument(
+                kind=step.kind.value,
+                names=list(step.names),
+                finished=list(step.finished),
+                changes=dict(step.changes),
+                forbidden_by=list(step.forbidden_by),
+                text=line,
+            )
+            for step, line in zip(trace.steps, trace.lines(), strict=True)
+        ],
+    )
+
+
+def supervisor_document(supervisor: Supervisor) -> SupervisorDocument:
+    """A supervisor as JSON."""
+    return SupervisorDocument(
+        safe=_set(supervisor.safe), guards={name: _set(guard) for name, guard in supervisor.guards.items()}
+    )
+
+
+def read_supervisor(automaton: Automaton, document: SupervisorDocument) -> Supervisor:
+    """The supervisor of `automaton` that a document says."""
+    return Supervisor(
+        _read_set(automaton, document.safe),
+        {name: _read_set(automaton, guard) for name, guard in document.guards.items()},
+    )
+
+
+def _set(states: StateSet) -> SetDocument:
+    nodes = [(axis, list(children)) for axis, children in states.nodes]
+    return SetDocument(names=list(states.names), nodes=nodes, root=states.root)
+
+
+def _read_set(automaton: Automaton, document: SetDocument) -> StateSet:
+    return StateSet(
+        tuple(document.names),
+        tuple(automaton.variables[name].type.domain for name in document.names),
+        tuple((axis, tuple(children)) for axis, children in document.nodes),
+        document.root,
+    )

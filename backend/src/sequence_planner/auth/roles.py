@@ -1,0 +1,53 @@
+"""Authorization model: roles of people, scopes of API keys, and the refusal raised by `auth`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+# How `identity` says no.
+
+
+class IdentityRefused(Exception):
+    """What was asked for is not done, and nothing has changed.
+
+    `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
+    `status` is the HTTP status that says the same, `retry_after` the seconds after which to try again makes sense.
+    """
+
+    def __init__(
+        self, slug: str, title: str, detail: str, status: int = 409, *, retry_after: int | None = None
+    ) -> None:
+        super().__init__(detail)
+        self.slug = slug
+        self.title = title
+        self.detail = detail
+        self.status = status
+        self.retry_after = retry_after
+
+
+# What people and systems may do: roles of people, each of which includes those before it, and scopes of keys.
+
+
+class Role(StrEnum):
+    """A person's role; the order is that of the declaration."""
+
+    VIEWER = "viewer"
+    OPERATOR = "operator"
+    ENGINEER = "engineer"
+    ADMINISTRATOR = "administrator"
+
+    def includes(self, other: Role) -> bool:
+        """Whether who has this role may do what `other` may."""
+        order = list(Role)
+        return order.index(self) >= order.index(other)
+
+
+class Scope(StrEnum):
+    """What the bearer of a key may do."""
+
+    READ = "read"  # the station as a viewer sees it
+    AUDIT = "audit"  # the record of who did what
+    ORDERS_READ = "orders-read"  # job orders, what became of them, and what the station can do
+    ORDERS_WRITE = "orders-write"  # store and change job orders, and command them
+    METRICS = "metrics"  # figures of the system's own, for those who watch over it
+    WEBHOOKS = "webhooks"  # say who is told of events, and where

@@ -1,0 +1,238 @@
+"""The automaton: variables, abilities, effects, operations and specifications, all ground and resolved."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from enum import StrEnum
+from functools import cached_property
+
+from sequence_planner.core.immutable import Immutable, uncompared
+from sequence_planner.language.syntax import Assignment, Expression, Variable, variables
+from sequence_planner.language.types import BOOLEAN, Place, Type, Value
+
+# A state gives every variable and every ability flag a value; None is unknown. Never changed once made.
+State = Mapping[str, Value | None]
+
+
+class Kind(StrEnum):
+    """Who writes a variable."""
+
+    MEASURED = "measured"
+    OUTPUT = "output"
+    ESTIMATED = "estimated"
+    ACTIVITY = "activity"  # the tick: whether an operation is active; only of operations that some expression reads
+
+
+class VariableDeclaration(Immutable):
+    """A variable by its full name; `resource` is None for those of the station.
+
+    With `dual_approval` a correction or force of it needs a second person.
+    """
+
+    name: str
+    type: Type
+    kind: Kind
+    initial: Value
+    resource: str | None
+    dual_approval: bool = False
+
+
+class Effect(Immutable):
+    """An expected reaction of measured variables, taking between `shortest` and `longest` seconds."""
+
+    name: str
+    resource: str
+    kind: str
+    guard: Expression
+    actions: tuple[Assignment, ...]
+    shortest: float = 0.0
+    longest: float = 0.0
+    fault: bool = False
+
+
+class HumanTask(Immutable):
+    """What a person is asked to do, and the measured variable that says it is done."""
+
+    text: str
+    acknowledgement: str
+
+
+class Timeouts(Immutable):
+    """Seconds after a start by which an ability must have reacted, and have finished, before an alarm is raised.
+
+    It has reacted when it has been seen executing, or has finished. With `replan` its cancel actions are taken besides,
+    and a plan is made anew: with it as long as it has been overdue no more than `retries` times, then without it.
+    """
+
+    react: float | None = None
+    finish: float | None = None
+    retries: int = 0
+    replan: bool = False
+
+
+class Ability(Immutable):
+    """A ground ability. `finish_guard` is None when it is done at its start.
+
+    `cancel_actions` are taken when a running ability is called off; `duration` is the shortest and longest time in
+    seconds that a run is estimated to take.
+    """
+
+    name: str
+    resource: str
+    title: str
+    enabled: Expression
+    start_guard: Expression
+    start_actions: tuple[Assignment, ...]
+    executing: Expression
+    finished: Expression
+    finish_guard: Expression | None
+    finish_actions: tuple[Assignment, ...]
+    restart: bool = False
+    human: HumanTask | None = None
+    timeouts: Timeouts = Timeouts()
+    duration: tuple[float, float] | None = None
+    cancel_actions: tuple[Assignment, ...] = ()
+
+    def flag(self, which: str) -> str:
+        """The full name of its flag `enabled`, `executing` or `finished`."""
+        return f"{self.name}.{which}"
+
+
+class Flag(Immutable):
+    """A truth value that equals its predicate after every synchronisation."""
+
+    name: str
+    predicate: Expression
+
+
+class Operation(Immutable):
+    """A ground operation; of several that cannot be planned together, the highest `priority` is kept.
+
+    `local` is a formula of LTL over finite traces (`language.ltl`) for the run from its activation to its goal.
+    Without `repeat`, once completed, it does not activate again until it has been reset.
+    """
+
+    name: str
+    title: str
+    precondition: Expression
+    goal: Expression
+    priority: int = 0
+    local: Expression | None = None
+    repeat: bool = True
+
+    @property
+    def activity(self) -> str:
+        """The full name of the truth value that says whether it is active."""
+        return f"operation.{self.name}.active"
+
+
+class Specification(Immutable):
+    """A ground specification: no state may satisfy `forbidden`."""
+
+    name: str
+    title: str
+    forbidden: Expression
+
+
+class WorkMaster(Immutable):
+    """What a job consists of: its operations, each with those that must be completed before it.
+
+    `brings` are the estimated values that a new product has.
+    """
+
+    name: str
+    title: str
+    operations: Mapping[str, frozenset[str]]
+    brings: tuple[Assignment, ...] = ()
+
+
+class Automaton(Immutable):
+    """All of it. `flags` are in an order in which none depends on a later one.
+
+    A station's automaton goes by the tick. With `one_at_a_time` it is a plain automaton: it has neither flags nor
+    finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
+    `initial` describes the initial states of one that has several; each declared initial value then is that of one of
+    them. `goals` are formulas over its runs. `places` says where a part was written, by its name; `reactions` which
+    effects are written with an ability.
+    """
+
+    name: str
+    title: str
+    description: str
+    resources: Mapping[str, str]  # name: title
+    variables: Mapping[str, VariableDeclaration]
+    abilities: Mapping[str, Ability]
+    flags: tuple[Flag, ...]
+    effects: tuple[Effect, ...] = ()
+    operations: Mapping[str, Operation] = {}
+    specifications: Mapping[str, Specification] = {}
+    rest: Expression | None = None  # None: every state is one of rest
+    work_masters: Mapping[str, WorkMaster] = {}
+    one_at_a_time: bool = False
+    initial: Expression | None = None
+    goals: tuple[Expression, ...] = ()
+    places: Mapping[str, Place] = uncompared(default={})
+    reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
+
+    def names(self, kind: Kind) -> tuple[str, ...]:
+        """The variables of a kind, in order of declaration."""
+        return tuple(name for name, variable in self.variables.items() if variable.kind is kind)
+
+    @cached_property
+    def outputs(self) -> frozenset[str]:
+        """The output variables."""
+        return frozenset(self.names(Kind.OUTPUT))
+
+    @cached_property
+    def job_operations(self) -> frozenset[str]:
+        """The operations of work masters."""
+        return frozenset(name for master in self.work_masters.values() for name in master.operations)
+
+    @cached_property
+    def types(self) -> Mapping[str, Type]:
+        """The type of each variable and flag."""
+        types: dict[str, Type] = {name: variable.type for name, variable in self.variables.items()}
+        return types | dict.fromkeys((flag.name for flag in self.flags), BOOLEAN)
+
+    @cached_property
+    def flag_predicates(self) -> Mapping[str, Expression]:
+        """The predicate of each flag."""
+        return {flag.name: flag.predicate for flag in self.flags}
+
+    @cached_property
+    def flag_readers(self) -> Mapping[str, tuple[int, ...]]:
+        """By variable or flag, the numbers of the flags whose predicates read it, ascending."""
+        readers: dict[str, list[int]] = defaultdict(list)
+        for number, flag in enumerate(self.flags):
+            for name in dict.fromkeys(variables(flag.predicate)):
+                readers[name].append(number)
+        return {name: tuple(numbers) for name, numbers in readers.items()}
+
+    @cached_property
+    def finish_readers(self) -> Mapping[str, tuple[str, ...]]:
+        """By variable or flag, the abilities whose finish guard or finish actions read it."""
+        readers: dict[str, dict[str, None]] = defaultdict(dict)
+        for ability in self.abilities.values():
+            guard = () if ability.finish_guard is None else variables(ability.finish_guard)
+            for name in (*guard, *(name for action in ability.finish_actions for name in reads(action))):
+                readers[name][ability.name] = None
+        return {name: tuple(names) for name, names in readers.items()}
+
+    @cached_property
+    def initial_valuation(self) -> State:
+        """The declared initial value of each variable; flags are undetermined."""
+        values: dict[str, Value | None] = {name: variable.initial for name, variable in self.variables.items()}
+        return values | dict.fromkeys((flag.name for flag in self.flags), None)
+
+
+def target(action: Assignment) -> str:
+    """The full name of the variable an action writes."""
+    assert isinstance(action.target, Variable)
+    return action.target.name
+
+
+def reads(action: Assignment) -> frozenset[str]:
+    """The variables an action reads."""
+    condition = () if action.condition is None else variables(action.condition)
+    return frozenset((*variables(action.value), *condition))

@@ -1,0 +1,262 @@
+"""What there is in a station: its enumerations, variables, flags and operations, each under one name."""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Iterator
+from itertools import product
+
+from sequence_planner.automaton.automaton import Kind, VariableDeclaration
+from sequence_planner.automaton.findings import Binding, Findings, instance_name
+from sequence_planner.language.lexer import KEYWORDS, MOST_DIGITS
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import (
+    BOOLEAN,
+    EnumerationType,
+    IntegerRange,
+    Place,
+    Type,
+    Value,
+    contains,
+)
+from sequence_planner.model.documents import AbilityDocument, Parameters, VariableDocument
+from sequence_planner.model.loader import Station
+from sequence_planner.model.source import SourceText
+
+FLAGS = ("enabled", "executing", "finished")
+OPERATION = "operation"  # the first part of the name of what the tick knows of an operation
+MOST_VALUES = 1000  # of a range; every value costs memory in plans and supervisors
+
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_RANGE = re.compile(r"(-?[0-9]{1,18})\s*\.\.\s*(-?[0-9]{1,18})")
+_KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
+
+
+class Declarations:
+    """The names of a station. `types` has the type of everything an expression can read.
+
+    `broken` are names that are declared, but of no usable type: their uses are not wrong as well.
+    """
+
+    def __init__(self, station: Station, findings: Findings) -> None:
+        self._station = station
+        self._findings = findings
+        self.enumerations: dict[str, EnumerationType] = {}
+        self.variables: dict[str, VariableDeclaration] = {}
+        self.types: dict[str, Type] = {}
+        self.places: dict[str, Place] = {}
+        self.broken: set[str] = set()
+        self._check_resources()
+        self._read_enumerations()
+        self._read_variables()
+        self._check_values()
+        self._declare_flags()
+        self._declare_activities()
+
+    def noting(self, findings: Findings, types: dict[str, Type] | None = None) -> Declarations:
+        """The same names, and what is found by them from now on is noted in `findings`; `types` replaces theirs."""
+        other = copy.copy(self)
+        other._findings = findings
+        if types is not None:
+            other.types = types
+        return other
+
+    def all(self) -> tuple[object, ...]:
+        """All that a text can mean something by, in order: where two of these are equal, each text means the same."""
+        return (
+            list(self.types.items()),
+            list(self.variables.items()),
+            list(self.enumerations.items()),
+            frozenset(self.broken),
+        )
+
+    def written_abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument]]:
+        """Each ability as it is written: its resource, its name and its document."""
+        for resource, document in self._station.resources.items():
+            for name, ability in document.abilities.items():
+                yield resource, name, ability
+
+    def abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument, Binding]]:
+        """Each ground ability: its resource, its name as written, its document, and the values of its parameters."""
+        for resource, name, ability in self.written_abilities():
+            for binding in self.bindings(ability.parameters):
+                yield resource, name, ability, binding
+
+    def bindings(self, parameters: Parameters) -> list[Binding]:
+        """Every choice of values for `parameters`; one empty choice when there are none, none for an unknown type."""
+        if any(enumeration not in self.enumerations for enumeration in parameters.values()):
+            return []
+        types = [self.enumerations[enumeration] for enumeration in parameters.values()]
+        return [
+            {str(name): (value, type_) for name, value, type_ in zip(parameters, values, types, strict=True)}
+            for values in product(*(type_.values for type_ in types))
+        ]
+
+    def check_name(self, name: SourceText) -> None:
+        """Note a name that is none."""
+        if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
+            message = f"`{name}` is no name: use letters, digits and `_`, and none of the words of the language"
+            self._findings.add(name, message)
+
+    def check_parameters(self, parameters: Parameters, *prefixes: str) -> None:
+        """Note parameters that are none, and those that would hide something: a variable of the station or under
+        `prefixes`, a flag, or a value of an enumeration.
+        """
+        values = {value: each for each, type_ in self.enumerations.items() for value in type_.values}
+        for name, enumeration in parameters.items():
+            self.check_name(name)
+            if name in FLAGS:
+                self._findings.add(name, f"`{name}` is a flag of every ability: give the parameter another name")
+            if name in values:
+                message = f"the parameter `{name}` hides the value `{name}` of `{values[name]}`: rename one of them"
+                self._findings.add(name, message)
+            for hidden in (f"{prefix}{name}" for prefix in (*prefixes, "")):
+                if hidden in self.types or hidden in self.broken:
+                    self._findings.add(
+                        name, f"the parameter `{name}` hides the variable `{hidden}`: rename one of them"
+                    )
+            if enumeration not in self.enumerations:
+                near = suggestion(enumeration, self.enumerations)
+                self._findings.add(enumeration, f"unknown enumeration `{enumeration}`{near}")
+
+    def _check_resources(self) -> None:
+        for name in self._station.resources:
+            file = str(self._station.folder / "resources" / f"{name}.yaml")
+            self.check_name(SourceText(name, Place(file, 1, 1), name))
+            if name == OPERATION:
+                message = f"`{OPERATION}` stands for the operations in expressions: give the resource another name"
+                self._findings.add(Place(file, 1, 1), message)
+
+    def _declare(self, name: str, key: SourceText) -> bool:
+        """Whether `name` is new; a second declaration is a finding."""
+        if name in self.places:
+            message = f"duplicate name `{name}`, first declared at {self.places[name]}: rename one of them"
+            self._findings.add(key, message)
+            return False
+        self.places[name] = key.place
+        return True
+
+    def _read_enumerations(self) -> None:
+        for name, values in self._station.station.enumerations.items():
+            self.check_name(name)
+            if name == "bool":
+                self._findings.add(name, "`bool` is a type already: rename the enumeration")
+            for index, value in enumerate(values):
+                self.check_name(value)
+                if value in values[:index]:
+                    self._findings.add(value, f"duplicate value `{value}` in `{name}`")
+            self.enumerations[name] = EnumerationType(tuple(map(str, values)))
+
+    def _read_variables(self) -> None:
+        for name, document in self._station.station.estimated.items():
+            self._read_variable(None, name, document, Kind.ESTIMATED)
+        for resource, resource_document in self._station.resources.items():
+            for kind in _KINDS:
+                for name, document in getattr(resource_document, kind.value).items():
+                    self._read_variable(resource, name, document, kind)
+
+    def _check_values(self) -> None:
+        """Note values of enumerations that a variable of the same name hides where both can be meant: among the texts
+        of a resource that has something of the enumeration, and everywhere if the variable is the station's.
+        """
+        for enumeration, values in self._station.station.enumerations.items():
+            for value in values:
+                for resource in (None, *self._resources_with(str(enumeration))):
+                    variable = value if resource is None else f"{resource}.{value}"
+                    if variable in self.places:
+                        message = f"the value `{value}` of `{enumeration}` has the name of the variable `{variable}`"
+                        self._findings.add(value, f"{message}, which hides it: rename one of them")
+
+    def _resources_with(self, enumeration: str) -> list[str]:
+        """The resources with a variable of the type, or an ability with a parameter of it."""
+        return [
+            name
+            for name, document in self._station.resources.items()
+            if any(each.type == enumeration for kind in _KINDS for each in getattr(document, kind.value).values())
+            or any(enumeration in each.parameters.values() for each in document.abilities.values())
+        ]
+
+    def _read_variable(self, resource: str | None, name: SourceText, document: VariableDocument, kind: Kind) -> None:
+        self.check_name(name)
+        full = name if resource is None else f"{resource}.{name}"
+        type_ = self.type_of(name, document.type, kind)
+        if name in FLAGS:
+            self._findings.add(name, f"`{name}` is a flag of every ability: give the variable another name")
+        self.check_parameters(document.each)
+        if not self._declare(full, name):
+            return
+        bindings = self.bindings(document.each)
+        if type_ is None or not bindings:
+            self.broken.add(full)
+            return
+        initial = self.initial_of(name, full, document.initial, type_)
+        dual = document.approval == "dual"
+        for binding in bindings:
+            ground_name = instance_name(full, binding, indexed=True)
+            self.variables[ground_name] = VariableDeclaration(ground_name, type_, kind, initial, resource, dual)
+            self.types[ground_name] = type_
+            self.places[ground_name] = name.place
+
+    def type_of(self, name: SourceText, text: SourceText | None, kind: Kind) -> Type | None:
+        """The type of the variable `name` that `text` means; if it means none, that is noted."""
+        if text is None:
+            what = "write type: bool, a range such as 0..3, or an enumeration"
+            why = "" if kind is Kind.ESTIMATED else f", and no field of a topic has one for `{name}`"
+            self._findings.add(name, f"`{name}` needs a type{why}: {what}")
+            return None
+        if text == "bool":
+            return BOOLEAN
+        if match := _RANGE.fullmatch(text):
+            return self._range(text, int(match[1]), int(match[2]))
+        if text not in self.enumerations:
+            near = suggestion(text, ["bool", *self.enumerations])
+            message = f"unknown type `{text}`: write bool, a range such as 0..3, or an enumeration{near}"
+            self._findings.add(text, message)
+            return None
+        return self.enumerations[text]
+
+    def initial_of(self, name: SourceText, full: str, written: Value | None, type_: Type) -> Value:
+        """The initial value of the variable `full`; if the `written` one is none of its type, that is noted."""
+        initial: Value = written if written is not None else type_.domain[0]
+        if isinstance(initial, SourceText):
+            initial = str(initial)
+        if not contains(type_, initial):
+            where = written if isinstance(written, SourceText) else name
+            near = suggestion(str(initial), map(str, type_.domain))
+            message = f"`{initial}` is no initial value of `{full}`, which ranges over {type_}{near}"
+            self._findings.add(where, message)
+        return initial
+
+    def _range(self, text: SourceText, low: int, high: int) -> IntegerRange | None:
+        if low > high:
+            self._findings.add(text, f"the range {text} is empty: write the smaller number first")
+        elif high - low >= MOST_VALUES:
+            message = f"the range {text} has more than {MOST_VALUES} values: use a coarser measure"
+            self._findings.add(text, message)
+        elif max(-low, high) >= 10**MOST_DIGITS:
+            self._findings.add(text, f"integers have at most {MOST_DIGITS} digits")
+        else:
+            return IntegerRange(low, high)
+        return None
+
+    def _declare_flags(self) -> None:
+        for resource, document in self._station.resources.items():
+            for name, ability in document.abilities.items():
+                self.check_name(name)
+                self.check_parameters(ability.parameters, f"{resource}.")
+                if self._declare(f"{resource}.{name}", name) and not self.bindings(ability.parameters):
+                    self.broken.add(f"{resource}.{name}")
+        for resource, name, _, binding in self.abilities():
+            full = instance_name(f"{resource}.{name}", binding)
+            self.types |= {f"{full}.{flag}": BOOLEAN for flag in FLAGS}
+
+    def _declare_activities(self) -> None:
+        for name, document in self._station.operations.items():
+            self.check_name(name)
+            self.check_parameters(document.parameters)
+            bindings = self.bindings(document.parameters)
+            if not bindings:
+                self.broken.add(f"{OPERATION}.{name}")
+            for binding in bindings:
+                self.types[f"{OPERATION}.{instance_name(name, binding)}.active"] = BOOLEAN

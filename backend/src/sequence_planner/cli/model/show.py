@@ -1,0 +1,259 @@
+"""`show`: the ground automaton of a model, for people and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sequence_planner.analysis.report import GuardDocument
+from sequence_planner.automaton.automaton import (
+    Ability,
+    Automaton,
+    Effect,
+    Kind,
+    Operation,
+    VariableDeclaration,
+)
+from sequence_planner.cli.analysing import Deadline, Limits, analysed, guarded
+from sequence_planner.cli.loading import LoadedModel, usable_automaton, usable_model
+from sequence_planner.cli.model.pipelines import chosen, pipeline_lines
+from sequence_planner.cli.model.synthesize import described_automaton, guard_lines
+from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
+from sequence_planner.controller.io.pipeline_graph import pipelines_view
+from sequence_planner.language.printer import print_assignment, print_expression, print_value
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.syntax import FALSE, TRUE, Assignment, Expression
+
+Lines = Iterator[str]
+Guards = Mapping[str, GuardDocument]  # by ability
+
+LONGEST = 30.0  # seconds that whoever wants to see a model waits for guards
+
+
+def show(
+    model: AnyModel,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME]...", help="Show these only: a resource, variable, ability, operation, ..."),
+    ] = None,
+    pipelines: Annotated[bool, typer.Option("--pipelines", help="Show the pipelines of topics and flows.")] = False,
+    deadline: Deadline = LONGEST,
+    memory: Memory = USUAL_MEMORY,
+    json: AsJson = False,
+) -> None:
+    """Show what a model means: its variables, ground abilities with their effects, operations and specifications.
+
+    A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
+    The guard that the supervisor adds to a start stands apart from those that are written, with where it comes from.
+    The exit code is 1 when these could not be found out in the time or memory there is.
+    With --json also the transitions of each phase of the tick, with what they read and write.
+    With --pipelines instead the typed graph of each topic and flow, of which a NAME is also one: the fields on each
+    edge, where a stage adds or changes some, and what becomes of them.
+    """
+    limits = Limits(deadline, memory)
+    wanted = list(names or ())
+    if pipelines:
+        _show_pipelines(model, usable_model(model), wanted, json)
+        return
+    automaton = usable_automaton(model)
+    known = _names(automaton)
+    for name in wanted:
+        if not any(_bears(each, name) for each in known):
+            refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
+    guards, unfinished = _guards(automaton, wanted, limits)
+    if json:
+        print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
+    else:
+        typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
+    if unfinished:
+        raise typer.Exit(FINDINGS)
+
+
+def _show_pipelines(path: Path, model: LoadedModel, wanted: list[str], json: bool) -> None:
+    if model.station is None:
+        refuse(f"{path}: a plain automaton has no pipelines")
+    view = pipelines_view(model.station.pipelines)
+    known = [*view.pipelines, *(each.resource for each in view.pipelines.values())]
+    for name in wanted:
+        if name not in known:
+            refuse(f"{path}: no topic, flow or resource with one is called `{name}`{suggestion(name, known)}")
+    view = chosen(view, wanted)
+    if json:
+        print_json(view.model_dump(mode="json"))
+    else:
+        typer.echo("\n".join(pipeline_lines(view)))
+
+
+def _guards(automaton: Automaton, wanted: list[str], limits: Limits) -> tuple[Guards, bool]:
+    """The guard that the supervisor adds to each ability that is to be shown, and whether time or memory were short."""
+    shown = frozenset(name for name in automaton.abilities if _chosen(name, wanted))
+    if not shown or (not automaton.specifications and automaton.rest is None):
+        return {}, False
+    found = guarded(automaton, shown, limits) if wanted else analysed(automaton, limits)
+    if found.document.supervised is False:
+        typer.echo("there is no supervisor: `check` says why", err=True)
+    elif found.document.guards is None:
+        typer.echo(f"the guards of the supervisor are not shown: {found.unfinished}", err=True)
+    guards = {start: guard for guard in (found.document.guards or {}).values() for start in guard.starts}
+    return guards, found.unfinished is not None
+
+
+def _names(automaton: Automaton) -> list[str]:
+    groups: tuple[Iterable[str], ...] = (
+        automaton.resources,
+        automaton.variables,
+        automaton.abilities,
+        automaton.operations,
+        automaton.specifications,
+        automaton.work_masters,
+        (effect.name for effect in automaton.effects),
+    )
+    return [name for group in groups for name in group]
+
+
+def _bears(name: str, wanted: str) -> bool:
+    return name == wanted or any(name.startswith(f"{wanted}{sign}") for sign in (".", "(", "[", ":"))
+
+
+def _chosen(name: str, wanted: list[str]) -> bool:
+    return not wanted or any(_bears(name, each) for each in wanted)
+
+
+def _lines(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
+    if not wanted:
+        yield f"{automaton.title} ({automaton.name})"
+    for resource, title in (*automaton.resources.items(), (None, "The station")):
+        variables = [v for v in automaton.variables.values() if v.resource == resource and _chosen(v.name, wanted)]
+        abilities, effects = _of_resource(automaton, resource)
+        shown = [*_variables(variables), *_abilities(abilities, effects, guards, wanted)]
+        if shown:
+            yield from ("", title if resource is None else f"{title} ({resource})", *shown)
+    if automaton.one_at_a_time:
+        yield from _transitions(automaton, guards, wanted)
+    for operation in automaton.operations.values():
+        if _chosen(operation.name, wanted):
+            yield from ("", *_operation(operation))
+    for specification in automaton.specifications.values():
+        if _chosen(specification.name, wanted):
+            yield from ("", f"specification {specification.name}: {specification.title}")
+            yield f"  forbidden   {print_expression(specification.forbidden)}"
+    for master in automaton.work_masters.values():
+        if _chosen(master.name, wanted):
+            yield from ("", f"work master {master.name}: {master.title}")
+            for step, before in master.operations.items():
+                yield f"  {step}" + (f" after {', '.join(sorted(before))}" if before else "")
+            yield from _actions("brings", master.brings)
+    if not wanted and automaton.rest is not None:
+        yield from ("", f"rest  {print_expression(automaton.rest)}")
+
+
+def _of_resource(automaton: Automaton, resource: str | None) -> tuple[list[Ability], list[Effect]]:
+    """The abilities and effects of a resource; the transitions of a plain automaton are of none."""
+    if automaton.one_at_a_time:
+        return [], []
+    abilities = [ability for ability in automaton.abilities.values() if ability.resource == resource]
+    return abilities, [effect for effect in automaton.effects if effect.resource == resource]
+
+
+def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
+    for kind in Kind:
+        for variable in variables:
+            if variable.kind is kind:
+                initial = print_value(variable.initial)
+                yield f"  {kind.value:9}  {variable.name}: {variable.type}, initially {initial}"
+
+
+def _abilities(abilities: Iterable[Ability], effects: Iterable[Effect], guards: Guards, wanted: list[str]) -> Lines:
+    left = {effect.name: effect for effect in effects}
+    for ability in abilities:
+        own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]
+        shown = [effect for effect in own if _chosen(ability.name, wanted) or _chosen(effect.name, wanted)]
+        if _chosen(ability.name, wanted):
+            yield from _ability(ability, guards.get(ability.name))
+        for effect in shown:
+            yield from _effect(effect)
+
+
+def _ability(ability: Ability, guard: GuardDocument | None) -> Lines:
+    restart = ", for restart mode only" if ability.restart else ""
+    yield from ("", f"  ability {ability.name}: {ability.title}{restart}")
+    yield from _condition("enabled", ability.enabled, TRUE)
+    yield from _condition("start", ability.start_guard, TRUE)
+    yield from _added(guard)
+    yield from _actions("start", ability.start_actions, "    ")
+    yield from _condition("executing", ability.executing, FALSE)
+    yield from _condition("finished", ability.finished, FALSE)
+    if ability.finish_guard is not None:
+        yield from _condition("finish", ability.finish_guard, None)
+        yield from _actions("finish", ability.finish_actions, "    ")
+    yield from _actions("cancel", ability.cancel_actions, "    ")
+    if ability.human is not None:
+        yield f"    person      {ability.human.text} (acknowledged by {ability.human.acknowledgement})"
+    limits = {"react": ability.timeouts.react, "finish": ability.timeouts.finish}
+    for name, seconds in limits.items():
+        if seconds is not None:
+            yield f"    {name} within {seconds:g} s"
+    if ability.timeouts.replan:
+        again = ability.timeouts.retries
+        tried = f", tried again {'once' if again == 1 else f'{again} times'}" if again else ""
+        yield f"    overdue     called off{tried}, then planned without it"
+    if ability.duration is not None:
+        yield f"    duration    {_seconds(*ability.duration)}"
+
+
+def _effect(effect: Effect) -> Lines:
+    fault = ", a fault" if effect.fault else ""
+    yield f"    effect {effect.name} ({effect.kind}{fault}, {_seconds(effect.shortest, effect.longest)})"
+    yield f"      {'when':10}  {print_expression(effect.guard)}"
+    yield from _actions("do", effect.actions, "      ")
+
+
+def _transitions(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
+    """Those of a plain automaton."""
+    for ability in automaton.abilities.values():
+        if _chosen(ability.name, wanted):
+            yield from ("", f"controllable {ability.name}")
+            yield from _condition("guard", ability.start_guard, TRUE)
+            yield from _added(guards.get(ability.name), rest="marked")
+            yield from _actions("set", ability.start_actions, "    ")
+    for effect in automaton.effects:
+        if _chosen(effect.name, wanted):
+            yield from ("", f"uncontrollable {effect.name}")
+            yield from _condition("guard", effect.guard, TRUE)
+            yield from _actions("set", effect.actions, "    ")
+
+
+def _operation(operation: Operation) -> Lines:
+    once = "" if operation.repeat else ", once until it is reset"
+    yield f"operation {operation.name}: {operation.title}, priority {operation.priority}{once}"
+    yield f"  precondition  {print_expression(operation.precondition)}"
+    yield f"  goal          {print_expression(operation.goal)}"
+    if operation.local is not None:
+        yield f"  local         {print_expression(operation.local)}"
+
+
+def _condition(name: str, condition: Expression, usual: Expression | None) -> Lines:
+    """A condition, if it says more than the usual one."""
+    if condition != usual:
+        yield f"    {name:10}  {print_expression(condition)}"
+
+
+def _added(guard: GuardDocument | None, rest: str = "rest") -> Lines:
+    """What the supervisor adds, and the specifications that this comes from."""
+    if guard is not None:
+        reasons = [*guard.specifications, *([rest] if guard.rest else [])]
+        lines = [*guard_lines(guard), f"(because of {', '.join(reasons)})"]
+        for name, line in zip(("supervisor", *([""] * (len(lines) - 1))), lines, strict=True):
+            yield f"    {name:10}  {line}"
+
+
+def _actions(name: str, actions: Iterable[Assignment], margin: str = "  ") -> Lines:
+    for action in actions:
+        yield f"{margin}{name:10}  {print_assignment(action)}"
+
+
+def _seconds(fewest: float, most: float) -> str:
+    return f"{fewest:g} s" if fewest == most else f"{fewest:g} to {most:g} s"

@@ -1,0 +1,162 @@
+"""The station's devices, as the network shows them: what they say, and what they are told."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Container, Iterator, Sequence
+
+import structlog
+
+from sequence_planner.automaton.automaton import State
+from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.io.clients import Clients
+from sequence_planner.controller.io.inputs import Inbox, Inputs
+from sequence_planner.controller.io.monitor import Observing, record_view
+from sequence_planner.controller.io.network import NetworkWatch
+from sequence_planner.controller.io.outputs import Outputs
+from sequence_planner.controller.io.overrides import Overrides
+from sequence_planner.controller.views.pipelines import FlowsView, RecordView
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.pipelines.graph import PipelineView
+from sequence_planner.ros.qos import QualityEvent
+from sequence_planner.ros.transport import Sample, TellsServices, Transport
+from sequence_planner.simulation.manual_interface import NODE as EMULATED_DEVICES
+from sequence_planner.station import ReadyStation
+
+LOG = structlog.get_logger(__name__)
+
+GRAPH_EVERY = 1.0  # seconds between two looks at the ROS graph
+
+
+class Devices:
+    """All that passes between a station and its devices; `wake` is called when something was heard."""
+
+    def __init__(self, station: ReadyStation, transport: Transport, wake: Callable[[], None]) -> None:
+        pipelines, registry = station.pipelines, station.registry
+        self._transport = transport
+        self._wake = wake
+        self.feeds = Inputs(pipelines, registry, station.automaton.initial_valuation)
+        self.network = NetworkWatch(pipelines, registry)
+        self._inbox = Inbox(self.feeds.reports)
+        self.clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
+        self.commander = Outputs(pipelines.outgoing, registry, transport)
+        self.overrides = Overrides(pipelines, self.feeds, self.commander, self.clients)
+        self._observing = Observing()
+        self._next_graph = 0.0
+        self._awaited = frozenset(self.feeds.expected)
+        transport.watch(self._hear_quality)
+        for pipeline in pipelines.incoming.values():
+            transport.subscribe(pipeline.topic.name, pipeline.topic.type_name, pipeline.topic.quality, self._hear)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether something was heard and has not been looked at."""
+        return bool(self._inbox)
+
+    def heard(self) -> Iterator[list[Sample]]:
+        """What was heard, in parts of which no topic has more than one."""
+        return self._inbox.parts()
+
+    def due(self, is_released: bool) -> float | None:
+        """When time alone makes a difference, on the clock of `time.monotonic`."""
+        dues = (self.feeds.due, self.commander.due if is_released else None)
+        return min((due for due in dues if due is not None), default=None)
+
+    def take_command(self) -> None:
+        """Say on the network that this station commands its devices. Until then it only listens.
+
+        Raises `TransportError`.
+        """
+        self.commander.advertise()
+        self.network.commands = True
+
+    def wait_to_command(self) -> None:
+        """This station is to command its devices, and only listens as long as somebody else does."""
+        self.network.waits = True
+        self.see_network()
+
+    def publish(self, state: State, everything: bool) -> None:
+        """Send the outputs of a state: all of them, or those that differ from what was sent before."""
+        now = time.monotonic()
+        if everything:
+            self.commander.publish_all(state, now)
+        else:
+            self.commander.publish(state, now)
+        self.clients.heed(state, now)
+
+    def repeat(self, released: State, now: float) -> None:
+        """Send again what is due, of outputs that are out."""
+        self.commander.repeat(now)
+        self.clients.heed(released, now)
+
+    def look(self, moment: Timestamp) -> None:
+        """Look at the network, every so often and when something is not heard in time: then it is known at once why."""
+        before, self._awaited = self._awaited, frozenset(self.feeds.awaited(moment.monotonic))
+        if moment.monotonic >= self._next_graph or not self._awaited <= before:
+            self._next_graph = moment.monotonic + GRAPH_EVERY
+            self.see_network()
+
+    def see_network(self) -> None:
+        """Look at the network now."""
+        graph = self._transport.graph()
+        ends = self._transport.services() if isinstance(self._transport, TellsServices) else None
+        for topic in self.network.look(graph, ends):
+            if topic in self.feeds.topics:
+                self.feeds.abandon(topic)
+        self.clients.look(graph)
+
+    def strangers(self, node: str) -> list[str]:
+        """What speaks against the station's devices being those of `node` alone, as the network is now."""
+        return self.network.strangers(self._transport.graph(), node)
+
+    def real_devices(self) -> list[str]:
+        """What speaks against these being emulated ones."""
+        return self.network.others(self._transport.graph(), f"/{EMULATED_DEVICES}")
+
+    def obstacles(self) -> tuple[str, ...]:
+        """What keeps every ability from starting."""
+        owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
+        return (*self.network.rivals.values(), *owed)
+
+    def flows(self, among: Container[str] | None = None) -> FlowsView:
+        """What has passed the pipelines, or those `among` these."""
+        return self._observing.view(self._observed(among), Timestamp.now())
+
+    def record(self, pipeline: str) -> RecordView:
+        """The last record of a pipeline. Raises `CommandRefused` where there is none that can be told."""
+        found = self._observed({pipeline}).get(pipeline)
+        if found is None:
+            raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
+        try:
+            record = record_view(found, Timestamp.now())
+        except ValueError as error:
+            detail = f"The last record of `{pipeline}` is too large to be told: {error}."
+            raise CommandRefused("record-too-large", "The record is too large", detail, 422) from None
+        if record is None:
+            detail = f"Nothing has passed `{pipeline}` since the controller began. Try again when something has."
+            raise CommandRefused("no-record", "There is no record", detail, 409)
+        return record
+
+    def _observed(self, among: Container[str] | None) -> dict[str, PipelineView]:
+        outgoing = self.commander.observed(among) | self.clients.observed(among)
+        return self.feeds.observed(among) | outgoing
+
+    def close(self) -> None:
+        """Hear and say nothing more."""
+        self.clients.close()
+        self.feeds.running.close()
+        self.commander.close()
+
+    def _hear(self, samples: Sequence[Sample]) -> None:
+        if self._inbox.put(samples):
+            self._wake()
+
+    def _hear_quality(self, event: QualityEvent) -> None:
+        """A quality of service is not kept; on what is not agreed on, `network` looks itself."""
+        if event.kind == "incompatible":
+            LOG.warning("a quality of service is not agreed on", topic=event.topic, text=event.text)
+        elif event.topic in self.feeds.topics:
+            self.feeds.abandon(event.topic, event.text)
+            self._wake()
+        else:
+            self.feeds.reports.note(event.topic, event.text, time.monotonic(), lasting=False)

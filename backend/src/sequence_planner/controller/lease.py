@@ -1,0 +1,80 @@
+"""The lease of the command in the life of a controller, and what is told of it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import structlog
+
+from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.preparation import DeployedError, Preparation
+from sequence_planner.controller.views.station import StandbyView
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.journal.last_accepted import LastEnding
+from sequence_planner.standby.lease import Lease, LeaseKeeper, digest_of, open_lease
+
+LOG = structlog.get_logger(__name__)
+
+
+@contextlib.asynccontextmanager
+async def held_lease(
+    database: str, name: str, model: Path, ended: LastEnding, preparation: Preparation
+) -> AsyncIterator[LeaseKeeper]:
+    """What keeps the lease for the station `name`; it is let go of at the end.
+
+    `ended` is how the last life has ended as far as this station knows: others may take over from it by themselves
+    where that is certain.
+    """
+    lease = open_lease(database, name, digest_of(model))
+    await asyncio.to_thread(_tell, lease, ended)
+    keeper, deployed = LeaseKeeper(lease), False
+    keeper.begin()
+    try:
+        yield keeper
+    except DeployedError:
+        deployed = True
+        raise
+    finally:
+        recorded = None if preparation.controller is None else preparation.controller.is_recorded
+        await keeper.end(deployed=deployed, settled=keeper.settled_before if recorded is None else recorded)
+
+
+def _tell(lease: Lease, ended: LastEnding) -> None:
+    """Tell the others what only this station knows of an earlier process of its own."""
+    epoch = None if ended.life is None else ended.life.epoch
+    if epoch is None:
+        return
+    if not ended.is_certain:
+        lease.unsettled = epoch
+        return
+    try:
+        lease.settle(epoch)
+    except StorageError as error:
+        LOG.warning("others are not told that all is recorded", because=str(error))
+
+
+def standby_view(keeper: LeaseKeeper) -> StandbyView:
+    """What is shown of it."""
+    standing = keeper.standing
+    return StandbyView(
+        name=standing.name,
+        active=standing.active,
+        holder=standing.holder,
+        standing_by=list(standing.standing_by),
+        trouble=standing.trouble,
+    )
+
+
+def stands_by(keeper: LeaseKeeper) -> CommandRefused:
+    """Why a station that does not hold the lease carries nothing out."""
+    holder = keeper.standing.holder
+    if keeper.standing.active:
+        why = keeper.standing.trouble or "the database is slow"
+        detail = f"This station cannot renew the lease of the command: {why}. Try again in a moment."
+        return CommandRefused("lease-not-renewed", "The lease of the command is not renewed", detail, 503)
+    where = "Another station" if holder is None or holder == keeper.standing.name else holder
+    detail = f"{where} commands the devices, and this station stands by for it. Open that one's page."
+    return CommandRefused("stands-by", "This station stands by", detail, 503)

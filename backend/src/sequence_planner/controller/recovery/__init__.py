@@ -1,0 +1,1 @@
+"""Getting a station going again: corrections, proposals, forces, what contradicts itself, and why nothing starts."""

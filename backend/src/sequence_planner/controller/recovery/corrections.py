@@ -1,0 +1,328 @@
+"""Corrections of estimates: preview of their consequences, execution, and decisions on restored outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Protocol
+
+from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
+from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.tick import record_activity, supervised_start, update_operations
+from sequence_planner.controller.commands.commands import (
+    CommandRefused,
+    ConfirmEstimates,
+    CorrectEstimates,
+    DecideOutputs,
+    GivenValue,
+    UndoCorrection,
+)
+from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.safe_state import leaves
+from sequence_planner.controller.views.details import CorrectedView, CorrectionPreview
+from sequence_planner.controller.views.station import LastCorrectionView, SpecificationView
+from sequence_planner.controller.views.wording import correcting_refused, plan_preview, value_text
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.execution.events import Heard
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import Production
+from sequence_planner.language.printer import print_value
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.syntax import Expression
+from sequence_planner.language.types import Value, contains
+from sequence_planner.planning.problem import Contract, Goal, PlanAnswer, PlanRequest, Verdict, goal_of
+from sequence_planner.planning.recovery_path import violated
+
+# What follows from a correction, found out without making it.
+
+PLANNED_WITHIN = 1.5  # seconds
+WAITING = 2.0  # seconds beyond that: the adviser may be at something else
+MOST_RELATED = 12
+
+_WHY_NONE = {
+    Verdict.NONE_UP_TO: "No plan was found in as many ticks as are looked at.",
+    Verdict.NONE_AT_ALL: "There is no plan at all from there.",
+    Verdict.LATE: "No plan was found in the time there is; one may exist.",
+}
+
+
+class PlansOnRequest(Protocol):
+    """Whoever plans what people ask for."""
+
+    async def answer(self, request: PlanRequest, deadline: float) -> PlanAnswer:
+        """What is found within so many seconds. Raises `CommandRefused`."""
+        ...
+
+
+class Previewing:
+    """Looks at what `execution` would be like."""
+
+    def __init__(
+        self, execution: Executor, adviser: PlansOnRequest, beliefs: Beliefs, doubting: ConsistencyMonitor
+    ) -> None:
+        self._execution = execution
+        self._adviser = adviser
+        self._beliefs = beliefs
+        self._doubting = doubting
+
+    async def preview(self, values: Mapping[str, Value], obstacle: str | None) -> CorrectionPreview:
+        """All of it. Without a planner it says why there is no plan, and the rest all the same."""
+        execution, automaton, revision = self._execution, self._execution.automaton, self._execution.revision
+        now, then = execution.state, execution.corrected(values)
+        active = update_operations(automaton, then, execution.active) - execution.conduct.idle_operations(automaton)
+        before, after = self._startable(now), self._startable(then)
+        wrong_now, wrong_then = (self._doubting.contradictions(state).because for state in (now, then))
+        changes = [self._changed(name, value) for name, value in values.items()]
+        preview = CorrectionPreview(
+            revision=revision,
+            changes=changes,
+            safe=execution.supervisor.safe.includes(then),
+            safe_now=execution.safe,
+            violates=[_specification(automaton, name) for name in violated(automaton, then)],
+            startable=[name for name in after if name not in before],
+            no_longer_startable=[name for name in before if name not in after],
+            activated=sorted(active - execution.active),
+            completed=sorted(execution.active - active),
+            contradictions_gone=[text for text in wrong_now if text not in wrong_then],
+            contradictions_new=[text for text in wrong_then if text not in wrong_now],
+            plan=None,
+            goals=[],
+            left_out=[],
+            reason="",
+            obstacle=obstacle,
+        )
+        goals = self._goals(active)
+        if not goals:
+            return preview.model_copy(update={"reason": "No operation would be active, so there is nothing to plan."})
+        state = record_activity(automaton, then, active)
+        return preview.model_copy(update=await self._planned(state, goals))
+
+    async def _planned(self, state: State, goals: tuple[Goal, ...]) -> dict[str, object]:
+        circumstances = replace(self._execution.circumstances, restart=False)
+        request = PlanRequest(
+            state, goals, deadline=PLANNED_WITHIN, contract=Contract.FAST, circumstances=circumstances
+        )
+        try:
+            answer = await self._adviser.answer(request, PLANNED_WITHIN + WAITING)
+        except CommandRefused as refused:
+            return {"reason": f"{refused.title}: {refused.detail}"}
+        if answer.plan is None:
+            return {"reason": _WHY_NONE[answer.verdict], "left_out": list(answer.left_out)}
+        preview = plan_preview(self._execution.automaton, answer.plan)
+        return {"plan": preview, "goals": list(answer.goals), "left_out": list(answer.left_out)}
+
+    def _goals(self, active: frozenset[str]) -> tuple[Goal, ...]:
+        """What would be pursued: what is, as far as it has come, and what becomes active."""
+        pursued, operations = self._execution.pursued.goals, self._execution.automaton.operations
+        return tuple(pursued.get(name) or goal_of(operations[name]) for name in sorted(active))
+
+    def _startable(self, state: State) -> list[str]:
+        """The abilities whose guards and the supervisor would allow their start there, whatever the mode."""
+        execution, automaton = self._execution, self._execution.automaton
+        return [
+            ability.name
+            for ability in automaton.abilities.values()
+            if not execution.circumstances.bars(ability)
+            and supervised_start(automaton, execution.supervisor, execution.published, state, ability) is not None
+        ]
+
+    def _changed(self, name: str, value: Value) -> CorrectedView:
+        now = self._execution.state[name]
+        assert now is not None
+        return CorrectedView(
+            name=name, now=now, then=value, belief=self._beliefs.of(name), related=list(self._related(name))
+        )
+
+    def _related(self, name: str) -> Iterator[str]:
+        """What is measured that abilities look at before they write the estimate."""
+        automaton, state = self._execution.automaton, self._execution.state
+        guards = [guard for ability in automaton.abilities.values() for guard in _guards(ability, name)]
+        read = read_variables(automaton, guards)
+        for measured in [each for each in automaton.names(Kind.MEASURED) if each in read][:MOST_RELATED]:
+            value = state[measured]
+            yield f"{measured} is unknown" if value is None else value_text(automaton, measured, value)
+
+
+def _guards(ability: Ability, name: str) -> Iterator[Expression]:
+    """What the ability looks at when it writes the variable."""
+    starts = [action for action in ability.start_actions if target(action) == name]
+    finishes = [action for action in ability.finish_actions if target(action) == name]
+    if starts:
+        yield from (ability.enabled, ability.start_guard)
+    if finishes and ability.finish_guard is not None:
+        yield ability.finish_guard
+    for action in (*starts, *finishes):
+        yield action.value
+        if action.condition is not None:
+            yield action.condition
+
+
+def _specification(automaton: Automaton, name: str) -> SpecificationView:
+    return SpecificationView(name=name, title=automaton.specifications[name].title)
+
+
+# Corrections of what is believed, and what a person decides about outputs that came back.
+#
+# A correction writes estimates and nothing else. It is shown with all that follows before it is made, is refused when
+# the state has moved since, and can be taken back in one step.
+
+CorrectionCommand = CorrectEstimates | UndoCorrection | ConfirmEstimates | DecideOutputs
+
+
+class Corrections:
+    """Takes corrections of the estimates of `execution`."""
+
+    def __init__(
+        self, execution: Executor, adviser: PlansOnRequest, beliefs: Beliefs, doubting: ConsistencyMonitor
+    ) -> None:
+        self._execution = execution
+        self._doubting = doubting
+        self._previewing = Previewing(execution, adviser, beliefs, doubting)
+        self._last: LastCorrectionView | None = None
+        self._stayed = False  # what was corrected is so ever since
+        self._answered_before = frozenset[str]()  # what somebody had said of these before the last correction
+        execution.listeners.append(self._hear)
+
+    @property
+    def last(self) -> LastCorrectionView | None:
+        """The last correction; None if there was none, or it was taken back."""
+        if self._last is None:
+            return None
+        return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
+
+    async def preview(self, values: Mapping[str, GivenValue]) -> CorrectionPreview:
+        """What the correction would bring about. Raises `CommandRefused`."""
+        obstacle = correcting_refused(self._execution)
+        return await self._previewing.preview(self._estimates(values), None if obstacle is None else obstacle.detail)
+
+    def carry_out(self, command: CorrectionCommand, moment: Timestamp) -> None:
+        """Do what is asked for. Raises `CommandRefused`; nothing has changed then."""
+        match command:
+            case CorrectEstimates():
+                self._correct(command, moment)
+            case UndoCorrection():
+                self._undo(command, moment)
+            case ConfirmEstimates():
+                self._confirm(command, moment)
+            case DecideOutputs():
+                self._decide(command, moment)
+
+    def check(self, command: CorrectEstimates | DecideOutputs) -> None:
+        """Raises `CommandRefused` when it could not be carried out now."""
+        if isinstance(command, CorrectEstimates):
+            self._correctable(command)
+        else:
+            self._decidable(command)
+
+    def _correctable(self, command: CorrectEstimates) -> dict[str, Value]:
+        values = self._estimates(command.values)
+        self._require_allowed()
+        if command.revision != self._execution.revision:
+            raise _moved()
+        return values
+
+    def _correct(self, command: CorrectEstimates, moment: Timestamp) -> None:
+        execution = self._execution
+        values = self._correctable(command)
+        before = {name: now for name in values if (now := execution.state[name]) is not None}
+        self._answered_before = frozenset(execution.conduct.answers)
+        execution.correct(values, command.actor.name, command.reason, moment)
+        self._stayed = True
+        self._last = LastCorrectionView(
+            revision=command.revision,
+            values=dict(values),
+            before=before,
+            by=command.actor.name,
+            why=command.reason,
+            at=moment.epoch,
+            undoable=True,
+        )
+
+    def _undo(self, command: UndoCorrection, moment: Timestamp) -> None:
+        last = self._last
+        if last is None:
+            raise CommandRefused(
+                "nothing-to-undo",
+                "There is nothing to undo",
+                "There is no correction that could be taken back: correct what is not true once more.",
+            )
+        self._require_allowed()
+        if command.revision != last.revision:
+            detail = f"The last correction is another one by now, made by {last.by}. Look at it, then decide."
+            raise CommandRefused("state-moved", "The state has moved", detail)
+        if not self._stayed:
+            detail = "Something that was corrected has got another value since. Look at the state and correct that."
+            raise CommandRefused("state-moved", "The state has moved", detail)
+        # Who takes it back has seen nothing: what counts is what was said before, unless work has gone on since.
+        said = self._answered_before & self._execution.conduct.answers.keys()
+        taken_back = frozenset(last.before) - said
+        self._execution.correct(last.before, command.actor.name, command.reason, moment, taken_back)
+        self._last = None
+
+    def _confirm(self, command: ConfirmEstimates, moment: Timestamp) -> None:
+        values = self._estimates(command.values)
+        if not self._is_so(values):
+            raise _moved()
+        self._execution.confirm(frozenset(values), command.actor.name, moment)
+
+    def _decide(self, command: DecideOutputs, moment: Timestamp) -> None:
+        values = self._decidable(command)
+        self._execution.correct(values, command.actor.name, command.reason, moment)
+
+    def _decidable(self, command: DecideOutputs) -> dict[str, Value]:
+        execution = self._execution
+        values = self._checked(command.values, Kind.OUTPUT)
+        if execution.production is Production.STARTED:
+            detail = "Production has been started, so outputs are what abilities write. An engineer can force one."
+            raise CommandRefused("production-started", "Production is started", detail)
+        if decided := sorted(values.keys() - execution.conduct.returned):
+            detail = f"Nobody has to decide on {' and '.join(decided)}."
+            raise CommandRefused("nothing-to-decide", "There is nothing to decide", detail)
+        if leaves(execution.supervisor.safe, execution.state, execution.corrected(values)):
+            detail = (
+                "With these values the station would be outside its safe states. Choose others, or several at once."
+            )
+            raise CommandRefused("output-unsafe", "That is not safe", detail)
+        return values
+
+    def _hear(self, heard: Heard) -> None:
+        """A value that was another one in between is not the one that was corrected, though it may be the same."""
+        if self._stayed and self._last is not None:
+            self._stayed = all(heard.after[name] == value for name, value in self._last.values.items())
+
+    def _is_so(self, values: Mapping[str, Value]) -> bool:
+        return all(self._execution.state[name] == value for name, value in values.items())
+
+    def _require_allowed(self) -> None:
+        if (refusal := correcting_refused(self._execution)) is not None:
+            raise refusal
+
+    def _estimates(self, values: Mapping[str, GivenValue]) -> dict[str, Value]:
+        return self._checked(values, Kind.ESTIMATED)
+
+    def _checked(self, values: Mapping[str, GivenValue], kind: Kind) -> dict[str, Value]:
+        """The values, each one that its variable can have. Raises `CommandRefused`."""
+        known = self._execution.automaton.variables
+        for name, value in values.items():
+            variable = known.get(name)
+            if variable is None:
+                detail = f"The station has no variable `{name}`{suggestion(name, known) or '.'}"
+                raise CommandRefused("unknown-variable", "There is no such variable", detail, 404)
+            if variable.kind is not kind:
+                raise _other_kind(name, variable.kind, kind)
+            if not contains(variable.type, value):
+                detail = f"`{name}` is one of {variable.type}, and {print_value(value)} is none of these."
+                raise CommandRefused("not-in-domain", "No such value", detail, 422)
+        return dict(values)
+
+
+def _other_kind(name: str, is_: Kind, wanted: Kind) -> CommandRefused:
+    if wanted is Kind.ESTIMATED:
+        detail = f"`{name}` is {is_}; only what is estimated can be corrected, as nothing else says what it is."
+        return CommandRefused("not-estimated", "It is not estimated", detail, 422)
+    return CommandRefused("not-an-output", "It is no output", f"`{name}` is {is_}, and no output.", 422)
+
+
+def _moved() -> CommandRefused:
+    detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
+    return CommandRefused("state-moved", "The state has moved", detail)

@@ -1,0 +1,394 @@
+"""Explanation of a blocked start: unmet conditions, the variables behind them, and possible changers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
+
+from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
+from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.tick import effect_writes, reverts, start, supervised_start, synchronise
+from sequence_planner.controller.views.details import ChangerView, ConditionView, InvolvedView
+from sequence_planner.controller.views.station import BeliefView
+from sequence_planner.controller.views.wording import value_text
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.state import OperatorPlan
+from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
+from sequence_planner.language.evaluator import evaluate, holds
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import (
+    TRUE,
+    Assignment,
+    Constant,
+    Expression,
+    conjunction,
+    conjuncts,
+    variables,
+)
+from sequence_planner.language.types import Value
+from sequence_planner.planning.recovery.proposals import all_equal
+from sequence_planner.synthesis.guards import SupervisorGuard
+
+# All that keeps an ability from starting now, each piece with what it takes to be over.
+
+WAITS = {
+    Mode.PAUSED: "automatic mode: the station is paused",
+    Mode.HOLD: "automatic mode: the station holds",
+    Mode.RESTART: "a way back to be taken: the station is in restart mode",
+}
+
+
+class HindranceKind(StrEnum):
+    """What kind of thing keeps an ability from starting, or an operation or a goal from coming true."""
+
+    STATION = "station"  # how the station executes: its mode, production, steps, obstacles
+    SERVICE = "service"  # it does not take part: offline, out of service, forced, or for restart mode only
+    WRITTEN = "written"  # a condition of the model
+    UNPUBLISHED = "unpublished"  # a command has to leave first
+    SUPERVISOR = "supervisor"  # the guard that synthesis has added
+    PLAN = "plan"  # nothing wants it, or not yet
+    ORDER = "order"  # no job asks for it, or not yet
+
+
+@dataclass(frozen=True)
+class BlockingCondition:
+    """One of them: `text` names what is waited for, `expression` says the same where the model can."""
+
+    kind: HindranceKind
+    text: str
+    expression: Expression | None = None
+
+
+def of_station(execution: Executor) -> Iterator[BlockingCondition]:
+    """What keeps every ability from starting."""
+    conduct = execution.conduct
+    texts: list[str] = []
+    if conduct.production is not Production.STARTED:
+        texts.append("production to be started")
+    if conduct.errand is None and conduct.mode is not Mode.AUTOMATIC:
+        texts.append(WAITS[conduct.mode])
+    if conduct.stepping and not conduct.steps:
+        texts.append("a step: the station goes step by step")
+    for text in (*texts, *execution.obstacles):
+        yield BlockingCondition(HindranceKind.STATION, text)
+
+
+def of_ability(
+    execution: Executor, ability: Ability, feeds: Mapping[str, str], guard: SupervisorGuard | None
+) -> Iterator[BlockingCondition]:
+    """What keeps this ability from starting. `feeds` names the topic behind each measured variable, `guard` is what the
+    supervisor adds to the written ones.
+    """
+    barred = [BlockingCondition(HindranceKind.SERVICE, text) for text in _out_of_service(execution, ability, feeds)]
+    written = list(_written(execution, ability, feeds))
+    yield from barred
+    yield from written
+    if not written:
+        yield from _unwritten(execution, ability, guard)
+
+
+def _out_of_service(execution: Executor, ability: Ability, feeds: Mapping[str, str]) -> Iterator[str]:
+    conduct, resource = execution.conduct, ability.resource
+    title = execution.automaton.resources.get(resource, resource)
+    if resource in conduct.silent:
+        variables_of = [v.name for v in execution.automaton.variables.values() if v.resource == resource]
+        topics = sorted({feeds[v] for v in variables_of if v in feeds and execution.state[v] is None})
+        on = f" on {', '.join(topics)}" if topics else ""
+        yield f"{title} to be heard again{on}"
+    if resource in conduct.out_of(ServiceKind.RESOURCE):
+        yield f"{title} to be put back in service"
+    if ability.name in conduct.out_of(ServiceKind.ABILITY):
+        yield f"{ability.title} to be put back in service"
+    elif ability.name in execution.circumstances.barred:
+        yield "what is forced to be released"
+    if ability.restart and not execution.circumstances.restart:
+        yield "restart mode, and a way back that has it"
+
+
+def _written(execution: Executor, ability: Ability, feeds: Mapping[str, str]) -> Iterator[BlockingCondition]:
+    for part in (*conjuncts(ability.enabled), *conjuncts(ability.start_guard)):
+        truth = evaluate(part, execution.state)
+        if truth is not True:
+            yield BlockingCondition(HindranceKind.WRITTEN, lacking_text(execution, part, truth is None, feeds), part)
+
+
+def lacking_text(execution: Executor, part: Expression, unknown: bool, feeds: Mapping[str, str]) -> str:
+    """What a part of a condition waits for, which does not hold or is `unknown`."""
+    topics = awaited(execution, part, feeds) if unknown else []
+    return f"a message on {', '.join(topics)}" if topics else print_expression(part)
+
+
+def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> list[str]:
+    """The topics behind the unknown variables in it."""
+    return sorted({feeds[v] for v in _read(execution, part) if v in feeds and execution.state[v] is None})
+
+
+def _unwritten(execution: Executor, ability: Ability, guard: SupervisorGuard | None) -> Iterator[BlockingCondition]:
+    """What keeps it from starting where all that is written holds."""
+    state = execution.state
+    unsupervised = execution.errand is not None and execution.errand.unsupervised
+    after = start(execution.automaton, state, ability)
+    if after is None:
+        yield BlockingCondition(HindranceKind.WRITTEN, "values that are unknown")
+    elif taken := reverts(execution.automaton, execution.published, state, after):
+        yield BlockingCondition(HindranceKind.UNPUBLISHED, f"{', '.join(sorted(taken))} to be published first")
+    elif not execution.supervisor.safe.includes(state):
+        if not unsupervised:
+            yield BlockingCondition(HindranceKind.SUPERVISOR, "the station to be back in a safe state")
+    elif not execution.supervisor.safe.includes(after):
+        yield _unsafe(execution, ability, after, guard)
+
+
+def _unsafe(execution: Executor, ability: Ability, after: State, guard: SupervisorGuard | None) -> BlockingCondition:
+    """What the supervisor's guard lacks, and which specification the start would break, at once or later."""
+    kind = HindranceKind.SUPERVISOR
+    if guard is not None:
+        causes = [execution.automaton.specifications[name].title for name in guard.specifications]
+        causes += ["coming to rest again"] if guard.rest else []
+        sake = f"for the sake of: {', '.join(causes)}"
+        said = TRUE if guard.expression is None else guard.expression
+        lacking = [part for part in conjuncts(said) if evaluate(part, execution.state) is not True]
+        if lacking:
+            condition = conjunction(*lacking)
+            return BlockingCondition(kind, f"{print_expression(condition)}, {sake}", condition)
+        if guard.expression is None and (nearest := _nearest(execution, ability)) is not None:
+            where = f"{print_expression(nearest)} (the nearest state in which it may start)"
+            return BlockingCondition(kind, f"{where}, {sake}", nearest)
+    for specification in execution.automaton.specifications.values():
+        if holds(specification.forbidden, after):
+            return BlockingCondition(kind, f"a safe start: {specification.title} ({specification.name})")
+    return BlockingCondition(kind, "a safe start: started now, a specification could be broken later")
+
+
+def _nearest(execution: Executor, ability: Ability) -> Expression | None:
+    """What else has to be so for the start to be allowed, in as few variables as can be; None if that is not known."""
+    automaton, supervisor = execution.automaton, execution.supervisor
+    allowed = supervisor.guards.get(ability.name)
+    changes = None if allowed is None else allowed.nearest(execution.state)
+    if not changes:
+        return None
+    there = synchronise(automaton, {**execution.state, **changes})
+    if supervised_start(automaton, supervisor, there, there, ability) is None:
+        return None
+    return all_equal(automaton, changes.items())
+
+
+def _read(execution: Executor, expression: Expression) -> Iterator[str]:
+    for name in variables(expression):
+        predicate = execution.automaton.flag_predicates.get(name)
+        if predicate is None:
+            yield name
+        else:
+            yield from _read(execution, predicate)
+
+
+# Which variables keep a condition from being true, what they would have to be, and who could see to that.
+
+
+class _Partly(dict[str, Value | None]):
+    """The values of some variables, all others unknown, and the flags that follow from them."""
+
+    def __init__(self, automaton: Automaton, values: Mapping[str, Value | None]) -> None:
+        super().__init__(values)
+        self._predicates = automaton.flag_predicates
+
+    def __missing__(self, name: str) -> Value | None:
+        predicate = self._predicates.get(name)
+        self[name] = None if predicate is None else evaluate(predicate, self)
+        return self[name]
+
+
+def responsible(automaton: Automaton, condition: Expression, state: State) -> tuple[str, ...]:
+    """Variables that alone keep `condition` from being true in `state`: whatever all others were, it would not be.
+
+    None of them could be spared. Flags are followed to the variables behind them. Where the condition is open, the
+    unknown variables that it reads; none where it is true.
+    """
+    read = [name for name in automaton.variables if name in read_variables(automaton, (condition,))]
+    truth = evaluate(condition, _Partly(automaton, {name: state[name] for name in read}))
+    if truth is True:
+        return ()
+    if truth is None:
+        return tuple(name for name in read if state[name] is None)
+    kept = {name: state[name] for name in read if state[name] is not None}
+    for name in read:
+        fewer = {other: value for other, value in kept.items() if other != name}
+        if name in kept and evaluate(condition, _Partly(automaton, fewer)) is False:
+            kept = fewer
+    return tuple(kept)
+
+
+def wanted(automaton: Automaton, condition: Expression, state: State, name: str) -> tuple[Value, ...]:
+    """The values of a variable with which the condition would be true, all other variables as in `state`."""
+    values = {each: state[each] for each in automaton.variables}
+    domain = automaton.variables[name].type.domain
+    return tuple(value for value in domain if evaluate(condition, _Partly(automaton, {**values, name: value})) is True)
+
+
+@dataclass(frozen=True)
+class Changer:
+    """An ability that can change a variable by its `start`, its `finish` or an `effect` of it."""
+
+    how: str
+    ability: Ability
+
+
+def changers(automaton: Automaton, name: str, values: Sequence[Value]) -> Iterator[Changer]:
+    """The abilities that could give the variable one of the values; any other value if there are none."""
+    for ability in automaton.abilities.values():
+        if _writes(ability.start_actions, name, values):
+            yield Changer("start", ability)
+        if _writes(ability.finish_actions, name, values):
+            yield Changer("finish", ability)
+    seen: set[str] = set()
+    for effect in automaton.effects:
+        owner = automaton.abilities.get(effect.name.rpartition(".")[0])
+        if owner is None or effect.fault or owner.name in seen or not _writes(effect.actions, name, values):
+            continue
+        seen.add(owner.name)
+        yield Changer("effect", owner)
+
+
+def _writes(actions: Sequence[Assignment], name: str, values: Sequence[Value]) -> bool:
+    return any(target(action) == name and _may_be(action.value, values) for action in actions)
+
+
+def _may_be(written: Expression, values: Sequence[Value]) -> bool:
+    return not values or not isinstance(written, Constant) or written.value in values
+
+
+# The variables that decide a condition, as they are now, and who could change them.
+
+MOST_CHANGERS = 20  # abilities that are listed for a variable
+
+
+class TellsBelief(Protocol):
+    """Who knows where an estimate comes from."""
+
+    def of(self, name: str) -> BeliefView:
+        """Of an estimated variable."""
+        ...
+
+
+@dataclass(frozen=True)
+class ConditionContext:
+    """What is known beside the execution: topics by measured variable, since when a variable has its value, what is
+    believed, and the guards that the supervisor has added, by ability.
+    """
+
+    feeds: Mapping[str, str]
+    since: Callable[[str], float | None]
+    beliefs: TellsBelief
+    guards: Callable[[], Mapping[str, SupervisorGuard]]
+
+
+class Involving:
+    """Shows conditions on `execution`."""
+
+    def __init__(self, execution: Executor, surroundings: ConditionContext) -> None:
+        self._execution = execution
+        self._around = surroundings
+
+    def condition(self, hindrance: BlockingCondition) -> ConditionView:
+        """What has to be otherwise, and who could see to that."""
+        condition, execution = hindrance.expression, self._execution
+        names = () if condition is None else responsible(execution.automaton, condition, execution.state)
+        involved = [] if condition is None else [self._involved(name, condition) for name in names]
+        return ConditionView(kind=str(hindrance.kind), text=hindrance.text, involved=involved)
+
+    def _involved(self, name: str, condition: Expression) -> InvolvedView:
+        automaton, state = self._execution.automaton, self._execution.state
+        variable = automaton.variables[name]
+        values = wanted(automaton, condition, state, name)
+        belief = self._around.beliefs.of(name) if variable.kind is Kind.ESTIMATED else None
+        return InvolvedView(
+            name=name,
+            kind=str(variable.kind),
+            resource=variable.resource,
+            value=state[name],
+            wanted=list(values),
+            since=self._around.since(name),
+            topic=self._around.feeds.get(name),
+            unconfirmed_since=None if belief is None else belief.unconfirmed_since,
+            changers=[*(self._abilities(name, values) if state[name] is not None else ()), *self._people(name)],
+        )
+
+    def _abilities(self, name: str, values: tuple[Value, ...]) -> list[ChangerView]:
+        running = self._execution.running()
+        found = [
+            ChangerView(how=each.how, name=each.ability.name, title=each.ability.title, running=is_running)
+            for each in changers(self._execution.automaton, name, values)
+            for is_running in (each.ability.name in running,)
+        ]
+        return sorted(found, key=lambda changer: not changer.running)[:MOST_CHANGERS]
+
+    def _people(self, name: str) -> list[ChangerView]:
+        """What a person could do about it."""
+        automaton = self._execution.automaton
+        variable = automaton.variables[name]
+        resource = variable.resource or ""
+        title = automaton.resources.get(resource, automaton.title)
+        match variable.kind:
+            case Kind.ESTIMATED:
+                return [ChangerView(how="correction", name=name, title=f"correct {name}", running=False)]
+            case Kind.OUTPUT:
+                return [ChangerView(how="force", name=name, title=f"force {name}", running=False)]
+            case Kind.MEASURED if self._execution.state[name] is None:
+                topic = self._around.feeds.get(name, name)
+                return [ChangerView(how="message", name=topic, title=f"a message on {topic}", running=False)]
+            case Kind.MEASURED:
+                return [ChangerView(how="device", name=resource, title=f"at {title}", running=False)]
+            case Kind.ACTIVITY:
+                return []
+
+
+# What the next start waits for, in the model's own words.
+
+
+def waits_for(
+    execution: Executor, name: str, feeds: Mapping[str, str], guard: SupervisorGuard | None = None
+) -> list[str]:
+    """Everything that keeps the ability from starting now; empty when it starts in the next tick.
+
+    `feeds` names the topic behind each measured variable, `guard` is what the supervisor adds to the written ones.
+    """
+    if everything := list(of_station(execution)):
+        return [each.text for each in everything]
+    own = list(of_ability(execution, execution.automaton.abilities[name], feeds, guard))
+    if own:
+        return list(dict.fromkeys(each.text for each in own))
+    if not execution.may_go_on(name):
+        return [right_moment(execution)]
+    return []
+
+
+def right_moment(execution: Executor) -> str:
+    """What the next start waits for although it may start."""
+    if execution.errand is None:
+        return "the right moment: started now, the rest of the plan would not reach its goals"
+    if before := list(dict.fromkeys(_before(execution))):
+        return f"what comes before it in what was taken: {', '.join(before)}"
+    return "the right moment: started now, what was taken would not come to its end"
+
+
+def _before(execution: Executor) -> Iterator[str]:
+    """What has still to happen, of what the plan has before its next start."""
+    automaton, state, (_, ticks) = execution.automaton, execution.state, execution.plan.order.rest()
+    effects = {effect.name: effect for effect in automaton.effects}
+    for tick in ticks:
+        for name in tick.effects:
+            for variable, value in (effect_writes(effects[name], state) or {}).items():
+                if state[variable] != value:
+                    yield value_text(automaton, variable, value)
+        if tick.starts:
+            return
+
+
+def idle_since(execution: Executor, errand: OperatorPlan) -> float | None:
+    """Since when nothing of an errand is under way; None while something is."""
+    taken = errand.taken.monotonic
+    own = [step for step in execution.plan.order.past if step.started and step.started.monotonic >= taken]
+    ended = [step.ended.monotonic for step in own if step.ended is not None]
+    return None if len(ended) < len(own) else max((taken, *ended))

@@ -1,0 +1,264 @@
+"""Plans that people may take: asked of the adviser, shown with all that they contain, and kept until the state moves.
+
+An offer belongs to the state it was made for. Whoever takes it repeats what it contains, as a second confirmation; as
+soon as anything has changed at the station it is refused, and has to be asked for again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import secrets
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+from sequence_planner.controller.commands.commands import CommandRefused, CorrectEstimates, TakeErrand
+from sequence_planner.controller.io.inputs import LastKnown
+from sequence_planner.controller.planner_client import AIMED_WITHIN, WAITING, AdvisorClient, aim
+from sequence_planner.controller.recovery.stalls import StallDetector
+from sequence_planner.controller.views.proposals import AdviceView, OfferView
+from sequence_planner.controller.views.wording import (
+    diagnosis_view,
+    errand_under_way,
+    no_plan,
+    offer_title,
+    offer_view,
+    read_predicate,
+    refusal_of,
+    require_confirmation,
+)
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.timeouts import overdue
+from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
+from sequence_planner.language.evaluator import holds
+from sequence_planner.language.syntax import Expression
+from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.problem import goals_of
+from sequence_planner.planning.recovery.manual_plans import stalled_effects
+from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal
+from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest, Pairing
+
+LONGER = 5.0  # seconds for advice where in less nothing was found but what a person would have to know
+MOST_KEPT = 64  # offers; older ones are gone
+
+
+class CorrectionDesk(Protocol):
+    """Whoever makes corrections."""
+
+    def carry_out(self, command: CorrectEstimates, moment: Timestamp) -> None:
+        """Make it. Raises `CommandRefused`; nothing has changed then."""
+        ...
+
+
+@dataclass(frozen=True)
+class _Kept:
+    offer: RecoveryProposal
+    revision: int
+
+
+@dataclass(frozen=True)
+class _Asked:
+    of: tuple[int, AdviceRequest]
+    answer: asyncio.Future[AdviceView]
+
+
+class Offers:
+    """Asks for offers about `execution`, and carries out those that are taken.
+
+    `impossible` says which values of estimates cannot go together with which of other variables, and `still` which
+    devices do nothing: what alarms tell, nobody counts on.
+    """
+
+    def __init__(
+        self,
+        execution: Executor,
+        adviser: AdvisorClient,
+        corrections: CorrectionDesk,
+        impossible: Callable[[], frozenset[Pairing]],
+        still: StallDetector,
+    ) -> None:
+        self._execution = execution
+        self._adviser = adviser
+        self._corrections = corrections
+        self._impossible = impossible
+        self._last_known = LastKnown(execution)
+        self._still = still
+        self._kept: dict[str, _Kept] = {}
+        self._life = secrets.token_hex(3)  # no offer is taken for one of an earlier life of the controller
+        self._numbers = itertools.count(1)
+        self._asked: _Asked | None = None
+        self._advised: tuple[int, AdviceRequest, AdviceView] | None = None
+
+    async def advice(self) -> AdviceView:
+        """Ways on from the present state. Raises `CommandRefused`."""
+        self._require_no_errand()
+        execution, revision = self._execution, self._execution.revision
+        request = AdviceRequest(
+            state=execution.state,
+            goals=hopeful_goals(execution),
+            violated=violated_goals(execution),
+            circumstances=execution.circumstances,
+            stalled=self._stalled(),
+            explained=self._still.explained_effects(Timestamp.now().monotonic),
+            last=self._last_known.values,
+            impossible=self._impossible(),
+            fixed=frozenset(execution.conduct.forces) | execution.conduct.answers.keys(),
+            waiting=_waiting_goals(execution),
+        )
+        if self._asked is None or self._asked.of != (revision, request) or self._asked.answer.done():
+            of = revision, request
+            self._asked = _Asked(of, asyncio.ensure_future(self._found(revision, request)))
+        # Whoever asks the same meanwhile waits for the same answer; one who leaves takes it from nobody.
+        return await asyncio.shield(self._asked.answer)
+
+    async def _found(self, revision: int, request: AdviceRequest) -> AdviceView:
+        deadline = request.deadline
+        if self._advised is not None and self._advised[:2] == (revision, request):
+            view = self._advised[2]
+            if not view.complete and all(offer.corrections for offer in view.offers):
+                deadline = LONGER  # there was too little time: asked once more, there is more of it
+            elif all(offer.id in self._kept for offer in (*view.offers, *view.if_checked)):
+                return view
+        until = Timestamp.now().monotonic + deadline
+        asked = replace(request, deadline=deadline, until=until)
+        advice = await self._adviser.answer(asked, deadline + WAITING)
+        kept = self._keep(advice.offers, revision)
+        view = AdviceView(
+            revision=revision,
+            offers=[offer for offer in kept if not offer.only_if_checked],
+            if_checked=[offer for offer in kept if offer.only_if_checked],
+            reasons=None if advice.reasons is None else diagnosis_view(advice.reasons, self._unused, request.fixed),
+            complete=advice.complete,
+            seconds=advice.seconds,
+        )
+        self._advised = revision, request, view
+        return view
+
+    async def goal(self, predicate: str) -> OfferView:
+        """A plan to whatever an engineer wants to hold. Raises `CommandRefused`."""
+        target = read_predicate(self._execution.automaton, predicate)
+        if holds(target, self._execution.state):
+            detail = "It holds already: nothing has to be done for it."
+            raise CommandRefused("goal-holds", "The goal holds already", detail)
+        return await self._offered(target, None)
+
+    async def reset(self, operation: str) -> OfferView:
+        """A plan to the precondition of an operation. Raises `CommandRefused`."""
+        found = self._execution.automaton.operations.get(operation)
+        if found is None:
+            detail = f"The station has no operation `{operation}`. Look at those it has."
+            raise CommandRefused("unknown-operation", "There is no such operation", detail, 404)
+        return await self._offered(found.precondition, operation)
+
+    async def _offered(self, target: Expression, operation: str | None) -> OfferView:
+        self._require_no_errand()
+        execution, revision = self._execution, self._execution.revision
+        request = ErrandRequest(
+            state=execution.state,
+            goals=hopeful_goals(execution),
+            violated=violated_goals(execution),
+            target=target,
+            operation=operation,
+            circumstances=replace(execution.circumstances, restart=execution.mode is Mode.RESTART),
+            stalled=self._stalled(),
+            deadline=AIMED_WITHIN,
+        )
+        aimed = await aim(self._adviser, request)
+        if aimed.offer is None:
+            raise no_plan(aimed, self._unused)
+        (view,) = self._keep((aimed.offer,), revision)
+        return view
+
+    def take(self, command: TakeErrand, moment: Timestamp) -> None:
+        """Make the corrections of an offer and have its plan carried out. Raises `CommandRefused`."""
+        kept = self._kept.get(command.offer)
+        if kept is None:
+            raise CommandRefused("offer-gone", "The offer is gone", "Ask again what there is to do now.")
+        offer, execution = kept.offer, self._execution
+        if execution.revision != kept.revision:
+            detail = "Something has changed at the station since this was offered. Ask again what there is to do now."
+            raise CommandRefused("state-moved", "The state has moved", detail)
+        if (refusal := refusal_of(offer, execution)) is not None:
+            raise refusal
+        require_confirmation(offer, command)
+        if offer.corrections:
+            values = {change.name: change.new for change in offer.corrections}
+            correcting = CorrectEstimates(
+                actor=command.actor, reason=command.reason, values=values, revision=kept.revision
+            )
+            self._corrections.carry_out(correcting, moment)
+        if offer.errand is not None:
+            execution.take_errand(self._errand(offer, command, moment), moment)
+
+    def _errand(self, offer: RecoveryProposal, command: TakeErrand, moment: Timestamp) -> OperatorPlan:
+        assert offer.errand is not None
+        kind = {OfferKind.RESET: ErrandKind.RESET, OfferKind.GOAL: ErrandKind.GOAL}
+        return OperatorPlan(
+            kind=kind.get(offer.kind, ErrandKind.WAY_BACK),
+            title=offer_title(self._execution.automaton, offer),
+            plan=offer.errand,
+            goal=offer.goal,
+            restart=offer.restart or offer.unsupervised,
+            unsupervised=offer.unsupervised,
+            into_safe=offer.into_safe,
+            operation=offer.operation,
+            by=command.actor.name,
+            why=command.reason,
+            taken=moment,
+        )
+
+    def _keep(self, offers: Iterable[RecoveryProposal], revision: int) -> list[OfferView]:
+        views: list[OfferView] = []
+        for offer in offers:
+            id_ = f"{self._life}-{next(self._numbers)}"
+            self._kept[id_] = _Kept(offer, revision)
+            refusal = refusal_of(offer, self._execution)
+            obstacle = None if refusal is None else refusal.detail
+            views.append(offer_view(self._execution.automaton, offer, id_, revision, obstacle))
+        for id_ in list(self._kept)[:-MOST_KEPT]:
+            del self._kept[id_]
+        return views
+
+    def _require_no_errand(self) -> None:
+        if self._execution.errand is not None:
+            raise errand_under_way(self._execution.errand)
+
+    @property
+    def _unused(self) -> frozenset[str]:
+        """The resources that are out of service."""
+        return self._execution.conduct.out_of(ServiceKind.RESOURCE)
+
+    def _stalled(self) -> frozenset[str]:
+        """The effects that are not counted on: the devices that they belong to do not react."""
+        execution, now = self._execution, Timestamp.now().monotonic
+        abilities = execution.automaton.abilities
+        late = {step.ability for step in execution.plan.order.running if overdue(step, abilities[step.ability], now)}
+        given_up = {
+            each.name for each in execution.conduct.service.values() if each.of is ServiceKind.ABILITY and not each.by
+        }
+        resources = frozenset(abilities[name].resource for name in late | given_up)
+        return stalled_effects(execution.automaton, execution.state, resources) | self._still.stalled(now)
+
+
+def hopeful_goals(execution: Executor) -> Goals:
+    """The goals of active operations that can be planned for; before production is started none has begun."""
+    if execution.production is not Production.STARTED:
+        return goals_of(execution.automaton, sorted(execution.active))
+    return execution.pursued.of(execution.active & execution.pursued.hopeful)
+
+
+def _waiting_goals(execution: Executor) -> Goals:
+    """The goals of operations that are not active, and will be once their preconditions hold."""
+    if execution.production is not Production.STARTED:
+        return ()
+    idle = execution.active | execution.conduct.idle_operations(execution.automaton)
+    return goals_of(execution.automaton, sorted(execution.automaton.operations.keys() - idle))
+
+
+def violated_goals(execution: Executor) -> Goals:
+    """The goals of active operations whose formulas were violated."""
+    return execution.pursued.of(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)

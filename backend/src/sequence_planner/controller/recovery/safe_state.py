@@ -1,0 +1,200 @@
+"""A running station outside its safe states: what is wrong, how a safe state differs, and which way leads back.
+
+Pure, as `executor` is. Nothing is started because of it: it only says what there is to know.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.core.numerals import counted
+from sequence_planner.execution.executor import Executor
+from sequence_planner.language.printer import print_expression, print_value
+from sequence_planner.language.syntax import Comparison, Constant, Expression, Not, Variable, variables
+from sequence_planner.language.types import Value
+from sequence_planner.planning.problem import Circumstances, RecoveryPath, WayBackAnswer, WayBackRequest
+from sequence_planner.planning.recovery_path import deciding, violated
+
+# Which one is best is for advice alone to say, which weighs all that people and devices can do.
+CHOOSE = "The page Restart proposes ways back. The station takes none by itself."
+
+
+@dataclass(frozen=True)
+class SafeStateDifference:
+    """A variable that has another value in the nearest safe state."""
+
+    name: str
+    now: Value
+    safe: Value
+
+
+@dataclass(frozen=True)
+class SafetyStatus:
+    """What is wrong with a state that does not count as safe.
+
+    `violated` are specifications, `differences` lead to the nearest safe state in fewest variables, and `awaited` are
+    the unknown variables that safety depends on. Without differences the state would be safe for some of their values.
+    """
+
+    violated: tuple[str, ...]
+    differences: tuple[SafeStateDifference, ...]
+    awaited: tuple[str, ...]
+
+    @property
+    def certain(self) -> bool:
+        """Whether the state is outside whatever the unknown values are."""
+        return bool(self.violated or self.differences)
+
+
+def surely_outside(safe: StateSet, state: State) -> bool:
+    """Whether a state is outside the safe states whatever its unknown values are."""
+    return any(state[name] is not None for name in safe.nearest(state) or ())
+
+
+def leaves(safe: StateSet, before: State, after: State) -> bool:
+    """Whether a change leads out of the safe states, whatever is not heard yet."""
+    if surely_outside(safe, after) and not surely_outside(safe, before):
+        return True
+    return safe.includes(before) and not safe.includes(after)
+
+
+class SafeStateMonitor:
+    """Looks at the state of `execution`, asks for a way back where one is wanted, and remembers the last answer."""
+
+    def __init__(self, execution: Executor) -> None:
+        self._execution = execution
+        self._deciding = deciding(execution.automaton, execution.supervisor.safe)
+        self._seen: tuple[tuple[tuple[Value | None, ...], frozenset[str]], SafetyStatus | None] | None = None
+        self._asked: tuple[tuple[Value | None, ...], Circumstances] | None = None
+        self._answer: tuple[tuple[Value | None, ...], WayBackAnswer | str] | None = None
+
+    @property
+    def situation(self) -> SafetyStatus | None:
+        """What is wrong now; None in a state that counts as safe."""
+        state = self._execution.state
+        key = (self._key(state), frozenset(self._execution.conduct.answers))
+        if self._seen is None or self._seen[0] != key:
+            self._seen = (key, None if self._execution.safe else self._look(state))
+        return self._seen[1]
+
+    @property
+    def certain(self) -> bool:
+        """Whether the state is outside whatever the unknown values are."""
+        situation = self.situation
+        return situation is not None and situation.certain
+
+    @property
+    def answer(self) -> WayBackAnswer | str | None:
+        """What is known of the way back from here, or why it cannot be computed; None while it is looked for."""
+        if self._answer is None or self._answer[0] != self._key(self._execution.state):
+            return None
+        return self._answer[1]
+
+    def request(self, deadline: float) -> WayBackRequest | None:
+        """What to ask the planner now; None when there is nothing to ask or it would answer the same again."""
+        key = (self._key(self._execution.state), self._execution.circumstances)
+        if key == self._asked or self.situation is None or not self.situation.certain:
+            return None
+        self._asked = key
+        return WayBackRequest(dict(self._execution.state), deadline, circumstances=self._execution.circumstances)
+
+    def take(self, request: WayBackRequest, answer: WayBackAnswer) -> None:
+        """Remember an answer."""
+        self._answer = (self._key(request.state), answer)
+
+    def unanswered(self, request: WayBackRequest, why: str, again: bool) -> None:
+        """The planner could not answer. With `again` the same question is asked once more."""
+        if again:
+            self._asked = None
+        else:
+            self._answer = (self._key(request.state), why)
+
+    def describe(self, situation: SafetyStatus) -> str:
+        """What is wrong, for a person to read."""
+        automaton, answer = self._execution.automaton, self.answer
+        if situation.violated:
+            wrong = f"It violates {_named(automaton, situation.violated)}."
+        elif isinstance(answer, WayBackAnswer) and answer.threatened:
+            named = _named(automaton, answer.threatened)
+            wrong = f"Nothing is violated yet, but without any start the devices could violate {named}."
+        elif isinstance(answer, WayBackAnswer):
+            wrong = "Nothing is violated, but rest can perhaps no longer be reached."
+        else:
+            wrong = "Nothing is violated yet, but that could come without any start, or rest can no longer be reached."
+        return f"The station is outside its safe states. {wrong}{_nearest(automaton, situation.differences)}"
+
+    def past(self, situation: SafetyStatus) -> str:
+        """What was wrong, once it is over."""
+        named = _named(self._execution.automaton, situation.violated)
+        return f"The station was outside its safe states{f': it violated {named}' if named else ''}"
+
+    def touched(self, situation: SafetyStatus) -> frozenset[str]:
+        """The variables that make the state what it is: of what is violated, and those that would have to change."""
+        automaton = self._execution.automaton
+        told = [automaton.specifications[name].forbidden for name in situation.violated]
+        answer = self.answer
+        if isinstance(answer, WayBackAnswer):
+            told += [automaton.specifications[name].forbidden for name in answer.threatened]
+        names = frozenset(name for expression in told for name in variables(expression))
+        return names | {each.name for each in situation.differences}
+
+    def way(self) -> str:
+        """Which way leads back, for a person to read."""
+        answer = self.answer
+        if answer is None:
+            return "A way back is being looked for."
+        if isinstance(answer, str):
+            return f"No way back could be computed: {answer}"
+        if answer.way is None:
+            return self._no_way(answer.searched)
+        return CHOOSE if answer.way.starts else self._by_itself(answer.way)
+
+    def _no_way(self, searched: int) -> str:
+        unknown = self.situation.awaited if self.situation is not None else ()
+        far = f"within {counted(searched, 'tick')}" if searched else "in time"
+        blind = f", with {', '.join(unknown)} unknown" if unknown else ""
+        return f"No way back by starts alone was found {far}{blind}. {CHOOSE}"
+
+    def _by_itself(self, way: RecoveryPath) -> str:
+        automaton, state = self._execution.automaton, self._execution.state
+        awaited = [
+            _printed(automaton, name, value)
+            for name in automaton.names(Kind.MEASURED)
+            if name in self._deciding and (value := way.end[name]) is not None and value != state[name]
+        ]
+        when = f" when {' and '.join(awaited)}" if awaited else ""
+        return f"Nothing needs to be started: it comes back by itself{when}."
+
+    def _look(self, state: State) -> SafetyStatus:
+        automaton, safe = self._execution.automaton, self._execution.supervisor.safe
+        nearest = safe.nearest(state, self._execution.conduct.answers) or {}
+        differences = [
+            SafeStateDifference(name, now, nearest[name])
+            for name in automaton.variables
+            if name in nearest and (now := state[name]) is not None
+        ]
+        awaited = tuple(name for name in safe.names if state[name] is None)
+        return SafetyStatus(violated(automaton, state), tuple(differences), awaited)
+
+    def _key(self, state: State) -> tuple[Value | None, ...]:
+        return tuple(state[name] for name in self._deciding)
+
+
+def _nearest(automaton: Automaton, differences: Iterable[SafeStateDifference]) -> str:
+    parts = [f"{_printed(automaton, each.name, each.safe)} (now {print_value(each.now)})" for each in differences]
+    return f" Nearest safe state: {', '.join(parts)}." if parts else ""
+
+
+def _printed(automaton: Automaton, name: str, value: Value) -> str:
+    """That the variable has this value, in the model's language."""
+    variable: Expression = Variable(name, automaton.variables[name].type)
+    if isinstance(value, bool):
+        return print_expression(variable if value else Not(variable))
+    return print_expression(Comparison("==", variable, Constant(value)))
+
+
+def _named(automaton: Automaton, specifications: Iterable[str]) -> str:
+    return " and ".join(f"“{automaton.specifications[name].title}” ({name})" for name in specifications)

@@ -1,0 +1,178 @@
+"""Trial run of a single ability, and the comparison of device reactions with expected effects."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State
+from sequence_planner.automaton.tick import effect_writes
+from sequence_planner.controller.commands.commands import CommandRefused, TryAbility
+from sequence_planner.controller.recovery.explain import ConditionContext, of_ability
+from sequence_planner.controller.views.wording import errand_under_way
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.events import ErrandTaken, Heard, Ticked, TickOutcome
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.state import ErrandKind, LastErrand, OperatorPlan
+from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.language.syntax import TRUE
+from sequence_planner.language.types import Value
+from sequence_planner.planning.problem import Plan, PlanTick
+
+# What has come of the last trial of an ability: its run from the start to the end, and the reactions of its device.
+
+
+@dataclass
+class ExpectedEffect:
+    """An effect that may come: `lacking` are the values that it has still to bring since it has been `due`."""
+
+    effect: Effect
+    due: Timestamp | None = None
+    came: Timestamp | None = None
+    lacking: dict[str, Value] = field(default_factory=dict)
+
+    def look(self, state: State, now: Timestamp) -> None:
+        """Take note of a state; what comes one variable after the other is one reaction."""
+        if self.due is None:
+            written = effect_writes(self.effect, state) or {}
+            self.lacking = {name: value for name, value in written.items() if state[name] != value}
+            self.due = now if self.lacking else None
+        elif self.came is None:
+            self.lacking = {name: value for name, value in self.lacking.items() if state[name] != value}
+            self.came = None if self.lacking else now
+
+
+@dataclass
+class AbilityTrial:
+    """The course of a trial; `end` says how it ended."""
+
+    errand: OperatorPlan
+    ability: Ability
+    reactions: list[ExpectedEffect]
+    started: Timestamp | None = None
+    executing: Timestamp | None = None
+    end: LastErrand | None = None
+
+
+class TrialWatch:
+    """Listens to an execution for trials. What a device still does after one counts, until something else starts."""
+
+    def __init__(self, execution: Executor) -> None:
+        self._execution = execution
+        self.last: AbilityTrial | None = None
+        self._looks = False
+        execution.listeners.append(self._hear)
+
+    def _hear(self, heard: Heard) -> None:
+        match heard.happening:
+            case ErrandTaken(errand):
+                self._end()
+                self._looks = False
+                if errand.ability is not None:
+                    self._begin(errand, errand.ability)
+            case Ticked(now=now) if heard.outcome is not None:
+                self._note(heard.outcome, heard.after, now)
+                self._end()
+            case _:
+                self._end()
+
+    def _begin(self, errand: OperatorPlan, name: str) -> None:
+        automaton = self._execution.automaton
+        self.last = AbilityTrial(
+            errand, automaton.abilities[name], [ExpectedEffect(each) for each in reactions(automaton, name)]
+        )
+        self._looks = True
+
+    def _end(self) -> None:
+        trial, execution = self.last, self._execution
+        if trial is not None and trial.end is None and execution.errand is not trial.errand:
+            trial.end = execution.conduct.last_errand
+
+    def _note(self, outcome: TickOutcome, state: State, now: Timestamp) -> None:
+        trial = self.last
+        if trial is None or not self._looks:
+            return
+        if trial.started is None:
+            if trial.ability.name not in outcome.started:
+                return
+            trial.started = now
+        elif outcome.started:
+            self._looks = False  # what comes from now on may have another cause
+            return
+        if trial.executing is None and state[trial.ability.flag("executing")] is True:
+            trial.executing = now
+        for reaction in trial.reactions:
+            reaction.look(state, now)
+
+
+def reactions(automaton: Automaton, ability: str) -> list[Effect]:
+    """The effects that are written with an ability."""
+    effects = {effect.name: effect for effect in automaton.effects}
+    return [effects[name] for name in automaton.reactions.get(ability, ())]
+
+
+# Trying an ability: one run of it alone, under the same conditions as ever.
+#
+# It is an errand, so operations wait for it, and the guards and the supervisor are as strict as in production. What may
+# start starts at once; what may not is refused, with all that is in its way.
+
+
+class Trials:
+    """Has abilities of `execution` tried. `real_devices` names what speaks against these being emulated ones."""
+
+    def __init__(
+        self, execution: Executor, surroundings: ConditionContext, real_devices: Callable[[], Sequence[str]]
+    ) -> None:
+        self._execution = execution
+        self._around = surroundings
+        self.real_devices = real_devices
+
+    def carry_out(self, command: TryAbility, moment: Timestamp) -> None:
+        """Have it started in the next tick. Raises `CommandRefused`; nothing has changed then."""
+        ability = self._execution.automaton.abilities.get(command.ability)
+        if ability is None:
+            detail = f"The station has no ability `{command.ability}`. Look at those it has."
+            raise CommandRefused("unknown-ability", "There is no such ability", detail, 404)
+        if (refusal := self.refusal(ability)) is not None:
+            raise refusal
+        if not command.real_devices and (there := self.real_devices()):
+            detail = f"{'; '.join(there)}. Confirm that real devices may move."
+            raise CommandRefused("real-devices", "There are real devices", detail)
+        self._execution.take_errand(_errand(ability, command, moment), moment)
+
+    def refusal(self, ability: Ability) -> CommandRefused | None:
+        """Why it cannot be tried now; None when it can."""
+        execution = self._execution
+        if execution.errand is not None:
+            return errand_under_way(execution.errand)
+        if execution.production is not Production.STARTED:
+            detail = "No command is sent before production is started. Pause, then start production, then try it."
+            return CommandRefused("production-waiting", "Production waits", detail)
+        if execution.mode is not Mode.PAUSED:
+            detail = f"The mode is {execution.mode}: an ability is tried while the station is paused. Pause it first."
+            return CommandRefused("wrong-mode", "The mode is another one", detail)
+        if lacking := list(dict.fromkeys(self._lacking(ability))):
+            detail = f"{ability.title} waits for {'; '.join(lacking)}."
+            return CommandRefused("not-startable", "It may not start now", detail)
+        return None
+
+    def _lacking(self, ability: Ability) -> Iterator[str]:
+        execution = self._execution
+        if execution.conduct.stepping and not execution.conduct.steps:
+            yield "a step: the station goes step by step"
+        yield from execution.obstacles
+        guard = self._around.guards().get(ability.name)
+        yield from (each.text for each in of_ability(execution, ability, self._around.feeds, guard))
+
+
+def _errand(ability: Ability, command: TryAbility, moment: Timestamp) -> OperatorPlan:
+    return OperatorPlan(
+        kind=ErrandKind.TRIAL,
+        title=f"Try: {ability.title}",
+        plan=Plan((PlanTick((), (ability.name,)), PlanTick((), ())), minimal_ticks=False, minimal_starts=True),
+        goal=TRUE if ability.finish_guard is None else ability.finish_guard,
+        by=command.actor.name,
+        why=command.reason or "",
+        taken=moment,
+        ability=ability.name,
+    )

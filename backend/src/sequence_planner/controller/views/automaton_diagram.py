@@ -1,0 +1,148 @@
+"""Draws the automaton of an ability: how it is written, and what of that holds in a state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State, target
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.tick import start, writes
+from sequence_planner.controller.recovery.trials import reactions
+from sequence_planner.controller.views.details import (
+    AbilityActionView,
+    AutomatonView,
+    ConjunctView,
+    PredicateView,
+    ReactionView,
+    ReadValueView,
+    SupervisedView,
+    TimeoutsView,
+    WrittenPlaceView,
+)
+from sequence_planner.controller.views.station import SpecificationView
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.printer import print_assignment, print_expression
+from sequence_planner.language.syntax import Assignment, Constant, Expression, conjuncts, variables
+from sequence_planner.synthesis.guards import SupervisorGuard
+
+
+class Drawing:
+    """Of the abilities of `automaton` in `state`, with the `guards` of a `supervisor`; None where there is none."""
+
+    def __init__(
+        self, automaton: Automaton, state: State, guards: Mapping[str, SupervisorGuard], supervisor: Supervisor | None
+    ) -> None:
+        self._automaton = automaton
+        self._state = state
+        self._guards = guards
+        self._supervisor = supervisor
+
+    def of(self, ability: Ability) -> AutomatonView:
+        """The automaton of a ground ability."""
+        name = ability.name
+        return AutomatonView(
+            name=name,
+            title=ability.title,
+            resource=ability.resource,
+            arguments=_arguments(name),
+            place=self._place(name),
+            restart=ability.restart,
+            task=None if ability.human is None else ability.human.text,
+            acknowledgement=None if ability.human is None else ability.human.acknowledgement,
+            duration=ability.duration,
+            enabled=self._written(ability, "enabled", ability.enabled),
+            start=self._written(ability, "start", ability.start_guard),
+            start_actions=self._actions(ability.start_actions),
+            supervised=self._supervised(name),
+            allowed=self._allowed(ability),
+            executing=self._written(ability, "executing", ability.executing),
+            finished=self._written(ability, "finished", ability.finished),
+            finish=None if ability.finish_guard is None else self._written(ability, "finish", ability.finish_guard),
+            finish_actions=self._actions(ability.finish_actions),
+            cancel_actions=self._actions(ability.cancel_actions),
+            timeouts=TimeoutsView(
+                react=ability.timeouts.react,
+                finish=ability.timeouts.finish,
+                retries=ability.timeouts.retries,
+                replan=ability.timeouts.replan,
+            ),
+            reactions=[self._reaction(effect) for effect in reactions(self._automaton, name)],
+        )
+
+    def _written(self, ability: Ability, part: str, predicate: Expression) -> PredicateView:
+        return self._predicate(predicate, self._place(f"{ability.name}.{part}"))
+
+    def _predicate(self, predicate: Expression, place: WrittenPlaceView | None) -> PredicateView:
+        state = self._state
+        return PredicateView(
+            text=print_expression(predicate),
+            holds=_truth(evaluate(predicate, state)),
+            parts=[
+                ConjunctView(
+                    text=print_expression(part),
+                    holds=_truth(evaluate(part, state)),
+                    reads=[self._read(name) for name in dict.fromkeys(variables(part))],
+                )
+                for part in (() if isinstance(predicate, Constant) else conjuncts(predicate))
+            ],
+            place=place,
+        )
+
+    def _read(self, name: str) -> ReadValueView:
+        declared = self._automaton.variables.get(name)
+        kind = "flag" if declared is None else str(declared.kind)
+        return ReadValueView(name=name, kind=kind, value=self._state[name])
+
+    def _actions(self, actions: Iterable[Assignment]) -> list[AbilityActionView]:
+        return [self._action(action) for action in actions]
+
+    def _action(self, action: Assignment) -> AbilityActionView:
+        state, variable = self._state, target(action)
+        written = writes((action,), state)
+        done = None if written is None or state[variable] is None else written.get(variable) == state[variable]
+        return AbilityActionView(text=print_assignment(action), variable=variable, done=done)
+
+    def _reaction(self, effect: Effect) -> ReactionView:
+        return ReactionView(
+            name=effect.name,
+            kind=effect.kind,
+            guard=self._predicate(effect.guard, self._place(effect.name)),
+            actions=self._actions(effect.actions),
+            shortest=effect.shortest,
+            longest=effect.longest,
+            fault=effect.fault,
+        )
+
+    def _supervised(self, name: str) -> SupervisedView | None:
+        guard, specifications = self._guards.get(name), self._automaton.specifications
+        if guard is None:
+            return None
+        return SupervisedView(
+            guard=None if guard.expression is None else self._predicate(guard.expression, None),
+            specifications=[
+                SpecificationView(name=each, title=specifications[each].title) for each in guard.specifications
+            ],
+            rest=guard.rest,
+            blocked=[self._predicate(each, None) for each in guard.blocked],
+        )
+
+    def _allowed(self, ability: Ability) -> bool | None:
+        """Whether the supervisor allows a start, whatever the written guards say."""
+        if self._supervisor is None:
+            return None
+        after = start(self._automaton, self._state, ability)
+        return None if after is None else self._supervisor.allows(self._state, after)
+
+    def _place(self, part: str) -> WrittenPlaceView | None:
+        place = self._automaton.places.get(part)
+        return None if place is None else WrittenPlaceView(file=place.file, line=place.line)
+
+
+def _arguments(name: str) -> list[str]:
+    """The values of its parameters, as they stand in its name."""
+    _, _, inside = name.partition("(")
+    return [each.strip() for each in inside.removesuffix(")").split(",")] if inside else []
+
+
+def _truth(value: object) -> bool | None:
+    return value if isinstance(value, bool) else None

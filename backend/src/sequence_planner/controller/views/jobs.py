@@ -1,0 +1,282 @@
+"""Job views of a running station, with the reasons for waiting jobs and operations in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.controller.commands.tasks import TaskProblem, WaitingTask
+from sequence_planner.controller.recovery.explain import of_station
+from sequence_planner.controller.views.station import AlarmView, JobStepState, JobStepView, JobView, Priority
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.jobs import Job, Jobs
+from sequence_planner.execution.plan_tracker import PlannedStart
+from sequence_planner.execution.timeouts import overdue
+from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import Expression, conjunction, conjuncts
+
+# In words, what keeps a job that is worked from going on: the one place where that is said.
+#
+# What it is told from is the execution, and what is known `Around` it: open tasks, alarms, who is in control.
+
+# Alarms of what is said here anyway.
+_SAID = ("overdue:", "no-plan", "left-out", "undecided", "tried:", "problem:")
+_MOST_ALARMS = 3
+
+
+@dataclass(frozen=True)
+class Around:
+    """What is known around an execution now, on the controller's clock `monotonic`.
+
+    `held_up` names the active operations that cannot be completed while some resources do nothing; `next_waits` is what
+    the next start of the plan waits for.
+    """
+
+    monotonic: float
+    held_up: Callable[[Collection[str]], frozenset[str]] = lambda _: frozenset()
+    tasks: Mapping[str, WaitingTask] = field(default_factory=dict)
+    problems: Mapping[str, TaskProblem] = field(default_factory=dict)
+    alarms: Mapping[str, AlarmView] = field(default_factory=dict)
+    next_waits: tuple[str, ...] = ()
+    controlled: bool = True
+
+
+def of_running(execution: Executor, job: Job, around: Around | None) -> list[str]:
+    """What a job that has begun waits for; empty only where something is being done that may bring it on.
+
+    Of the past, without `around`, only what the execution itself knows is told.
+    """
+    found = list(_station(execution, around))
+    if around is not None:
+        found += _Running(execution, job, around).waits()
+    return list(dict.fromkeys(found))
+
+
+def _station(execution: Executor, around: Around | None) -> Iterator[str]:
+    conduct = execution.conduct
+    yield from (each.text for each in of_station(execution))
+    stopped = conduct.production is not Production.STARTED or conduct.mode is not Mode.AUTOMATIC
+    if stopped and around is not None and not around.controlled:
+        yield "somebody to take control"
+    if conduct.errand is not None:
+        yield f"the end of what is carried out: {conduct.errand.title}"
+
+
+class _Running:
+    """One job at one moment."""
+
+    def __init__(self, execution: Executor, job: Job, around: Around) -> None:
+        self._execution = execution
+        self._automaton = execution.automaton
+        self._job = job
+        self._around = around
+        jobs = execution.conduct.jobs
+        self._eligible = jobs.eligible(job, self._automaton)
+        self._active = self._eligible & execution.active
+        others = (each for each in jobs.under_way if each.id != job.id)
+        self._alone = not any(execution.active & jobs.eligible(each, self._automaton) for each in others)
+
+    def waits(self) -> list[str]:
+        found, moves = list[str](), False
+        for step in self._execution.plan.order.running:
+            late = self._late(step)
+            human = self._automaton.abilities[step.ability].human is not None
+            moves = moves or (late is None and not human)
+            if late is not None and not human and self._concerns(step.ability):
+                found.append(f"{self._automaton.abilities[step.ability].title}, which {late}")
+        found += self._tasks()
+        conduct = self._execution.conduct
+        if conduct.production is not Production.STARTED or not conduct.executes_operations:
+            return found
+        found += [*self._operations(), *self._plan(moves)]
+        if not moves:
+            found += [*self._alarms(), *self._next()]
+        return found if found or moves else list(self._goals())
+
+    def _late(self, step: PlannedStart) -> str | None:
+        return overdue(step, self._automaton.abilities[step.ability], self._around.monotonic)
+
+    def _concerns(self, ability: str) -> bool:
+        """Whether what an ability does may be for this job: it is, where nothing says that it is for another."""
+        if self._alone:
+            return True
+        waiting = self._around.held_up({self._automaton.abilities[ability].resource})
+        return bool(waiting & self._active) or not waiting
+
+    def _tasks(self) -> Iterator[str]:
+        running = {step.ability: step for step in self._execution.plan.order.running}
+        for id_, task in self._around.tasks.items():
+            if not self._concerns(task.ability):
+                continue
+            resource = self._automaton.abilities[task.ability].resource
+            text = f"{task.title} to be done by {self._automaton.resources.get(resource, resource)}"
+            step, problem = running.get(task.ability), self._around.problems.get(id_)
+            if step is not None and (late := self._late(step)) is not None:
+                text += f", which {late}"
+            if problem is not None:
+                text += f", who cannot: {problem.why}" if problem.why else ", who cannot do it"
+            yield text
+
+    def _operations(self) -> Iterator[str]:
+        """What keeps all its operations from being active."""
+        if self._active or not self._job.under_way:
+            return
+        operations, jobs = self._automaton.operations, self._execution.conduct.jobs
+        out = self._execution.conduct.idle_operations(self._automaton)
+        for name in sorted(self._eligible):
+            if name in out:
+                yield f"{operations[name].title} to be put back in service"
+            elif not self._execution.conduct.jobs.by_order:
+                yield "the station to work by order"
+            else:
+                yield f"the precondition of {operations[name].title}: {self._lacking(operations[name].precondition)}"
+        if not self._eligible:
+            master = self._automaton.work_masters[self._job.work_master]
+            awaited = {step for name in master.operations for step in jobs.awaited(self._job, name)}
+            yield from (f"{operations[name].title} of job {job}" for job, name in sorted(awaited))
+
+    def _lacking(self, condition: Expression) -> str:
+        """What of a condition does not hold, or all of it where that is not to be told."""
+        parts = [part for part in conjuncts(condition) if evaluate(part, self._execution.state) is not True]
+        return print_expression(conjunction(*parts) if parts else condition)
+
+    def _plan(self, moves: bool) -> Iterator[str]:
+        plan, titles = self._execution.plan, self._automaton.operations
+        if not self._active:
+            return
+        if plan.status is PlanStatus.NONE:
+            yield f"a plan: {plan.reason}"
+        elif plan.status is PlanStatus.FOLLOWED:
+            left_out = () if plan.answer is None else plan.answer.left_out
+            yield from (
+                f"a plan for {titles[name].title}, which the plan leaves out"
+                for name in left_out
+                if name in self._active
+            )
+        elif not moves:
+            yield "a plan, which is being looked for"
+
+    def _alarms(self) -> Iterator[str]:
+        """Alarms that may be why nothing moves."""
+        urgent = [
+            alarm
+            for key, alarm in self._around.alarms.items()
+            if alarm.ended is None and alarm.priority is not Priority.LOW and not key.startswith(_SAID)
+        ]
+        urgent.sort(key=lambda alarm: (alarm.priority is not Priority.HIGH, alarm.since))
+        yield from (f"an alarm to be dealt with: {alarm.text}" for alarm in urgent[:_MOST_ALARMS])
+
+    def _next(self) -> Iterator[str]:
+        """What the next start waits for, where nothing is under way that could bring it about."""
+        order = self._execution.plan.order
+        if self._active and order.ahead and not order.running and self._around.next_waits:
+            title = self._automaton.abilities[order.ahead[0].ability].title
+            yield f"{title} to start, which waits for {' and '.join(self._around.next_waits)}"
+
+    def _goals(self) -> Iterator[str]:
+        """What is still to come true, where nothing is to be started for it."""
+        if not self._execution.plan.order.ahead:
+            operations = self._automaton.operations
+            for name in sorted(self._active):
+                yield f"the goal of {operations[name].title}: {print_expression(operations[name].goal)}"
+
+
+# What is shown of jobs, and in words what keeps them and their operations from going on.
+
+
+def job_views(execution: Executor, jobs: Jobs | None = None, around: Around | None = None) -> dict[str, JobView]:
+    """Each job by its id, in the order in which they were taken: those of the execution, or as they were before."""
+    jobs = execution.conduct.jobs if jobs is None else jobs
+    return {job.id: _view(execution, jobs, job, around) for job in jobs.taken}
+
+
+def waits_for(execution: Executor, job: Job, around: Around | None = None) -> list[str]:
+    """What keeps a job as a whole from going on."""
+    if job.state is JobState.PAUSED:
+        return ["the job to be resumed"]
+    if job.state is JobState.WAITING:
+        return list(execution.keeps_from_beginning(job))
+    if job.state is JobState.RUNNING:
+        return of_running(execution, job, around)
+    return []
+
+
+def _awaited(jobs: Jobs, job: Job, operation: str, automaton: Automaton) -> list[str]:
+    """The operations that have to be completed before this one of the job; those of other jobs as `job/operation`."""
+    awaited = jobs.awaited(job, operation)
+    own = job.after(operation, automaton) | {name for id_, name in awaited if id_ == job.id}
+    return [*sorted(own), *(f"{id_}/{name}" for id_, name in sorted(awaited) if id_ != job.id)]
+
+
+def why_idle(execution: Executor, operation: str) -> str | None:
+    """What has to come before a job asks for an operation; None where one does, or none has to."""
+    jobs, automaton = execution.conduct.jobs, execution.automaton
+    if not jobs.by_order or operation not in automaton.job_operations:
+        return None
+    job = jobs.having(operation, automaton)
+    if job is None:
+        return "a job that asks for it: the station works by order, and no job asks for it"
+    if operation in jobs.eligible(job, automaton):
+        return None
+    if operation in job.completed:
+        return f"another job that asks for it: for {job.title} it is completed"
+    if job.finishing is not None:
+        return f"another job that asks for it: {job.title} is being stopped"
+    if job.state is JobState.PAUSED:
+        return f"{job.title} to be resumed"
+    if job.state is JobState.WAITING:
+        return f"{job.title} to begin, which waits for {' and '.join(waits_for(execution, job)) or 'the next tick'}"
+    before = [_titled(execution, each) for each in _awaited(jobs, job, operation, automaton)]
+    return f"what comes before it for {job.title}: {', '.join(before)}"
+
+
+def _titled(execution: Executor, step: str) -> str:
+    """An operation as people know it; `4711/tighten` is that of another job."""
+    job, _, name = step.rpartition("/")
+    title = execution.automaton.operations[name].title
+    return f"{title} of job {job}" if job else title
+
+
+def _view(execution: Executor, jobs: Jobs, job: Job, around: Around | None) -> JobView:
+    master = execution.automaton.work_masters.get(job.work_master)
+    # One that ended before the model was changed can have a work master that is not there any more.
+    names = sorted(job.started.keys() | job.completed.keys()) if master is None else list(master.operations)
+    eligible = frozenset[str]() if master is None else jobs.eligible(job, execution.automaton)
+    return JobView(
+        title=job.title,
+        work_master=job.work_master,
+        state=job.state,
+        stopping=job.finishing is not None and job.under_way,
+        taken=job.taken.epoch,
+        begun=_epoch(job.begun),
+        ended=_epoch(job.ended),
+        waits_for=waits_for(execution, job, around),
+        steps={name: _step(execution, jobs, job, name, eligible) for name in names},
+    )
+
+
+def _step(execution: Executor, jobs: Jobs, job: Job, name: str, eligible: frozenset[str]) -> JobStepView:
+    state = _state(execution, job, name, eligible)
+    waiting = state is JobStepState.WAITING and job.under_way
+    return JobStepView(
+        state=state,
+        waits_for=_awaited(jobs, job, name, execution.automaton) if waiting else [],
+        started=_epoch(job.started.get(name)),
+        ended=_epoch(job.completed.get(name)),
+    )
+
+
+def _state(execution: Executor, job: Job, name: str, eligible: frozenset[str]) -> JobStepState:
+    if name in job.completed:
+        return JobStepState.COMPLETED
+    if name not in eligible:
+        return JobStepState.WAITING
+    return JobStepState.ACTIVE if name in execution.active else JobStepState.ELIGIBLE
+
+
+def _epoch(moment: Timestamp | None) -> float | None:
+    return None if moment is None else moment.epoch

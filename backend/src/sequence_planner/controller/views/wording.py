@@ -1,0 +1,287 @@
+"""Wording of recovery offers, refusals and values for operators, and predicates parsed from requests."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.controller.commands.commands import CommandRefused, TakeErrand, TextPlace
+from sequence_planner.controller.planner_client import GOAL, GoalPlan
+from sequence_planner.controller.recovery.side_effects import is_along
+from sequence_planner.controller.views.proposals import (
+    EffortView,
+    OfferView,
+    PlanPreviewView,
+    PreviewStepView,
+    ValueChangeView,
+)
+from sequence_planner.controller.views.station import DiagnosisView, SpecificationView
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.state import OperatorPlan
+from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.language.parser import parse
+from sequence_planner.language.printer import print_expression, print_value
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.syntax import (
+    TRUE,
+    Comparison,
+    Constant,
+    Expression,
+    ExpressionError,
+    Not,
+    Variable,
+)
+from sequence_planner.language.types import Value
+from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
+from sequence_planner.planning.problem import Plan
+from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal, ValueChange
+
+# Offers in the words of the people they are shown to.
+
+MOST_NAMED = 3  # abilities in a title
+
+
+def offer_view(
+    automaton: Automaton, offer: RecoveryProposal, id_: str, revision: int, obstacle: str | None
+) -> OfferView:
+    """An offer as it is shown."""
+    return OfferView(
+        id=id_,
+        revision=revision,
+        kind=str(offer.kind),
+        title=offer_title(automaton, offer),
+        physical=_changes(told(automaton, offer.physical)),
+        online=list(offer.online),
+        in_service=list(offer.in_service),
+        assumed=_changes(offer.assumed),
+        corrections=_changes(offer.corrections),
+        errand=None if offer.errand is None else plan_preview(automaton, offer.errand),
+        ends=None if offer.errand is None else end_text(offer.goal, offer.into_safe),
+        into_safe=offer.into_safe,
+        operation=offer.operation,
+        needs_restart=needs_restart(offer),
+        unsupervised=offer.unsupervised,
+        at_rest=offer.at_rest,
+        breaks=[SpecificationView(name=name, title=automaton.specifications[name].title) for name in offer.breaks],
+        then=None if offer.then is None else plan_preview(automaton, offer.then),
+        goals=list(offer.goals),
+        left_out=list(offer.left_out),
+        claims=list(offer.claims),
+        records=_changes(offer.records),
+        only_if_checked=offer.only_if_checked,
+        effort=EffortView(
+            cost=offer.effort.cost,
+            corrections=offer.effort.changes,
+            physical=offer.effort.physical,
+            returns=offer.effort.returns,
+            starts=offer.effort.starts,
+            seconds=offer.effort.seconds,
+        ),
+        obstacle=obstacle,
+    )
+
+
+def end_text(goal: Expression, into_safe: bool) -> str | None:
+    """By what it is known that an errand has come to its end, beside that it is inside the safe states."""
+    return None if into_safe and goal == TRUE else print_expression(goal)
+
+
+def needs_restart(offer: RecoveryProposal) -> bool:
+    """Whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
+    ordinary = offer.kind in (OfferKind.GOAL, OfferKind.RESET)
+    return offer.restart or offer.unsupervised or bool(offer.corrections) or (offer.errand is not None and not ordinary)
+
+
+def offer_title(automaton: Automaton, offer: RecoveryProposal) -> str:
+    """What is to be done, in one line."""
+    text = ", then ".join(_parts(automaton, offer)) or "go on as it is"
+    if offer.only_if_checked:
+        return f"Only if you have checked: {text}"
+    return text[0].upper() + text[1:]
+
+
+def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[str]:
+    returning = [automaton.resources[name] for name in offer.online]
+    returning += [automaton.abilities[name].title for name in offer.in_service]
+    if returning:
+        yield f"bring {' and '.join(returning)} back"
+    if offer.physical:
+        records = f", so that {_each(offer.records, 'counts as')}" if offer.records else ""
+        yield f"see to it that {_each(told(automaton, offer.physical), 'is')}{records}"
+    if offer.only_if_checked:
+        yield _each(offer.corrections, "is")
+    elif offer.corrections:
+        yield f"correct {_each(offer.corrections, 'to')}"
+    if offer.operation is not None:
+        yield f"reset {automaton.operations[offer.operation].title}"
+    elif offer.kind is OfferKind.GOAL:
+        yield f"bring about that {print_expression(offer.goal)}"
+    elif offer.errand is not None and offer.errand.starts:
+        titles = [automaton.abilities[name].title for _, name in offer.errand.starts]
+        more = f" and {len(titles) - MOST_NAMED} more" if len(titles) > MOST_NAMED else ""
+        yield f"start {', '.join(titles[:MOST_NAMED])}{more}"
+    elif offer.errand is not None:
+        safe = ["the station is back in its safe states"] if offer.into_safe else []
+        condition = end_text(offer.goal, offer.into_safe)
+        yield f"wait until {' and '.join([*safe, *([condition] if condition else [])])}"
+
+
+def told(automaton: Automaton, changes: Iterable[ValueChange]) -> list[ValueChange]:
+    """The changes that somebody brings about; the others come along with these."""
+    every = list(changes)
+    return [each for each in every if not is_along(automaton, each.name, _as_new(each, every))]
+
+
+def _as_new(change: ValueChange, changes: Iterable[ValueChange]) -> list[str]:
+    """The variables that become the same."""
+    return [each.name for each in changes if each.new == change.new]
+
+
+def _each(changes: Iterable[ValueChange], word: str) -> str:
+    return " and ".join(f"{change.name} {word} {print_value(change.new)}" for change in changes)
+
+
+def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
+    """A plan as it is shown before anybody follows it."""
+    return PlanPreviewView(
+        ticks=len(plan.ticks),
+        steps=[_step(automaton, tick, name) for tick, name in plan.starts],
+        minimal_ticks=plan.minimal_ticks,
+        minimal_starts=plan.minimal_starts,
+    )
+
+
+def diagnosis_view(
+    diagnosis: Diagnosis, out_of_service: Collection[str], answers: Collection[str] = ()
+) -> DiagnosisView:
+    """Why something cannot be done, and what would help; resources that do nothing can be `out_of_service`.
+
+    Nothing is said otherwise of estimates for which somebody has given `answers`, and what can be done comes first.
+    """
+    reason, helpful = diagnosis.reason, []
+    for correction in diagnosis.corrections:
+        said = [change.name for change in correction.changes if change.value is not None]
+        if not any(name in answers for name in said):
+            text = correction_text(correction, out_of_service)
+            helpful.append((bool(said), f"{text}, only if you have checked that it is so" if said else text))
+    return DiagnosisView(
+        members=[] if reason is None else [member_text(member, out_of_service) for member in reason.members],
+        minimal=reason is not None and reason.minimal,
+        corrections=[text for _, text in sorted(helpful, key=lambda each: each[0])],
+    )
+
+
+def _step(automaton: Automaton, tick: int, name: str) -> PreviewStepView:
+    ability = automaton.abilities[name]
+    return PreviewStepView(
+        tick=tick,
+        ability=name,
+        title=ability.title,
+        resource=ability.resource,
+        human=ability.human is not None,
+        restart=ability.restart,
+    )
+
+
+def _changes(changes: Iterable[ValueChange]) -> list[ValueChangeView]:
+    return [ValueChangeView(name=change.name, now=change.old, then=change.new) for change in changes]
+
+
+# Why an offer cannot be made, or not be taken.
+
+
+def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused | None:
+    """Why an offer for the present state cannot be taken now; None when it can."""
+    if execution.errand is not None:
+        return errand_under_way(execution.errand)
+    if offer.physical or offer.online or offer.in_service:
+        detail = "Something has to be done at the station first. Do that, then ask again."
+        return CommandRefused("physical-first", "Something has to be done first", detail)
+    if offer.errand is None:
+        if offer.corrections:
+            return correcting_refused(execution)
+        detail = "Nothing has to be carried out. Leave restart mode if the station is in it, and go on."
+        return CommandRefused("nothing-to-take", "There is nothing to take", detail)
+    if execution.production is not Production.STARTED:
+        detail = "Production has not been started, so nothing can be. Start production, then ask again."
+        return CommandRefused("production-waiting", "Production waits", detail)
+    return _wrong_mode(offer, execution.mode)
+
+
+def correcting_refused(execution: Executor) -> CommandRefused | None:
+    """Why no correction can be made now; None when one can."""
+    if execution.errand is not None:
+        return errand_under_way(execution.errand)
+    if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
+        detail = "Corrections are made in restart mode, or before production is started. Enter restart mode first."
+        return CommandRefused("not-in-restart", "The mode is another one", detail)
+    return None
+
+
+def _wrong_mode(offer: RecoveryProposal, mode: Mode) -> CommandRefused | None:
+    if mode is Mode.RESTART or (mode is Mode.PAUSED and not needs_restart(offer)):
+        return None
+    if needs_restart(offer):
+        detail = f"The mode is {mode}, and this takes restart mode. Enter it, then ask again."
+    else:
+        detail = f"The mode is {mode}, and this takes the paused mode, or restart. Pause, then ask again."
+    return CommandRefused("wrong-mode", "The mode is another one", detail)
+
+
+def require_confirmation(offer: RecoveryProposal, command: TakeErrand) -> None:
+    """Raises `CommandRefused` unless the command repeats what the offer contains."""
+    starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
+    corrections = {change.name: change.new for change in offer.corrections}
+    if command.starts != starts or not _same(command.corrections, corrections):
+        detail = "What was confirmed is not what the offer contains. Look at the offer again, then confirm that."
+        raise CommandRefused("not-confirmed", "Something else was confirmed", detail)
+
+
+def _same(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
+    """Whether they are equal, where true is not 1."""
+    return one == other and all(type(one[name]) is type(other[name]) for name in one)
+
+
+def errand_under_way(errand: OperatorPlan) -> CommandRefused:
+    """Nothing is offered beside an errand: the state moves with it."""
+    detail = f"{errand.title} is being carried out. Wait for its end, or stop it."
+    return CommandRefused("errand-under-way", "Something else is being carried out", detail)
+
+
+def no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
+    """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
+    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
+    because = "; ".join(member for member in members if member != f"the goal {GOAL}")
+    if because:
+        detail = f"There is no plan as long as all of this is so: {because}."
+    elif aimed.proven:
+        detail = "There is no plan at all from the present state: that is proven."
+    else:
+        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
+    return CommandRefused("no-plan", "There is no plan", detail)
+
+
+# Predicates that come with a request, in the model's language.
+
+
+def read_predicate(automaton: Automaton, text: str) -> Expression:
+    """What `text` means, with all names in full. Raises `CommandRefused`, which names the place."""
+    try:
+        return resolve_predicate(parse(text), NameScope(automaton.types))
+    except ExpressionError as error:
+        start, end = error.span
+        words = f"character {start + 1}" + (f", `{text[start:end]}`" if text[start:end].strip() else "")
+        detail = f"{words}: {error.message}"
+        place = TextPlace(start=start, end=end, message=error.message)
+        raise CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422, place) from None
+
+
+# That a variable has a value, in the model's language.
+
+
+def value_text(automaton: Automaton, name: str, value: Value) -> str:
+    """As in `robot.pose == home`, `tool_is_idle` or `not tool_is_idle`."""
+    variable: Expression = Variable(name, automaton.types[name])
+    if isinstance(value, bool):
+        return print_expression(variable if value else Not(variable))
+    return print_expression(Comparison("==", variable, Constant(value)))

@@ -1,0 +1,1 @@
+"""Time, immutable values, numbers in words, logs and files, for every other package: nothing here knows stations."""

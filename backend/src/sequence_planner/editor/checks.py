@@ -1,0 +1,241 @@
+"""Check of a draft: errors, warnings, supervisor guards and example runs, and comparison of models."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import Path
+
+from sequence_planner.analysis.analysis import COUNTING
+from sequence_planner.analysis.cache import remembered_evidence
+from sequence_planner.analysis.checks.rules import check_automaton
+from sequence_planner.analysis.finding import analyses, without_numbers
+from sequence_planner.analysis.report import (
+    FindingDocument,
+    TraceDocument,
+    document_of,
+    error_document,
+    findings_of,
+)
+from sequence_planner.automaton.automaton import Ability, Automaton
+from sequence_planner.controller.views.automaton_diagram import Drawing
+from sequence_planner.controller.views.details import AutomatonView
+from sequence_planner.controller.views.part import View
+from sequence_planner.editor.diff import (
+    Meant,
+    behaviour_differences,
+    differences,
+    plan_differences,
+    text_differences,
+)
+from sequence_planner.editor.schemas.check import CheckState, CheckView, SummaryView, listed, waiting
+from sequence_planner.editor.schemas.diff import ComparisonView, TransferView
+from sequence_planner.editor.schemas.what_if import WhatIfView, transfer, transferred, untransferred
+from sequence_planner.editor.what_if import what_if
+from sequence_planner.language.types import Value
+from sequence_planner.model.files import Files, write_files
+from sequence_planner.model.launch_requirements import StartNeeds
+from sequence_planner.model.source import ModelError
+from sequence_planner.process.gc_tuning import collection_put_off
+from sequence_planner.simulation.start_findings import start_findings
+from sequence_planner.station import ReadyStation, prepare_station
+
+# What is found in a draft: that it cannot be used, or what is suspicious in it and what its supervisor adds.
+#
+# It is found piece by piece, what needs least time first; whoever waits for all of it sees how far it has come.
+
+
+def checked(number: int, files: Files, stages: Path | None, start: StartNeeds, folder: Path) -> Iterator[CheckView]:
+    """All that is found of the files, again and again, each time more of it: also whether a station that is run as
+    `start` says could be started with them. They are written into the empty `folder`, which is also where Python stages
+    of the model `stages` are copied to.
+    """
+    write_files(files, folder, stages)
+    with contextlib.chdir(folder):  # so that places bear the names that files have in the model
+        begun = waiting(number).model_copy(update={"state": CheckState.CHECKING, "doing": "reading it"})
+        yield from _found(begun, start)
+
+
+def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
+    yield view
+    try:
+        station = prepare_station(Path())
+        if wrong := station.failures() or start_findings(station, start):
+            raise ModelError(wrong)
+    except ModelError as error:
+        errors = [error_document(finding) for finding in error.findings]
+        yield view.model_copy(update={"state": CheckState.DONE, "doing": "", "findings": listed(errors)})
+        return
+    automaton = station.automaton
+    summary = SummaryView(
+        title=automaton.title,
+        variables=len(automaton.variables),
+        abilities=len(automaton.abilities),
+        operations=len(automaton.operations),
+        specifications=len(automaton.specifications),
+    )
+    view = view.model_copy(update={"summary": summary, "doing": "what is suspicious"})
+    yield view
+    with collection_put_off():
+        warnings = findings_of(automaton, [*check_automaton(automaton, station.connections), *station.suspicions()])
+    view = view.model_copy(update={"findings": listed(sorted(warnings, key=_place))})
+    evidence = remembered_evidence(automaton)  # of what `check` has answered from afar: then it is soon proven again
+    for analysis in without_numbers(automaton, far=evidence is not None, evidence=evidence):
+        document = document_of(automaton, analysis)
+        found = sorted([*warnings, *(document.findings or ())], key=_place)
+        is_all = analysis.pending in (None, COUNTING)
+        more = {
+            "findings": listed(found),
+            "doing": "" if is_all else analysis.pending,
+            "state": CheckState.DONE if is_all else CheckState.CHECKING,
+            "analysis": document.model_copy(update={"findings": None, "pending": None if is_all else analysis.pending}),
+        }
+        view = view.model_copy(update=more)
+        yield view
+
+
+def _place(finding: FindingDocument) -> tuple[str, int, int, str]:
+    return finding.file, finding.line, finding.column, finding.kind
+
+
+# A run that shows a finding, as an ability goes through it.
+
+
+def played(automaton: Automaton, ability: Ability, trace: TraceDocument) -> list[AutomatonView]:
+    """The automaton of `ability` in the initial state of a run, and after each step; without a supervisor, which such a
+    run has not been held back by.
+    """
+    states = (transferred(automaton, values) for values in _values(trace))
+    return [Drawing(automaton, state, {}, None).of(ability) for state in states]
+
+
+def _values(trace: TraceDocument) -> Iterator[Mapping[str, Value | None]]:
+    values = dict(trace.initial)
+    yield values
+    for step in trace.steps:
+        values = {**values, **step.changes}
+        yield values
+
+
+# What is found of whole models beside a check: each takes a while, and is done in a process of its own.
+
+
+class UnusableModelError(Exception):
+    """A model that cannot be used, and why."""
+
+
+def told(name: str, *arguments: object) -> Iterator[str]:
+    """What the task `name` finds, as JSON."""
+    for each in _TOLD[name](*arguments):
+        yield each.model_dump_json()
+
+
+def compared(old: Files, new: Files, stages: Path | None, folder: Path) -> Iterator[ComparisonView]:
+    """How two models differ; `folder` is empty."""
+    text = text_differences(old, new)
+    try:
+        before = _meant("the older one", old, stages, folder / "old")
+        after = _meant("the newer one", new, stages, folder / "new")
+    except UnusableModelError as error:
+        yield ComparisonView(text=text, parts=None, behaviour=None, plans=None, obstacle=str(error))
+        return
+    yield ComparisonView(
+        text=text,
+        parts=differences(before, after),
+        behaviour=list(behaviour_differences(before, after)),
+        plans=list(plan_differences(before, after)),
+        obstacle=None,
+    )
+
+
+def fitted(
+    old: Files,
+    new: Files,
+    stages: Path | None,
+    present: Mapping[str, Value | None],
+    running: Collection[str],
+    reset: bool,
+    folder: Path,
+) -> Iterator[TransferView]:
+    """Whether a station in its `present` state, with abilities `running`, can take `new`, or if all of it is `reset`;
+    `folder` is empty.
+    """
+    try:
+        after = _meant("the model", new, stages, folder / "new")
+    except UnusableModelError as error:
+        yield untransferred(str(error))
+        return
+    try:
+        before = _station(old, stages, folder / "old").automaton
+    except ModelError:
+        before = None
+    yield transfer(before, after.automaton, after.supervisor, present, running, reset=reset)
+
+
+def simulated(
+    files: Files,
+    stages: Path | None,
+    present: Mapping[str, Value | None],
+    seconds: float,
+    deadline: float,
+    folder: Path,
+) -> Iterator[WhatIfView]:
+    """How a station would go on with a model from a state; `folder` is empty."""
+    try:
+        meant = _meant("the model", files, stages, folder / "new")
+    except UnusableModelError as error:
+        yield WhatIfView(
+            seconds=0.0,
+            safe=False,
+            runs=[],
+            completed=[],
+            before={},
+            after={},
+            active=[],
+            unplanned="",
+            obstacle=str(error),
+        )
+        return
+    yield what_if(meant.station, meant.supervisor, present, seconds, deadline)
+
+
+def drawn(
+    files: Files, stages: Path | None, ability: str, trace: TraceDocument, folder: Path
+) -> Iterator[list[AutomatonView] | str]:
+    """How an ability goes through a run, or why nobody can say; `folder` is empty."""
+    try:
+        automaton = _station(files, stages, folder / "new").automaton
+    except ModelError as error:
+        yield f"the model cannot be used: {error.findings[0]}"
+        return
+    found = automaton.abilities.get(ability)
+    yield f"the model has no ability `{ability}`" if found is None else played(automaton, found, trace)
+
+
+_TOLD: Mapping[str, Callable[..., Iterator[View]]] = {
+    "compared": compared,
+    "fitted": fitted,
+    "simulated": simulated,
+}
+
+
+def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
+    """What a model means. Raises `UnusableModelError`."""
+    try:
+        station = _station(files, stages, folder)
+    except ModelError as error:
+        raise UnusableModelError(f"{what} cannot be used: {error.findings[0]}") from error
+    found = None
+    for found in analyses(station.automaton):
+        if found.supervisor is not None and found.guards is not None:
+            return Meant(station, found.supervisor, found.guards)
+    why = "; ".join(warning.message for warning in (found.warnings if found else None) or ())
+    raise UnusableModelError(f"{what} has no supervisor: {why}")
+
+
+def _station(files: Files, stages: Path | None, folder: Path) -> ReadyStation:
+    """Raises `ModelError`."""
+    folder.mkdir()
+    write_files(files, folder, stages)
+    with contextlib.chdir(folder):
+        return prepare_station(Path())

@@ -1,0 +1,79 @@
+"""A field of the editor: what kind of text stands there, what names mean in it, and what grounding makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from sequence_planner.automaton.findings import Binding, instance_name, with_arguments
+from sequence_planner.automaton.grounding import Meaning, Writing
+from sequence_planner.language.resolver import NameScope
+from sequence_planner.language.types import Type
+from sequence_planner.model.documents import Parameters
+from sequence_planner.model.source import SourceText
+
+# What grounding does with the text of a field, for one choice of the parameters.
+Reading = Callable[[Meaning, SourceText, NameScope], object]
+
+
+class FieldKind(StrEnum):
+    """What kind of text stands in a field."""
+
+    CONDITION = "condition"
+    FORMULA = "formula"
+    ACTION = "action"
+    TYPE = "type"
+    INITIAL = "initial"
+    ENUMERATION = "enumeration"
+    ABILITY = "ability"
+    OPERATION = "operation"
+    ACKNOWLEDGEMENT = "acknowledgement"
+
+
+@dataclass(frozen=True)
+class TextField:
+    """A place for a text. `resource` and `ability` are those whose names are seen without their prefix.
+
+    `choices` are what can be written where that is one of few names; `type` is that of a value.
+    """
+
+    kind: FieldKind
+    read: Reading = field(compare=False, repr=False)
+    parameters: Parameters = field(default_factory=dict)
+    resource: str | None = None
+    ability: str | None = None
+    operation: str | None = None
+    writing: Writing | None = None
+    choices: tuple[str, ...] = ()
+    type: Type | None = None
+
+    def prefixes(self, binding: Binding) -> tuple[str, ...]:
+        """What is tried before a bare name, in order, for one choice of the parameters."""
+        own = (f"{self.resource}.",) if self.resource else ()
+        return (f"{instance_name(self._ability, binding)}.", *own) if self.ability else own
+
+    @property
+    def prefix_patterns(self) -> tuple[str, ...]:
+        """The same for all choices at once, with the parameters as they are written."""
+        own = (f"{self.resource}.",) if self.resource else ()
+        return (f"{with_arguments(self._ability, map(str, self.parameters))}.", *own) if self.ability else own
+
+    def scopes(self, meaning: Meaning) -> Iterator[NameScope]:
+        """What names mean here, for each choice of the parameters."""
+        for binding in meaning.declarations.bindings(self.parameters):
+            yield meaning.scope(binding, *self.prefixes(binding))
+
+    @property
+    def _ability(self) -> str:
+        return f"{self.resource}.{self.ability}"
+
+
+def condition(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
+    """What grounding makes of a condition."""
+    return meaning.predicate(text, scope)
+
+
+def with_text(texts: Sequence[SourceText], index: int, text: SourceText) -> list[SourceText]:
+    """`texts` with `text` as that entry, or as their last if there are not so many."""
+    return [*texts[:index], text, *texts[index + 1 :]]

@@ -1,0 +1,80 @@
+"""What the page is told about a text while it is written."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from sequence_planner.controller.views.part import Value, View
+
+
+class NameKind(StrEnum):
+    """What a word of a text is."""
+
+    MEASURED = "measured"
+    OUTPUT = "output"
+    ESTIMATED = "estimated"
+    FLAG = "flag"
+    ACTIVITY = "activity"
+    PARAMETER = "parameter"
+    VALUE = "value"
+    KEYWORD = "keyword"
+    RESOURCE = "resource"
+    ABILITY = "ability"
+    OPERATION = "operation"
+    ENUMERATION = "enumeration"
+
+
+class ProblemView(View):
+    """One thing wrong with a text; `start` and `end` count its characters."""
+
+    start: int
+    end: int
+    message: str
+
+
+class OptionView(View):
+    """One thing that can be written: what is shown of it, and what is written."""
+
+    label: str
+    insert: str
+    kind: NameKind
+    detail: str
+
+
+class CompletionView(View):
+    """What can stand in place of the text between `start` and `end`, the most useful first."""
+
+    start: int
+    end: int
+    options: tuple[OptionView, ...]
+
+
+class DeclarationView(View):
+    """Where something is declared: a file of the station, and line and column from 1."""
+
+    file: str
+    line: int
+    column: int
+
+
+class HoverView(View):
+    """What the name between `start` and `end` is.
+
+    `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
+    each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
+    by which it is looked for in the model, but for a parameter.
+    """
+
+    start: int
+    end: int
+    name: str
+    kind: NameKind
+    pattern: str
+    names: tuple[str, ...]
+    type: str | None
+    domain: tuple[Value, ...]
+    initial: Value | None
+    resource: str | None
+    title: str | None
+    part: str | None
+    declared: DeclarationView | None

@@ -1,0 +1,704 @@
+"""Suggestions of the pipeline editor: stages, declarations and sources that fit at an edge."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+from pydantic import JsonValue, ValidationError
+
+from sequence_planner.automaton.grounding import ground_variables
+from sequence_planner.editor.draft import AddEntry, SetEntry
+from sequence_planner.editor.pipelines.examples import pipeline_of
+from sequence_planner.editor.pipelines.graph import DraftPipelines
+from sequence_planner.editor.pipelines.reader import pipeline_name, resource_of
+from sequence_planner.editor.pipelines.schemas import (
+    DraftPipelineView,
+    EntryEdit,
+    FitsView,
+    Fitting,
+    SourceOfferView,
+    StageOfferView,
+    TargetView,
+)
+from sequence_planner.language.lexer import KEYWORDS
+from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place, Type
+from sequence_planner.model.documents import FlowDocument, ResourceDocument, VariableDocument
+from sequence_planner.model.loader import Station
+from sequence_planner.model.paths import EditError
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.validation import complaint
+from sequence_planner.pipelines.builder import build_what_is_sound
+from sequence_planner.pipelines.field_paths import domain, is_numeric, is_textual
+from sequence_planner.pipelines.inference import variables_inferred
+from sequence_planner.pipelines.message_types import feeds, fills
+from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
+from sequence_planner.pipelines.stages.python import FOLDER
+
+# Stages to begin with: of each kind some that the record at an edge suggests, for people to fill in further.
+#
+# Whether one of them can stand there, the builder of pipelines says and nobody else.
+
+DEEPEST = 3  # messages within messages
+MOST_SUBJECTS = 12  # fields that are tried for a kind of stage
+MOST_POINTS = 40  # values that are written out
+# Kinds that give a variable that is there, and those that give a field of a message.
+GIVING_VARIABLES, GIVING_FIELDS = ("rename", "map"), ("rename", "constant", "undiscretise", "map")
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A stage as a document has it, and the variables that it needs declared, with their types."""
+
+    stage: Mapping[str, object]
+    declares: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where a stage shall stand: the record there, what there is a use for at the end, `open` what of it nothing gives
+    yet (of a message then the rest), and names that are taken. `enumerations` are those of the station.
+    """
+
+    is_incoming: bool
+    fields: RecordType
+    wanted: RecordType
+    open: RecordType
+    taken: frozenset[str]
+    enumerations: Mapping[str, tuple[str, ...]]
+    folder: Path
+
+    def name(self, stem: str) -> str:
+        """A name that is free."""
+        stem = re.sub(r"\W+", "_", stem).strip("_") or "value"
+        names = (stem, *(f"{stem}_{number}" for number in range(2, 1000)))
+        return next(each for each in names if each not in self.taken and each not in self.fields)
+
+    def type_name(self, type_: FieldType) -> str | None:
+        """How a variable's document writes a type."""
+        match type_:
+            case BooleanType():
+                return "bool"
+            case IntegerRange() if domain(type_) is not None:
+                return str(type_)
+            case EnumerationType():
+                return next((name for name, values in self.enumerations.items() if values == type_.values), None)
+        return None
+
+    @property
+    def leaves(self) -> list[tuple[str, FieldType]]:
+        """The fields, those within messages too, the most telling first: those that nobody else has taken."""
+        found = list(_leaves(self.fields))
+        return sorted(found, key=lambda each: each[0] in self.taken)
+
+
+def _leaves(fields: RecordType, above: str = "", depth: int = 0) -> Iterator[tuple[str, FieldType]]:
+    for name, type_ in fields.items():
+        path = f"{above}{name}"
+        if not isinstance(type_, NestedType):
+            yield path, type_
+        elif depth < DEEPEST:
+            yield from _leaves(type_.fields, f"{path}.", depth + 1)
+
+
+def candidates(kind: str, spot: Spot) -> list[Candidate]:
+    """Stages of a kind that could stand there, the likeliest first; where the record suggests none, one about any
+    field, so that the builder can say why not. There is none of `python` without a function that could be called, and
+    none that gives something where nothing is left to be given.
+    """
+    found = list(_MAKERS[kind](spot))
+    giving = GIVING_VARIABLES if spot.is_incoming else GIVING_FIELDS
+    if found or kind == "python" or (kind in giving and not spot.open):
+        return found
+    return list(_anything(kind, spot))
+
+
+def _anything(kind: str, spot: Spot) -> Iterator[Candidate]:
+    """A stage of a kind about any field, where no field suggests one."""
+    name = next((path for path, _ in spot.leaves), "field")
+    target = next(iter(spot.open), "")
+    forms: dict[str, object] = {
+        "rename": {name: target} if spot.is_incoming else {target: name},
+        "constant": {target: 0},
+        "expression": {spot.name(f"{name}_again"): name},
+        "discretise": {"field": name, "variable": spot.name(f"{name}_name"), "ranges": {"low": [None, 0]}},
+        "undiscretise": {"variable": name, "field": target, "values": {"low": [0.0]}},
+        "map": {"field": name, "variable": target, "values": {"0": 0}},
+        "match": {"field": name, "variable": spot.name(f"{name}_is_ready"), "equals": "ready"},
+        "member": {"field": name, "item": 0, "variable": spot.name(f"has_{name}")},
+        "remember": {"variable": spot.name(f"last_{name}"), "of": name},
+        "filter": f"{name}",
+        "debounce": {"fields": [name], "seconds": 0.1},
+        "timeout": {"fields": [name], "seconds": 1.0},
+        "override": {"name": spot.name(name), "fields": {name: {"in": [0]}}, "expires": 60},
+        "fold": [name],
+        "table": {"fields": [name], "variables": [spot.name(name)], "rows": [{"when": ["any"], "gives": [0]}]},
+    }
+    yield Candidate({kind: forms[kind]})
+
+
+def _subjects(spot: Spot, fits: Callable[[FieldType], bool]) -> Iterator[tuple[str, FieldType]]:
+    found = ((path, type_) for path, type_ in spot.leaves if fits(type_))
+    for each, _ in zip(found, range(MOST_SUBJECTS), strict=False):
+        yield each
+
+
+def _truth(path: str, type_: FieldType) -> str | None:
+    """A condition on a field."""
+    match type_:
+        case BooleanType():
+            return path
+        case EnumerationType():
+            return f"{path} == {type_.values[0]}"
+        case IntegerRange() | RealType():
+            return f"{path} > 0"
+        case TextType():
+            return f"{path} == 'ready'"
+        case ListType(element=IntegerRange() | RealType()):
+            return f"{path}[0] > 0"
+        case ListType(element=BooleanType()):
+            return f"{path}[0]"
+    return None
+
+
+def _rename(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda _: True):
+        if spot.is_incoming:
+            for name, wanted in spot.open.items():
+                if name != path and isinstance(wanted, Type) and feeds(type_, wanted):
+                    yield Candidate({"rename": {path: name}})
+            if (written := spot.type_name(type_)) is not None:
+                name = spot.name(path.replace(".", "_"))
+                yield Candidate({"rename": {path: name}}, {name: written})
+        else:
+            for name, wanted in spot.open.items():
+                if name != path and fills(type_, wanted):
+                    yield Candidate({"rename": {name: path}})
+
+
+def _expression(spot: Spot) -> Iterator[Candidate]:
+    conditions = [(path, _truth(path, type_)) for path, type_ in _subjects(spot, lambda _: True)]
+    if spot.is_incoming:
+        for path, condition in conditions:
+            if condition is not None:
+                name = spot.name(f"{path}_is_so")
+                yield Candidate({"expression": {name: condition}}, {name: "bool"})
+        return
+    for name, type_ in spot.open.items():
+        if isinstance(type_, BooleanType):
+            yield from (Candidate({"expression": {name: each}}) for _, each in conditions if each is not None)
+            yield Candidate({"expression": {name: "true"}})
+        elif is_numeric(type_):
+            numbers = (path for path, given in _subjects(spot, is_numeric) if fills(given, type_))
+            yield from (Candidate({"expression": {name: each}}) for each in (*numbers, "0"))
+
+
+def _constant(spot: Spot) -> Iterator[Candidate]:
+    for name, type_ in spot.open.items():
+        yield from (Candidate({"constant": {name: value}}) for value in _values(type_)[:1])
+
+
+def _discretise(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, _has_numbers):
+        for name, values, declares in _named(path, spot):
+            made: dict[str, object] = {"field": path, "variable": name}
+            if isinstance(type_, ListType):
+                points = {value: [float(index)] * (type_.length or 1) for index, value in enumerate(values[:-1])}
+                made |= {"values": points, "tolerance": 0.1, "otherwise": values[-1]}
+            else:
+                low = type_.minimum if isinstance(type_, IntegerRange) else 0
+                bounds = [None, *(float(low + index) for index in range(1, len(values))), None]
+                made["ranges"] = {value: [bounds[index], bounds[index + 1]] for index, value in enumerate(values)}
+            yield Candidate({"discretise": made}, declares)
+
+
+def _has_numbers(type_: FieldType) -> bool:
+    return is_numeric(type_.element if isinstance(type_, ListType) else type_)
+
+
+def _named(path: str, spot: Spot) -> Iterator[tuple[str, tuple[str, ...], dict[str, str]]]:
+    """The variables with names that a field could become, with their values, and what must be declared for them."""
+    for name, wanted in spot.open.items():
+        if isinstance(wanted, EnumerationType) and 1 < len(wanted.values) <= MOST_POINTS:
+            yield name, wanted.values, {}
+    for enumeration, values in spot.enumerations.items():
+        if 1 < len(values) <= MOST_POINTS:
+            name = spot.name(f"{path}_{enumeration}")
+            yield name, values, {name: enumeration}
+
+
+def _undiscretise(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda each: isinstance(each, EnumerationType)):
+        assert isinstance(type_, EnumerationType)
+        for name, wanted in spot.open.items():
+            axes = (wanted.length or 1) if isinstance(wanted, ListType) else 1
+            if _has_numbers(wanted):
+                values = {value: [float(index)] * axes for index, value in enumerate(type_.values[:MOST_POINTS])}
+                yield Candidate({"undiscretise": {"variable": path, "field": name, "values": values}})
+
+
+def _map(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda each: is_textual(each) or domain(each) is not None or is_numeric(each)):
+        given = _values(type_)[:MOST_POINTS]
+        if not given:
+            continue
+        if spot.is_incoming:
+            first, *others = map(_key, given[:2])
+            values = {first: True, **dict.fromkeys(others, False)}
+            name = spot.name(f"{path}_means")
+            more = {} if domain(type_) is not None and len(given) <= len(values) else {"otherwise": False}
+            yield Candidate({"map": {"field": path, "variable": name, "values": values, **more}}, {name: "bool"})
+            continue
+        for name, wanted in spot.open.items():
+            if (meant := _values(wanted)) and not isinstance(wanted, ListType):
+                values_out = {_key(value): meant[index % len(meant)] for index, value in enumerate(given)}
+                yield Candidate({"map": {"field": name, "variable": path, "values": values_out}})
+
+
+def _table(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda each: not isinstance(each, ListType) and bool(_values(each))):
+        when = _values(type_)[0]
+        if spot.is_incoming:
+            name = spot.name(f"{path}_is_so")
+            rows = [{"when": [when], "gives": [True]}]
+            made = {"fields": [path], "variables": [name], "rows": rows, "otherwise": [False]}
+            yield Candidate({"table": made}, {name: "bool"})
+            continue
+        for name, wanted in spot.open.items():
+            if (meant := _values(wanted)) and not isinstance(wanted, ListType):
+                rows = [{"when": [when], "gives": [meant[0]]}]
+                yield Candidate(
+                    {"table": {"fields": [path], "variables": [name], "rows": rows, "otherwise": [meant[-1]]}}
+                )
+
+
+def _match(spot: Spot) -> Iterator[Candidate]:
+    for path, _ in _subjects(spot, is_textual):
+        name = spot.name(f"{path}_is_ready")
+        yield Candidate({"match": {"field": path, "variable": name, "equals": "ready"}}, {name: "bool"})
+
+
+def _member(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda each: isinstance(each, ListType)):
+        assert isinstance(type_, ListType)
+        for item in _values(type_.element)[:1]:
+            name = spot.name(f"has_{path}")
+            yield Candidate({"member": {"field": path, "item": item, "variable": name}}, {name: "bool"})
+
+
+def _remember(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda each: True):
+        narrow = spot.open.get(path, type_)
+        if (written := spot.type_name(narrow)) is not None:
+            name = spot.name(f"last_{path}")
+            yield Candidate({"remember": {"variable": name, "of": path}}, {name: written})
+
+
+def _filter(spot: Spot) -> Iterator[Candidate]:
+    for path, type_ in _subjects(spot, lambda _: True):
+        if (condition := _truth(path, type_)) is not None:
+            yield Candidate({"filter": condition})
+    yield Candidate({"filter": True})
+
+
+def _timed(kind: str, seconds: float) -> Callable[[Spot], Iterator[Candidate]]:
+    def make(spot: Spot) -> Iterator[Candidate]:
+        for path, _ in _subjects(spot, lambda _: True):
+            yield Candidate({kind: {"fields": [path], "seconds": seconds}})
+
+    return make
+
+
+def _periodic(kind: str) -> Callable[[Spot], Iterator[Candidate]]:
+    return lambda _: iter([Candidate({kind: {"every": 1.0}})])
+
+
+def _override(spot: Spot) -> Iterator[Candidate]:
+    among = spot.leaves if spot.is_incoming else [*spot.open.items(), *spot.leaves]
+    for path, type_ in among[:MOST_SUBJECTS]:
+        bounds: dict[str, object] | None = None
+        if isinstance(type_, RealType):
+            bounds = {"between": [0.0, 1.0]}
+        elif not isinstance(type_, ListType) and (values := _values(type_)):
+            bounds = {"in": values[:MOST_POINTS]}
+        if bounds is not None:
+            yield Candidate({"override": {"name": spot.name(path), "fields": {path: bounds}, "expires": 60}})
+
+
+def _fold(spot: Spot) -> Iterator[Candidate]:
+    for path in list(spot.fields)[:MOST_SUBJECTS]:
+        yield Candidate({"fold": [path]})
+    yield Candidate({"fold": []})
+
+
+def _python(spot: Spot) -> Iterator[Candidate]:
+    """The functions in the station's files whose parameters are fields of the record."""
+    for path in sorted((spot.folder / FOLDER).rglob("*.py")):
+        try:
+            functions = [each for each in ast.parse(path.read_bytes()).body if isinstance(each, ast.FunctionDef)]
+        except (OSError, ValueError, SyntaxError, RecursionError, MemoryError):
+            continue
+        file = f"{FOLDER}/{path.relative_to(spot.folder / FOLDER).as_posix()}"
+        for function in functions:
+            reads = {each.arg: _python_type(spot.fields.get(each.arg)) for each in function.args.args}
+            if not function.name.startswith("_") and all(reads.values()):
+                name = spot.name(function.name) if spot.is_incoming else next(iter(spot.open), function.name)
+                settings = {"file": file, "function": function.name, "reads": reads, "gives": {name: "bool"}}
+                yield Candidate({"python": settings}, {name: "bool"} if spot.is_incoming else {})
+
+
+def _python_type(type_: FieldType | None) -> str | None:
+    return None if type_ is None or isinstance(type_, NestedType) else str(type_)
+
+
+def _values(type_: FieldType) -> list[object]:
+    """Some values of a type, as a document has them."""
+    match type_:
+        case BooleanType():
+            return [True, False]
+        case EnumerationType():
+            return list(type_.values)
+        case IntegerRange():
+            return list(domain(type_) or (max(type_.minimum, 0), min(type_.maximum, 1)))
+        case RealType():
+            return [0.0, 1.0]
+        case TextType():
+            return ["ready", "other"]
+        case ListType(element, int(length)):
+            return [[value] * length for value in _values(element)]
+    return []
+
+
+def _key(value: object) -> str:
+    """A value where a name stands."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+_MAKERS: Mapping[str, Callable[[Spot], Iterable[Candidate]]] = {
+    "rename": _rename,
+    "constant": _constant,
+    "expression": _expression,
+    "discretise": _discretise,
+    "undiscretise": _undiscretise,
+    "map": _map,
+    "table": _table,
+    "match": _match,
+    "member": _member,
+    "remember": _remember,
+    "filter": _filter,
+    "debounce": _timed("debounce", 0.1),
+    "limit": _periodic("limit"),
+    "tick": _periodic("tick"),
+    "override": _override,
+    "fold": _fold,
+    "timeout": _timed("timeout", 1.0),
+    "python": _python,
+}
+
+
+# Stages, declarations and sources tried with the builder of pipelines, in the part of a draft that they concern.
+
+NEW = Place("", 1, 1)  # where what is only tried stands
+_STAGE = re.compile(r"^`[^`]*` → stage \d+ `\w+`: ")
+
+
+class Trying:
+    """Tries changes of one pipeline of a draft. What is wrong there already does not count."""
+
+    def __init__(self, graph: DraftPipelines, view: DraftPipelineView) -> None:
+        self._graph = graph
+        self._view = view
+        concerned = _concerned(graph, view)
+        written = graph.sketch.written
+        of = {view.resource, *(each.resource for each in graph.pipelines.values() if each.name in concerned)}
+        resources = {
+            name: document if name == view.resource else _only(name, document, concerned)
+            for name, document in written.resources.items()
+            if name in of
+        }
+        self._station = replace(written, resources=resources)
+        self._concerned = concerned
+
+    @cached_property
+    def _before(self) -> tuple[frozenset[str], Mapping[str, Type]]:
+        """What is found without any change, and the variables that there are with their types."""
+        findings, variables = self._built(self._station)
+        return frozenset(map(_bare, findings)), variables
+
+    @property
+    def document(self) -> ResourceDocument:
+        """The document of the pipeline's resource."""
+        return self._station.resources[self._view.resource]
+
+    def with_stage(self, index: int, stage: Mapping[str, object], declares: Mapping[str, str]) -> str | None:
+        """Why a stage cannot be inserted there, once these variables are declared; None where it can."""
+        try:
+            document = StageDocument.model_validate(_placed(stage))
+        except ValidationError as error:
+            return complaint(error, StageDocument)
+        return self._why_not(self._inserted(index, document), declares)
+
+    def with_sources(self, source: object) -> str | None:
+        """Why a flow cannot have this `from`; None where it can."""
+        name = self._view.place.path[1]
+        flows = dict(self.document.flows)
+        key = next(each for each in flows if each == name)
+        try:
+            read = FlowDocument.model_validate({_text("from"): _placed(source)})
+        except ValidationError as error:
+            return complaint(error, FlowDocument)
+        flows[key] = flows[key].model_copy(update={"source": read.source})
+        return self._why_not(self.document.model_copy(update={"flows": flows}), {})
+
+    def _inserted(self, index: int, stage: StageDocument) -> ResourceDocument:
+        section, name = map(str, self._view.place.path[:2])
+        part = str((self._view.stages_path or ["pipeline"])[-1])
+        entries = dict(getattr(self.document, section))
+        key = next(each for each in entries if each == name)
+        stages = list(getattr(entries[key], part))
+        stages.insert(index, stage)
+        entries[key] = entries[key].model_copy(update={part: stages})
+        return self.document.model_copy(update={section: entries})
+
+    def _why_not(self, document: ResourceDocument, declares: Mapping[str, str]) -> str | None:
+        section = "output" if self._view.role == "outgoing" else "measured"
+        variables = dict(getattr(document, section))
+        for name, type_ in declares.items():
+            if not any(each == name for each in variables):
+                variables[_text(name)] = VariableDocument(type=_text(type_))
+        changed = document.model_copy(update={section: variables})
+        station = replace(self._station, resources={**self._station.resources, self._view.resource: changed})
+        findings, there = self._built(station)
+        known, before = self._before
+        new = [each for each in findings if _bare(each) not in known]
+        of_stages = [each for each in new if _STAGE.match(each)]
+        if not of_stages and (gone := sorted(before.keys() - there.keys())):
+            return f"`{gone[0]}` would be no variable any more: it follows from a field that the stage uses up"
+        if not new and (others := [name for name, type_ in before.items() if there[name] != type_]):
+            return f"`{others[0]}` would be {there[others[0]]}, and is {before[others[0]]}: declare its type first"
+        return _STAGE.sub("", (of_stages or new)[0]) if new else None
+
+    def _built(self, station: Station) -> tuple[Sequence[str], Mapping[str, Type]]:
+        """What is wrong with a station, as the builder says it, and its variables with their types."""
+        sketch = self._graph.sketch
+        cut = [pipeline_name(resource_of(file), path) for file, path in sketch.cut]
+        inferred, found = variables_inferred(station, sketch.registry)
+        document = inferred.resources[self._view.resource]
+        lost = {str(path[1]) for _, path in sketch.lost if path[0] == "topics"}
+        own = _only(self._view.resource, document, self._concerned)
+        kept = {name: topic for name, topic in own.topics.items() if str(name) not in lost}
+        inferred = replace(
+            inferred,
+            resources={
+                **inferred.resources,
+                self._view.resource: own.model_copy(update={"topics": kept}),
+            },
+        )
+        automaton, declared = ground_variables(inferred)
+        built = build_what_is_sound(inferred, automaton, sketch.registry, cut)
+        return [each.message for each in (*found, *declared, *built.findings)], {
+            name: variable.type for name, variable in automaton.variables.items()
+        }
+
+
+def _concerned(graph: DraftPipelines, view: DraftPipelineView) -> frozenset[str]:
+    """The pipelines behind one, and all that these come of; flows that may become its sources are among them."""
+    behind, above = {view.id}, {view.id}
+    for id_, each in graph.pipelines.items():  # sources stand before what reads them
+        if any(source.pipeline in behind for source in each.sources):
+            behind.add(id_)
+    for id_ in reversed(graph.pipelines):
+        if id_ in behind or id_ in above:
+            above.update(source.pipeline for source in graph.pipelines[id_].sources if source.pipeline is not None)
+    found = behind | above
+    if view.role == "flow":
+        found |= set(graph.pipelines)
+    return frozenset(graph.pipelines[id_].name for id_ in found if id_ in graph.pipelines)
+
+
+def _only(resource: str, document: ResourceDocument, concerned: frozenset[str]) -> ResourceDocument:
+    """A resource with those of its topics and flows that are concerned."""
+    return document.model_copy(
+        update={
+            "topics": {name: each for name, each in document.topics.items() if str(name) in concerned},
+            "flows": {name: each for name, each in document.flows.items() if f"{resource}.{name}" in concerned},
+            "services": {
+                name: each
+                for name, each in document.services.items()
+                if any(part.startswith(f"{name} ") for part in concerned)
+            },
+            "actions": {
+                name: each
+                for name, each in document.actions.items()
+                if any(part.startswith(f"{name} ") for part in concerned)
+            },
+        }
+    )
+
+
+def _text(text: str) -> SourceText:
+    return SourceText(text, NEW, text)
+
+
+def _placed(value: object) -> object:
+    """The same with texts that have a place, as a document has them."""
+    match value:
+        case Mapping():
+            return {_text(str(key)): _placed(each) for key, each in value.items()}
+        case list() | tuple():
+            return [_placed(each) for each in value]
+        case str():
+            return _text(value)
+    return value
+
+
+def _bare(message: str) -> str:
+    """A finding without the number of its stage."""
+    return re.sub(r"stage \d+", "stage", message)
+
+
+# What could be put at an edge of a draft's pipelines, as the builder of pipelines says.
+
+MOST_TRIED = 10  # stages of one kind
+
+
+def fits(number: int, graph: DraftPipelines, question: Fitting) -> FitsView:
+    """What could be put there. Raises `EditError` where nobody can say."""
+    view = pipeline_of(graph, question.pipeline)
+    if question.edge >= len(view.edges):
+        raise EditError(f"`{view.id}` has {len(view.edges)} edges, counted from 0")
+    chain = graph.sketch.built.chains.get(view.name)
+    if chain is None or view.id != view.name or view.edges[question.edge].fields is None:
+        raise EditError("what passes here is unknown: mend first what stands before it")
+    if view.stages_path is None:
+        raise EditError("what becomes of a goal has no stages of its own")
+    if question.edge > len(view.stages) or any(each.written is None for each in view.stages[: question.edge]):
+        raise EditError("this stands behind a stage that follows from the message: put it before that one")
+    fields = chain.fields[question.edge]
+    trying = Trying(graph, view)
+    spot = _spot(graph, view, fields, chain.wanted)
+    return FitsView(
+        number=number,
+        stages=[_offer(kind, spot, question.edge, view, trying) for kind in StageDocument.model_fields],
+        targets=[] if question.field is None else list(_targets(question.field, spot, question.edge, view, trying)),
+        sources=list(_sources(graph, view, trying)) if view.role == "flow" else [],
+    )
+
+
+def _spot(graph: DraftPipelines, view: DraftPipelineView, fields: RecordType, wanted: Mapping[str, FieldType]) -> Spot:
+    sketch = graph.sketch
+    own = f"{view.resource}."
+    names = frozenset(name.removeprefix(own) for name in sketch.automaton.variables if name.startswith(own))
+    document = sketch.written.resources[view.resource]
+    enumerations = {str(name): tuple(map(str, values)) for name, values in sketch.station.station.enumerations.items()}
+    values = frozenset(value for each in enumerations.values() for value in each)
+    if view.role == "outgoing":
+        done = {end.field for end in view.ends}
+        still = dict(sorted(wanted.items(), key=lambda each: each[0] in done))
+        taken = names | values
+    else:
+        fed = {name.removeprefix(own) for name in sketch.built.pipelines.feeds if name.startswith(own)}
+        still = {name: type_ for name, type_ in wanted.items() if name not in fed}
+        taken = names | values | frozenset(map(str, document.abilities)) | KEYWORDS
+    return Spot(view.role != "outgoing", fields, wanted, still, taken, enumerations, sketch.station.folder)
+
+
+def _offer(kind: str, spot: Spot, index: int, view: DraftPipelineView, trying: Trying) -> StageOfferView:
+    reason: str | None = None
+    if not (tried := candidates(kind, spot)[:MOST_TRIED]):
+        reason = _nothing_left(kind, spot)
+    for candidate in tried:
+        why = trying.with_stage(index, candidate.stage, candidate.declares)
+        if why is None:
+            edits = _edits(view, index, candidate)
+            return StageOfferView(kind=kind, fits=True, reason=None, stage=_json(candidate.stage), edits=edits)
+        reason = reason or why
+    return StageOfferView(kind=kind, fits=False, reason=reason, stage=None, edits=[])
+
+
+def _nothing_left(kind: str, spot: Spot) -> str:
+    """Why no stage of a kind can even be tried."""
+    if kind == "python":
+        return (
+            f"no file in the folder `{FOLDER}` on the server has a function whose parameters are fields of this record"
+        )
+    if spot.is_incoming:
+        return "every variable of the resource is given already: declare one first that this can give"
+    return "every field of the message is given already"
+
+
+def _edits(view: DraftPipelineView, index: int, candidate: Candidate) -> list[EntryEdit]:
+    """The stage inserted, and what it needs declared."""
+    file, stages = view.place.file, view.stages_path or []
+    written = sum(stage.written is not None for stage in view.stages)
+    beside = {"before": index} if index < written else {}
+    made: list[EntryEdit] = [
+        AddEntry.model_validate(
+            {"file": file, "path": [*stages, index if beside else 0], "value": _json(candidate.stage), **beside}
+        )
+    ]
+    section = "output" if view.role == "outgoing" else "measured"
+    for name, type_ in candidate.declares.items():
+        made.append(AddEntry(file=file, path=[section, name], value={"type": type_}))
+    return made
+
+
+def _targets(field: str, spot: Spot, index: int, view: DraftPipelineView, trying: Trying) -> Iterator[TargetView]:
+    """What a field could become under another name."""
+    for name, type_ in spot.wanted.items():
+        pair = {field: name} if spot.is_incoming else {name: field}
+        candidate = Candidate({"rename": pair})
+        why = trying.with_stage(index, candidate.stage, {})
+        edits = _edits(view, index, candidate) if why is None else []
+        yield TargetView(field=field, name=name, type=str(type_), fits=why is None, reason=why, edits=edits)
+
+
+def _sources(graph: DraftPipelines, view: DraftPipelineView, trying: Trying) -> Iterator[SourceOfferView]:
+    """The topics and flows that a flow could have beside those it has: one more of a merge or of those in order of
+    arrival; a flow of a single source becomes a merge only by hand, since its fields are called otherwise then.
+    """
+    path, own = [*view.place.path, "from"], {view.id, *(each.pipeline for each in view.sources)}
+    for id_, other in graph.pipelines.items():
+        if id_ in own or other.part.value not in ("topic", "flow"):
+            continue
+        name = id_.removeprefix(f"{view.resource}.") if other.role == "flow" else id_
+        written: object
+        edit: EntryEdit
+        match view.joining:
+            case "merge":
+                alias = _alias(name, {str(each.alias) for each in view.sources})
+                written = {**{str(each.alias): each.written for each in view.sources}, alias: name}
+                edit = AddEntry(file=view.place.file, path=[*path, alias], value=name)
+            case "interleave":
+                written = [*(each.written for each in view.sources), name]
+                edit = AddEntry(file=view.place.file, path=[*path, len(view.sources)], value=name)
+            case _:
+                only = view.sources[0].written
+                written = [only, name]
+                edit = SetEntry(file=view.place.file, path=path, was=only, value=[only, name])
+        why = trying.with_sources(written)
+        yield SourceOfferView(pipeline=id_, fits=why is None, reason=why, edits=[edit] if why is None else [])
+
+
+def _alias(name: str, taken: set[str]) -> str:
+    stem = "".join(each if each.isalnum() else "_" for each in name.rpartition("/")[2].rpartition(".")[2]) or "source"
+    if stem[0].isdigit() or stem in KEYWORDS:
+        stem = f"source_{stem}"
+    names = (stem, *(f"{stem}_{number}" for number in range(2, 1000)))
+    return next(each for each in names if each not in taken)
+
+
+def _json(value: object) -> JsonValue:
+    match value:
+        case Mapping():
+            return {str(key): _json(each) for key, each in value.items()}
+        case list() | tuple():
+            return [_json(each) for each in value]
+        case None | bool() | int() | float():
+            return value
+    return str(value)

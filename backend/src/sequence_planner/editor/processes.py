@@ -1,0 +1,309 @@
+"""Worker processes of the editor: edits, checks and language queries on the draft, and request bodies."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sequence_planner.analysis.report import FindingDocument
+from sequence_planner.controller.views.part import View
+from sequence_planner.editor.draft import FilePath, Steps
+from sequence_planner.editor.language.schemas import CompletionView, HoverView, ProblemView
+from sequence_planner.editor.schemas.check import CheckState, CheckView, waiting
+from sequence_planner.model.files import Files
+from sequence_planner.model.launch_requirements import StartNeeds
+from sequence_planner.model.paths import EditError
+from sequence_planner.process.worker import PATIENCE, Answering, WorkEndedError, working
+
+# Bodies of requests that may be large: each is read by the process that does what it asks for.
+#
+# To read a body of some megabytes takes its reader longer than a stop may wait.
+
+Asked = TypeVar("Asked", bound=BaseModel)
+
+
+class BodyError(Exception):
+    """A body that is not as expected; `errors` are those of a `ValidationError`, with `body` before each place."""
+
+    def __init__(self, errors: list[dict[str, Any]]) -> None:
+        super().__init__(errors)
+        self.errors = errors
+
+
+def read_body(model: type[Asked], body: bytes) -> Asked:
+    """What a body asks for. Raises `BodyError`."""
+    if not body:
+        raise BodyError([{"type": "missing", "loc": ("body",), "msg": "Field required"}])
+    try:
+        content = json.loads(body)
+    except json.JSONDecodeError as error:
+        raise _not_json(error.msg, error.pos) from None
+    except UnicodeDecodeError as error:
+        raise _not_json("this is not UTF-8", error.start) from None
+    except RecursionError:
+        raise _not_json("it is nested too deeply", 0) from None
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False, include_input=False)
+        raise BodyError([{**each, "loc": ("body", *each["loc"])} for each in found]) from None
+
+
+def _not_json(why: str, position: int) -> BodyError:
+    return BodyError(
+        [{"type": "json_invalid", "loc": ("body", position), "msg": "JSON decode error", "ctx": {"error": why}}]
+    )
+
+
+# A process that is asked about the draft again and again, and knows its files from one question to the next.
+
+Changed = Mapping[str, str | None]
+
+
+class Knowing:
+    """What such a process has been told of some files; only what is another text is told again."""
+
+    def __init__(self) -> None:
+        self._told: dict[str, str] = {}
+
+    def forget(self) -> None:
+        """Nobody knows anything."""
+        self._told = {}
+
+    def news(self, files: Files) -> Changed:
+        """What is to be told so that all is known; none is a file that is gone."""
+        changed: dict[str, str | None] = {path: text for path, text in files.items() if self._told.get(path) != text}
+        changed |= dict.fromkeys(self._told.keys() - files.keys())
+        self._told = dict(files)
+        return changed
+
+
+def answered(work: Callable[[], object]) -> object:
+    """What such a process answers: what `work` gives, views of it as JSON, or why there is nothing."""
+    try:
+        found = work()
+    except (EditError, BodyError) as error:
+        return error
+    return found.model_dump_json() if isinstance(found, View) else found
+
+
+class DraftAnswering:
+    """Asks `name`, a function of a module of this room, about several versions of a model."""
+
+    def __init__(self, module: str, name: str, versions: int) -> None:
+        self._process = Answering(module, name)
+        self._known = [Knowing() for _ in range(versions)]
+
+    async def ask(self, question: Callable[..., object], *versions: Files, patience: float) -> object:
+        """The answer to what `question` makes of what has changed in each version.
+
+        Raises `WorkEndedError`, and the `EditError` or `BodyError` that was answered.
+        """
+
+        def asked() -> object:
+            if not self._process.begun:
+                for known in self._known:
+                    known.forget()
+            return question(*(known.news(files) for known, files in zip(self._known, versions, strict=True)))
+
+        answer = await self._process.ask(asked, patience)
+        if isinstance(answer, EditError | BodyError):
+            raise answer
+        return answer
+
+    async def close(self) -> None:
+        """End the process."""
+        await self._process.close()
+
+
+# The process that keeps what it has read of the draft, and answers questions about it at once.
+
+
+class DraftProcess:
+    """Answers questions about a draft, of which it is told only what is new. Used from one event loop."""
+
+    def __init__(self) -> None:
+        self._process = DraftAnswering("sequence_planner.editor.language_worker", "answering", 1)
+
+    async def close(self) -> None:
+        """End the process."""
+        await self._process.close()
+
+    async def ask(self, files: Files, name: str, *asked: object, patience: float = PATIENCE) -> object:
+        """What `name` of the answers there are says about these files, within so many seconds once its turn has come.
+
+        Views are told as JSON. Raises `EditError` and `WorkEndedError`.
+        """
+
+        def question(changed: Changed) -> object:
+            return changed, name, asked
+
+        return await self._process.ask(question, files, patience=patience)
+
+    async def errors(self, files: Files) -> list[FindingDocument]:
+        """What makes these files unusable, as far as it shows before pipelines are built. Raises `WorkEndedError`."""
+        found = await self.ask(files, "errors")
+        assert isinstance(found, list)
+        return found
+
+
+# Checks of the draft, of which only the newest matters.
+
+SETTLED = 0.15  # seconds without a change after which the whole is checked
+
+
+class CheckDesk:
+    """Checks what it is told to, from one event loop. `stages` is the model whose Python stages belong to the draft,
+    which is to be run as `start` says.
+
+    `process` says at once what makes the draft unusable; all else is found by a process for each check, from scratch.
+    `tell` is called with each view, all of one check in their order.
+    """
+
+    def __init__(
+        self, stages: Path | None, start: StartNeeds, process: DraftProcess, tell: Callable[[CheckView], None]
+    ) -> None:
+        self._stages = stages
+        self._start = start
+        self._process = process
+        self._tell = tell
+        self._wanted: tuple[int, Files] | None = None
+        self._looking: asyncio.Task[None] | None = None
+        self._checking: asyncio.Task[None] | None = None
+
+    def check(self, number: int, files: Files) -> None:
+        """Check this now, and nothing else any more."""
+        if self._checking is not None:
+            self._checking.cancel()
+        self._tell(waiting(number))
+        self._wanted = number, dict(files)
+        if self._looking is None or self._looking.done():
+            self._looking = asyncio.create_task(self._look())
+
+    async def close(self) -> None:
+        """End what is being checked."""
+        tasks = [task for task in (self._looking, self._checking) if task is not None]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _look(self) -> None:
+        """Look for errors in what is wanted last, and check it as a whole if there are none."""
+        while self._wanted is not None:
+            (number, files), self._wanted = self._wanted, None
+            try:
+                errors = await self._process.errors(files)
+            except WorkEndedError:
+                errors = []  # then the check says what is the matter
+            if self._wanted is not None:
+                continue
+            if errors:
+                self._tell(
+                    waiting(number).model_copy(update={"state": CheckState.DONE, "doing": "", "findings": errors})
+                )
+            else:
+                self._checking = asyncio.create_task(self._checked(number, files, self._checking))
+
+    async def _checked(self, number: int, files: Files, before: asyncio.Task[None] | None) -> None:
+        if before is not None:
+            await asyncio.gather(before, return_exceptions=True)
+        await asyncio.sleep(SETTLED)
+        view = waiting(number)
+        try:
+            async with working(
+                "sequence_planner.editor.checks", "checked", number, files, self._stages, self._start
+            ) as found:
+                async for told in found:
+                    assert isinstance(told, CheckView)
+                    view = told
+                    self._tell(view)
+                    if view.state is CheckState.DONE:
+                        break
+        except WorkEndedError as ended:
+            self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": str(ended)}))
+
+
+# The process that does what engineers do to the draft, so that nobody who stops the station waits for it.
+
+
+class EditingProcess:
+    """Asked about a draft, of which it is told only what is new. Used from one event loop."""
+
+    def __init__(self) -> None:
+        self._process = DraftAnswering("sequence_planner.editor.editing_worker", "answering", 1)
+
+    async def close(self) -> None:
+        """End the process."""
+        await self._process.close()
+
+    async def ask(self, files: Files, name: str, *asked: object) -> object:
+        """What `name` of the answers there are says about these files.
+
+        Raises `EditError`, `BodyError` and `WorkEndedError`.
+        """
+
+        def question(changed: Changed) -> object:
+            return changed, name, asked
+
+        return await self._process.ask(question, files, patience=PATIENCE)
+
+
+# What is asked about texts of the draft while they are written, and what is answered.
+
+LONGEST_TEXT = 20_000  # characters
+
+
+class LanguageQuestionKind(StrEnum):
+    """What can be asked about a text."""
+
+    CHECK = "check"
+    COMPLETION = "completion"
+    HOVER = "hover"
+    FORMAT = "format"
+
+
+class TextAt(BaseModel):
+    """A text that stands, or shall stand, at the entry `path` of a file.
+
+    `parameters` are those of its ability, operation or specification, by name with their enumerations, where it is so
+    new that the draft does not have it yet.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    file: FilePath
+    path: Annotated[Steps, Field(min_length=1)]
+    text: Annotated[str, Field(max_length=LONGEST_TEXT)]
+    parameters: dict[str, str] | None = Field(default=None, max_length=20)
+
+
+class PlaceInText(TextAt):
+    """A place in it, counted in characters from its beginning."""
+
+    offset: Annotated[int, Field(ge=0, le=LONGEST_TEXT, strict=True)]
+
+
+class ProblemsView(View):
+    """What is wrong with a text; nothing where it is none that names stand in."""
+
+    problems: tuple[ProblemView, ...]
+
+
+class HoverAnswer(View):
+    """What stands at the place; null where no name does."""
+
+    hover: HoverView | None
+
+
+class FormatView(View):
+    """The text as it is written best, with the same meaning."""
+
+    text: str
+
+
+LanguageAnswer = ProblemsView | CompletionView | HoverAnswer | FormatView

@@ -1,0 +1,231 @@
+"""View schemas of the draft: files, changes, usages and revisions, and the reader of its files."""
+
+from __future__ import annotations
+
+import json
+from collections import OrderedDict
+from collections.abc import Iterable
+from enum import StrEnum
+
+from pydantic import JsonValue
+
+from sequence_planner.analysis.report import FindingDocument, error_document
+from sequence_planner.controller.views.part import View
+from sequence_planner.editor.draft import ChangeKind, Draft, DraftChange, digest
+from sequence_planner.editor.revision import Revision
+from sequence_planner.editor.schemas.check import CheckView
+from sequence_planner.model.source import ModelError
+from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.reader import read_text
+
+# What is shown of the draft.
+
+
+class FileState(StrEnum):
+    """How a file of the draft differs from that of the station."""
+
+    SAME = "same"
+    CHANGED = "changed"
+    NEW = "new"
+    REMOVED = "removed"
+
+
+class FileMark(View):
+    """A file of the draft; `digest` is another one as soon as its text is, and null where it was taken away."""
+
+    digest: str | None
+    state: FileState
+
+
+class FileView(View):
+    """A file of the draft: its text, and what it holds where that can be read; else `wrong` says why not.
+
+    `content` is null for what is no YAML.
+    """
+
+    path: str
+    digest: str
+    text: str
+    content: JsonValue
+    wrong: FindingDocument | None
+
+
+class ChangeView(View):
+    """A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
+    epoch.
+    """
+
+    number: int
+    time: float
+    by: str
+    kind: ChangeKind
+    of: int | None
+    title: str
+
+
+class DraftView(View):
+    """The draft after its change `number`: its files by path, and its last changes, newest first.
+
+    `undo` and `redo` are the titles of what whoever asks could take back, or do again.
+    """
+
+    number: int
+    files: dict[str, FileMark]
+    changes: list[ChangeView]
+    undo: str | None
+    redo: str | None
+
+
+class FilesView(View):
+    """Files of the draft after its change `number`, by path; null is one that is not there."""
+
+    number: int
+    files: dict[str, FileView | None]
+
+
+class UsageView(View):
+    """A place at which a part is named, `length` characters from line and column on, which count from 1; `used_by` says
+    by what. `declares` it says of the place where the part itself is written.
+    """
+
+    part: str
+    file: str
+    path: list[str | int]
+    line: int
+    column: int
+    length: int
+    written: str
+    used_by: str
+    declares: bool
+
+
+class UsagesView(View):
+    """Where a part is named, and which of these places outside of it could not be without it.
+
+    `unwritten` are entries that use it though nothing in them names it, such as a topic whose message has a field of
+    that name; they stand at their own names. `unread` are texts that make no sense and hold the name, and files that
+    cannot be read; `bound` says why the name is not the model's alone.
+    """
+
+    usages: list[UsageView]
+    unwritten: list[UsageView]
+    dependants: list[UsageView]
+    unread: list[FindingDocument]
+    bound: str | None
+
+
+class RevisionView(View):
+    """A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
+
+    Time is in seconds since the epoch.
+    """
+
+    id: str
+    name: str
+    message: str
+    by: str
+    time: float
+    running: bool
+    draft: bool
+
+
+class RevisionsView(View):
+    """All revisions, newest first; `saved` says whether the draft is one of them, `running` whether the station is."""
+
+    revisions: list[RevisionView]
+    saved: bool
+    running: bool
+
+
+class WorkshopView(View):
+    """What all who look at the draft are shown: its files, and what the check of it has found so far."""
+
+    number: int
+    files: dict[str, FileMark]
+    last: ChangeView | None
+    check: CheckView
+
+
+# The draft as it is shown.
+
+MOST_READ, MOST_CHARACTERS = 5000, 50_000_000  # files whose content is remembered, and what they may take together
+
+
+def marks(draft: Draft) -> dict[str, FileMark]:
+    """How each file of the draft stands, also those that were taken away."""
+    return {path: _mark(draft, path) for path in sorted(draft.files.keys() | draft.base.keys())}
+
+
+def _mark(draft: Draft, path: str) -> FileMark:
+    text, base = draft.files.get(path), draft.base.get(path)
+    if text is None:
+        return FileMark(digest=None, state=FileState.REMOVED)
+    state = FileState.NEW if base is None else FileState.SAME if base == text else FileState.CHANGED
+    return FileMark(digest=digest(text), state=state)
+
+
+def change_view(change: DraftChange) -> ChangeView:
+    """A change, as people read it."""
+    return ChangeView(
+        number=change.number,
+        time=change.time,
+        by=change.by_name,
+        kind=change.kind,
+        of=change.of,
+        title=change.title,
+    )
+
+
+def revisions_view(revisions: Iterable[Revision], running: str, edited: str) -> RevisionsView:
+    """Revisions, as people read them; the other two are the trees of what runs, and of the draft."""
+    views = [
+        RevisionView(
+            id=each.id,
+            name=each.name,
+            message=each.message,
+            by=each.by,
+            time=each.time,
+            running=each.tree == running,
+            draft=each.tree == edited,
+        )
+        for each in revisions
+    ]
+    return RevisionsView(
+        revisions=views, saved=any(each.draft for each in views), running=any(each.running for each in views)
+    )
+
+
+class FileReader:
+    """Reads files, each text once, and tells what they hold as JSON."""
+
+    def __init__(self) -> None:
+        self._read: OrderedDict[tuple[str, str], str] = OrderedDict()
+        self._characters = 0
+
+    def shown(self, draft: Draft, paths: Iterable[str]) -> str:
+        """JSON of a `FilesView` of these files, those that are not there as null."""
+        views = {path: self._view(path, draft.files[path]) if path in draft.files else "null" for path in paths}
+        files = ",".join(f"{json.dumps(path)}:{view}" for path, view in views.items())
+        return f'{{"number":{draft.number},"files":{{{files}}}}}'
+
+    def _view(self, path: str, text: str) -> str:
+        key = path, digest(text)
+        known = self._read.get(key)
+        if known is None:
+            content, wrong = _content(path, text)
+            view = FileView(path=path, digest=key[1], text=text, content=content, wrong=wrong)
+            known = self._read[key] = view.model_dump_json()
+            self._characters += len(known)
+        self._read.move_to_end(key)
+        while len(self._read) > MOST_READ or self._characters > MOST_CHARACTERS:
+            self._characters -= len(self._read.popitem(last=False)[1])
+        return known
+
+
+def _content(path: str, text: str) -> tuple[JsonValue, FindingDocument | None]:
+    if not path.endswith(".yaml"):
+        return None, None
+    try:
+        return plain(read_text(text, path).content), None
+    except ModelError as error:
+        return None, error_document(error.findings[0])

@@ -1,0 +1,1 @@
+"""What the names of a draft mean and where they are used: for renaming, deleting, and seeing a draft as a whole."""

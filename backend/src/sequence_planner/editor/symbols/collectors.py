@@ -1,0 +1,772 @@
+"""Symbol collection in expressions, actions and pipeline stages: resolved names with their values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from sequence_planner.automaton.declarations import FLAGS
+from sequence_planner.editor.symbols.index import (
+    Declared,
+    Gathered,
+    ModelPart,
+    Parameters,
+    TextContext,
+    Where,
+    is_activity,
+    value_of,
+    variable_of,
+)
+from sequence_planner.editor.symbols.texts import entry, items, pairs
+from sequence_planner.language.lexer import Token
+from sequence_planner.language.parser import parse, parse_assignment, parse_formula
+from sequence_planner.language.syntax import (
+    NOWHERE,
+    Assignment,
+    Comparison,
+    Expression,
+    ExpressionError,
+    Membership,
+    Name,
+    Span,
+    children,
+)
+from sequence_planner.model.source import SourceText
+from sequence_planner.pipelines.expressions import words
+from sequence_planner.pipelines.stages.map import ANY
+
+# Which parts a dotted name names: what `NameScope` looks up in a sound model, in one that may be broken elsewhere.
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+class NameWord(NamedTuple):
+    """A word of a name, and where it stands in the text."""
+
+    text: str
+    span: Span
+
+
+class NameStep(NamedTuple):
+    """One part of a dotted name, with its arguments."""
+
+    word: NameWord
+    arguments: tuple[NameWord, ...] = ()
+
+
+class Named(NamedTuple):
+    """What a name names: its parts by the step that does, the parameters that the arguments of a step are for, and the
+    enumeration over which it ranges.
+    """
+
+    parts: Mapping[int, ModelPart]
+    arguments: tuple[int, Parameters] | None = None
+    enumeration: str | None = None
+
+
+def steps_of(name: Name, text: str) -> tuple[NameStep, ...]:
+    """The steps of a name that was read from `text`."""
+    start = name.span.start
+    if name.is_word:
+        return (NameStep(NameWord(name.path[0].name, name.span)),)
+    words = (
+        NameWord(match[0], Span(start + match.start(), start + match.end()))
+        for match in _WORD.finditer(text[start : name.span.end])
+    )
+    return tuple(NameStep(next(words), tuple(next(words) for _ in part.arguments)) for part in name.path)
+
+
+def _without_places(name: Name) -> tuple[NameStep, ...]:
+    return tuple(
+        NameStep(NameWord(part.name, NOWHERE), tuple(NameWord(each, NOWHERE) for each in part.arguments))
+        for part in name.path
+    )
+
+
+class Naming:
+    """Names in the light of what is declared; what they name is noted in `gathered`."""
+
+    def __init__(self, declared: Declared, gathered: Gathered) -> None:
+        self.declared = declared
+        self.gathered = gathered
+        self._found: dict[tuple[str, str, str | None, bool], Named | None] = {}
+
+    def find(self, name: Name, around: TextContext) -> Named | None:
+        """What a name names; nothing where no such name is declared."""
+        key = (str(name), around.holder, around.resource, around.has_flags)
+        if key not in self._found:
+            self._found[key] = self._find(_without_places(name), around)
+        return self._found[key]
+
+    def _find(self, steps: tuple[NameStep, ...], around: TextContext) -> Named | None:
+        word = steps[0].word.text
+        is_word = len(steps) == 1 and not steps[0].arguments
+        if is_word and word in around.parameters:
+            enumeration = around.parameters[word]
+            return Named({0: ModelPart("parameter", around.holder, word)}, None, enumeration)
+        if is_word and around.has_flags and word in FLAGS:
+            return Named({})
+        candidates = list(self._candidates(steps, around.resource))
+        fitting = (each for each in candidates if self._fits(each, steps))
+        return next(fitting, candidates[0] if candidates else None)
+
+    def implied(self, steps: tuple[NameStep, ...], around: TextContext) -> Named | None:
+        """What a name that is declared nowhere would name."""
+        names = [step.word.text for step in steps]
+        if len(names) > 1 and names[0] in self.declared.resources:
+            resource = ModelPart("resource", None, names[0])
+            is_flag = names[-1] in FLAGS
+            return Named({0: resource, 1: ModelPart("ability" if is_flag else "variable", names[0], names[1])})
+        if is_activity(names):
+            return Named({1: ModelPart("operation", None, names[1])})
+        if around.resource is not None and len(names) == 1:
+            return Named({0: variable_of(around.resource, names[0])})
+        if around.resource is not None and len(names) == 2 and names[1] in FLAGS:
+            return Named({0: ModelPart("ability", around.resource, names[0])})
+        return None
+
+    def note(
+        self, named: Named, steps: tuple[NameStep, ...], where: Where, text: SourceText, *, writes: bool = False
+    ) -> None:
+        """Note that a name at some place names these parts, or with `writes` gives the last of them a value."""
+        whole = Span(steps[0].word.span.start, (steps[-1].arguments or (steps[-1].word,))[-1].span.end)
+        for index, part in named.parts.items():
+            is_written = writes and index == max(named.parts)
+            self.gathered.add(part, where, text, steps[index].word.span, whole=whole, writes=is_written)
+        if named.arguments is not None:
+            index, parameters = named.arguments
+            self.note_arguments(steps[index].arguments, parameters, where, text, whole)
+
+    def note_arguments(
+        self,
+        words: tuple[NameWord, ...],
+        parameters: Parameters,
+        where: Where,
+        text: SourceText,
+        whole: Span | None = None,
+    ) -> None:
+        """Note what the arguments of a name are: parameters around it, or values."""
+        around = where.around
+        for word, enumeration in zip(words, parameters.values(), strict=False):
+            if word.text in around.parameters:
+                self.gathered.add(ModelPart("parameter", around.holder, word.text), where, text, word.span, whole=whole)
+                self.link(around.parameters[word.text], enumeration)
+            elif word.text in self.declared.enumerations.get(enumeration, ()):
+                self.gathered.add(value_of(enumeration, word.text), where, text, word.span, whole=whole)
+
+    def note_value(self, enumeration: str | None, where: Where, text: object) -> None:
+        """Note that a whole text is a value of an enumeration, if it is."""
+        if enumeration is not None and isinstance(text, SourceText) and self.has(enumeration, text):
+            self.gathered.add(value_of(enumeration, str(text)), where, text)
+
+    def has(self, enumeration: str, value: str) -> bool:
+        """Whether an enumeration has a value."""
+        return value in self.declared.enumerations.get(enumeration, ())
+
+    def tie_values(self, enumeration: str | None, why: str) -> None:
+        """Note that the names of an enumeration's values are not the model's alone."""
+        for value in self.declared.enumerations.get(enumeration or "", ()):
+            self.gathered.tie(value_of(enumeration or "", value), why)
+
+    def link(self, one: str | None, other: str | None) -> None:
+        """Note that values of two enumerations are compared, or become one another."""
+        if one is None or other is None or one == other:
+            return
+        values = set(self.declared.enumerations.get(one, ())) & set(self.declared.enumerations.get(other, ()))
+        self.gathered.links |= {frozenset({value_of(one, each), value_of(other, each)}) for each in values}
+
+    def _candidates(self, steps: tuple[NameStep, ...], resource: str | None) -> Iterator[Named]:
+        names = [step.word.text for step in steps]
+        if resource is not None:
+            yield from self._own(resource, steps, 0)
+        if len(names) == 1 and names[0] in self.declared.variables:
+            yield self._variable(None, names[0], 0)
+        elif is_activity(names) and names[1] in self.declared.operations:
+            yield Named({1: ModelPart("operation", None, names[1])}, (1, self.declared.operations[names[1]]))
+        elif names[0] in self.declared.resources:
+            for own in self._own(names[0], steps, 1):
+                yield own._replace(parts={0: ModelPart("resource", None, names[0]), **own.parts})
+
+    def _own(self, resource: str, steps: tuple[NameStep, ...], first: int) -> Iterator[Named]:
+        """What the steps from `first` on name in a resource."""
+        if first >= len(steps):
+            return
+        name, rest = steps[first].word.text, steps[first + 1 :]
+        full = f"{resource}.{name}"
+        if not rest and full in self.declared.variables:
+            yield self._variable(resource, name, first)
+        elif len(rest) == 1 and rest[0].word.text in FLAGS and full in self.declared.abilities:
+            yield Named({first: ModelPart("ability", resource, name)}, (first, self.declared.abilities[full]))
+
+    def _variable(self, resource: str | None, name: str, index: int) -> Named:
+        part = variable_of(resource, name)
+        parameters = self.declared.variables[part.full].parameters
+        return Named({index: part}, (index, parameters), self.declared.enumeration(resource, name))
+
+    def _fits(self, named: Named, steps: tuple[NameStep, ...]) -> bool:
+        """Whether there are arguments where there must be some, and nowhere else."""
+        at, parameters = named.arguments or (-1, {})
+        wanted = [len(parameters) if index == at else 0 for index in range(len(steps))]
+        return wanted == [len(step.arguments) for step in steps]
+
+
+# The names in conditions, formulas and actions, with the values that stand beside what they are values of.
+
+
+class Expressions:
+    """Reads texts of the language; what they name is noted by `naming`. With `word`, only texts that hold it."""
+
+    def __init__(self, naming: Naming, word: str | None = None) -> None:
+        self.naming = naming
+        self._word = word
+
+    def condition(self, written: object, where: Where, *, is_formula: bool = False) -> None:
+        """A predicate, or a formula over runs."""
+        if (text := self._wanted(written)) is None:
+            return
+        try:
+            tree = parse_formula(text) if is_formula else parse(text)
+        except ExpressionError:
+            self.naming.gathered.unread.append((where, text))
+            return
+        _Reading(self.naming, text, where, self._word).read(tree)
+
+    def actions(self, written: object, where: Where) -> None:
+        """A list of actions."""
+        for index, each in enumerate(written if isinstance(written, list) else []):
+            if (text := self._wanted(each)) is None:
+                continue
+            try:
+                action = parse_assignment(text)
+            except ExpressionError:
+                self.naming.gathered.unread.append((where.to(index), text))
+                continue
+            _Reading(self.naming, text, where.to(index), self._word).assignment(action)
+
+    def _wanted(self, written: object) -> SourceText | None:
+        is_wanted = isinstance(written, SourceText) and (self._word is None or self._word in written)
+        return written if is_wanted and isinstance(written, SourceText) else None
+
+
+class _Reading:
+    """One text. The order in which names are looked at is that of `language.resolver`."""
+
+    def __init__(self, naming: Naming, text: SourceText, where: Where, word: str | None) -> None:
+        self._word = word
+        self._naming = naming
+        self._text = text
+        self._where = where
+
+    def assignment(self, action: Assignment) -> None:
+        """What it writes, what that becomes, and when."""
+        assert isinstance(action.target, Name)
+        expected = self._name(action.target, None, writes=True)
+        found = self.read(action.value, expected)
+        self._naming.link(expected, found)
+        if action.condition is not None:
+            self.read(action.condition)
+
+    def read(self, expression: Expression, expected: str | None = None) -> str | None:
+        """Note all names; returns the enumeration over which the expression ranges, unless it is a value."""
+        match expression:
+            case Name():
+                return self._name(expression, expected)
+            case Comparison(_, left, right):
+                self._compare(*((right, left) if self._is_value_first(left, right) else (left, right)))
+            case Membership(left, options):
+                enumeration = self.read(left)
+                for option in options:
+                    self._naming.link(enumeration, self.read(option, enumeration))
+            case _:
+                for part in children(expression):
+                    self.read(part)
+        return None
+
+    def _compare(self, first: Expression, second: Expression) -> None:
+        enumeration = self.read(first)
+        self._naming.link(enumeration, self.read(second, enumeration))
+
+    def _name(self, name: Name, expected: str | None, *, writes: bool = False) -> str | None:
+        word, around = str(name), self._where.around
+        named = self._naming.find(name, around)
+        is_value = expected is not None and name.is_word and self._naming.has(expected, word)
+        if expected is not None and is_value and word not in around.parameters:
+            value = value_of(expected, word)
+            self._naming.gathered.add(value, self._where, self._text, name.span)
+            if named is not None and named.enumeration is not None:
+                self._naming.gathered.hidden.add((named.parts[max(named.parts)], value))
+            return None
+        if self._word is None or self._word in word:
+            steps = steps_of(name, self._text)
+            named = named or self._naming.implied(steps, around)
+            if named is not None:
+                self._naming.note(named, steps, self._where, self._text, writes=writes)
+        return None if named is None else named.enumeration
+
+    def _is_value_first(self, left: Expression, right: Expression) -> bool:
+        """Whether the left of a comparison is to be read as a value of what stands on its right."""
+        if not isinstance(left, Name) or not left.is_word or self._is_parameter(left):
+            return False  # values are single words
+        other = self._found(right)
+        if self._found(left) is None:
+            unknown = isinstance(right, Name) and not self._is_parameter(right) and other is None
+            return not unknown or (self._is_some_value(left) and not self._is_some_value(right))
+        enumeration = None if other is None or self._is_parameter(right) else other.enumeration
+        return enumeration is not None and self._naming.has(enumeration, str(left))
+
+    def _found(self, expression: Expression) -> Named | None:
+        if not isinstance(expression, Name):
+            return None
+        return self._naming.find(expression, self._where.around)
+
+    def _is_parameter(self, expression: Expression) -> bool:
+        return isinstance(expression, Name) and str(expression) in self._where.around.parameters
+
+    def _is_some_value(self, expression: Expression) -> bool:
+        return isinstance(expression, Name) and str(expression) in self._naming.declared.values
+
+
+# The names of a record between the stages of a pipeline, and which of them are variables.
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_INDEX = re.compile(r"\[([^\[\]]*)\]")
+
+
+class RecordName(NamedTuple):
+    """A name in a record: the variable that it is, if it is one, and the enumeration over which it ranges."""
+
+    part: ModelPart | None
+    enumeration: str | None = None
+
+
+Fields = dict[str, RecordName]
+
+
+class Names:
+    """The names of the record that a resource's pipeline has, as they change from stage to stage.
+
+    `given` are all names that some stage of it gives: others of an incoming one are as the message has them. `kinds`
+    are the enumerations of names that are no variables.
+    """
+
+    def __init__(
+        self,
+        naming: Naming,
+        resource: str,
+        incoming: bool,
+        fields: Fields,
+        given: frozenset[str],
+        kinds: Mapping[str, str] | None = None,
+    ) -> None:
+        self.naming = naming
+        self.resource = resource
+        self.incoming = incoming
+        self.fields = fields
+        self._given = given
+        self._kinds = kinds or {}
+
+    def read(
+        self, text: object, where: Where, at: int = 0, end: int | None = None, *, is_message: bool = False
+    ) -> str | None:
+        """Note what the path between `at` and `end` of a text names; returns the enumeration over which it ranges.
+
+        `is_message` holds for what is made something else of: in an incoming message that is a field of it.
+        """
+        found = self._found(str(text)[at:end], is_message) if isinstance(text, SourceText) else None
+        if found is None or not isinstance(text, SourceText):
+            return None
+        field, start, base = found
+        if field.part is None:
+            return field.enumeration
+        span = Span(at + start, at + start + len(base))
+        self.naming.gathered.add(field.part, where, text, span)
+        rest = self._arguments(field.part, text, span.end, where)
+        return field.enumeration if not text[rest:end].strip() else None
+
+    def is_known(self, path: str) -> bool:
+        """Whether a path is of something else than a field of the message."""
+        return self._found(path, False) is not None
+
+    def enumeration(self, path: str) -> str | None:
+        """The enumeration over which a path ranges."""
+        found = self._found(path, False)
+        return None if found is None else found[0].enumeration
+
+    def give(self, text: object, where: Where, fixed: str | None = None) -> str | None:
+        """Note the name that a stage gives; returns the enumeration over which that ranges."""
+        if not isinstance(text, SourceText):
+            return None
+        match = _NAME.match(text)
+        if not self.incoming or match is None:
+            self.fields[str(text)] = RecordName(None)
+            return None
+        part = variable_of(self.resource, match[0])
+        enumeration = self.naming.declared.enumeration(self.resource, match[0])
+        if part.full not in self.naming.declared.variables:
+            enumeration = self._kinds.get(match[0])
+        self.naming.gathered.add(part, where, text, Span(0, match.end()), fixed=fixed, writes=True)
+        self._arguments(part, text, match.end(), where)
+        self.fields[match[0]] = RecordName(part, enumeration)
+        return enumeration
+
+    def _found(self, text: str, is_message: bool) -> tuple[RecordName, int, str] | None:
+        """The field that a path begins with: where its own name begins in the path, and that name."""
+        cuts = [match.start() for match in re.finditer(r"[.\[]", text)]
+        for end in (len(text), *reversed(cuts)):
+            key = text[:end]
+            if key in self.fields:
+                start = key.rfind(".") + 1
+                return self.fields[key], start, key[start:]
+        match = _NAME.match(text)
+        if match is None or (self.incoming and (is_message or match[0] in self._given)):
+            return None
+        part = variable_of(self.resource, match[0])
+        variable = self.naming.declared.variables.get(part.full)
+        if variable is None or (self.incoming and variable.section != "measured"):
+            return None
+        return RecordName(part, self.naming.declared.enumeration(self.resource, match[0])), 0, match[0]
+
+    def _arguments(self, part: ModelPart, text: SourceText, at: int, where: Where) -> int:
+        """Note the arguments of a variable behind its name; returns where they end."""
+        variable = self.naming.declared.variables.get(part.full)
+        match = _INDEX.match(text, at)
+        if variable is None or match is None or not variable.parameters:
+            return at
+        words = tuple(
+            NameWord(word[0], Span(match.start(1) + word.start(), match.start(1) + word.end()))
+            for word in _NAME.finditer(match[1])
+        )
+        self.naming.note_arguments(words, variable.parameters, where, text)
+        return match.end()
+
+
+# The names in expressions over records, with the values that stand beside what they are values of.
+
+
+class _Operand(NamedTuple):
+    """A path, a text in single quotes, or any other word."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+    @property
+    def is_operand(self) -> bool:
+        return self.kind in ("path", "text")
+
+
+def read_calculation(names: Names, written: object, where: Where, expected: str | None = None) -> bool:
+    """Note what an expression over a record names; `expected` is the enumeration of what it becomes.
+
+    Returns whether it is a single field that no stage and no variable has given: a part of the message.
+    """
+    if not isinstance(written, SourceText):
+        return False
+    try:
+        found = list(_operands(words(written)))
+    except ExpressionError:
+        names.naming.gathered.unread.append((where, written))
+        return False
+    if len(found) == 1 and found[0].kind == "path" and not names.is_known(written):
+        return True
+    _Calculation(names, written, where).read(found, expected)
+    return False
+
+
+def _operands(tokens: list[Token]) -> Iterator[_Operand]:
+    """The words of a text, those of a path together. What stands in brackets behind it is read by itself."""
+    at = 0
+    while tokens[at].kind != "end":
+        token = tokens[at]
+        end = at
+        if token.kind == "name":
+            while tokens[end + 1].kind == "." and tokens[end + 2].kind == "name":
+                end += 2
+        kind = "path" if token.kind == "name" else token.kind
+        text = "".join(each.text for each in tokens[at : end + 1])
+        yield _Operand(kind, text, token.start, tokens[end].end)
+        at = end + 1
+
+
+class _Calculation:
+    def __init__(self, names: Names, text: SourceText, where: Where) -> None:
+        self._names = names
+        self._text = text
+        self._where = where
+        self._done: set[int] = set()
+
+    def read(self, found: list[_Operand], expected: str | None) -> None:
+        """Comparisons first: beside an enumeration a word is one of its values."""
+        if len(found) == 1 and expected is not None:
+            self._names.naming.link(expected, self._beside(found[0], expected))
+            return
+        for index, word in enumerate(found):
+            before, after = found[max(index - 1, 0)], found[min(index + 1, len(found) - 1)]
+            if word.kind in ("==", "!=") and before.is_operand and after.is_operand:
+                self._compare(self._subject(found, index - 1), after)
+            elif word.kind == "]" and after.kind in ("==", "!=") and index + 2 < len(found):
+                self._compare(self._subject(found, index), found[index + 2])
+            elif word.kind == "in" and index:
+                subject = self._subject(found, index - 1)
+                end = next((at for at in range(index, len(found)) if found[at].kind == "}"), len(found))
+                for option in found[index:end]:
+                    if subject is not None and option.is_operand:
+                        self._compare(subject, option)
+        for word in found:
+            if word.kind == "path" and word.start not in self._done:
+                self._name(word)
+
+    def _subject(self, found: list[_Operand], index: int) -> _Operand | None:
+        """The operand that ends at `index`, which may be an item or an instance."""
+        if found[index].kind == "]":
+            index = next((at for at in range(index, 0, -1) if found[at].kind == "["), 1) - 1
+        return found[index] if found[index].is_operand else None
+
+    def _compare(self, left: _Operand | None, right: _Operand) -> None:
+        if left is None or not right.is_operand:
+            return
+        one, other = self._type(left), self._type(right)
+        naming = self._names.naming
+        if one is not None and self._is_value(right, one, other):
+            self._value(right, one)
+        elif other is not None and self._is_value(left, other, one):
+            self._value(left, other)
+        else:
+            naming.link(one, other)
+            for kind, beside in ((one, right), (other, left)):
+                if beside.kind == "path" and self._type(beside) is None:
+                    naming.tie_values(kind, f"`{beside.text}` is compared with them, and has values of its own")
+
+    def _beside(self, operand: _Operand, expected: str) -> str | None:
+        if operand.kind == "text" and self._is_value(operand, expected, None):
+            self._value(operand, expected)
+            return None
+        return self._name(operand) if operand.kind == "path" else None
+
+    def _is_value(self, operand: _Operand, enumeration: str, own: str | None) -> bool:
+        return own is None and self._names.naming.has(enumeration, operand.text.strip("'"))
+
+    def _value(self, operand: _Operand, enumeration: str) -> None:
+        self._done.add(operand.start)
+        quote = operand.kind == "text"
+        span = Span(operand.start + quote, operand.end - quote)
+        part = value_of(enumeration, operand.text.strip("'"))
+        self._names.naming.gathered.add(part, self._where, self._text, span)
+
+    def _type(self, operand: _Operand) -> str | None:
+        return self._names.enumeration(operand.text) if operand.kind == "path" else None
+
+    def _name(self, operand: _Operand) -> str | None:
+        """A path, with what stands in brackets behind it: the index of a variable is no path of its own."""
+        noted = self._names.naming.gathered.occurrences
+        before = len(noted)
+        enumeration = self._names.read(self._text, self._where, operand.start, self._end(operand))
+        self._done |= {operand.start, *(each.span.start for each in noted[before:])}
+        return enumeration
+
+    def _end(self, operand: _Operand) -> int:
+        closing = self._text.find("]", operand.end) if self._text[operand.end : operand.end + 1] == "[" else -1
+        return closing + 1 or operand.end
+
+
+# The names in the stages of a pipeline: fields and variables, and the values that stages make or look for.
+
+_PYTHON = "the function of a `python` stage is called with it by this name: change the function and the stage by hand"
+_PYTHON_VALUE = "the function of a `python` stage gives its values by their names"
+
+
+def given_by(stages: object) -> frozenset[str]:
+    """All names that stages give to what they make, in an incoming pipeline."""
+    found: list[object] = []
+    for stage in items(stages):
+        found += [name for _, name in pairs(entry(stage, "rename"))]
+        found += [name for name, _ in pairs(entry(stage, "expression"))]
+        found += [entry(stage, kind, "variable") for kind in ("discretise", "map", "match", "member", "remember")]
+        found += items(entry(stage, "table", "variables"))
+        found += [name for name, _ in pairs(entry(stage, "python", "gives"))]
+    return frozenset(str(name).partition("[")[0] for name in found if isinstance(name, SourceText))
+
+
+def kinds_of(stages: object, declared: Declared, resource: str) -> dict[str, str]:
+    """The enumerations of names that are no variables, by the variables that they become in later stages."""
+    found: dict[str, str] = {}
+    for stage in reversed(items(stages)):
+        become: list[tuple[object, object]] = [(name, field) for field, name in pairs(entry(stage, "rename"))]
+        become += pairs(entry(stage, "expression"))
+        remember = entry(stage, "remember")
+        for name, source in (*become, (entry(remember, "variable"), entry(remember, "of"))):
+            kind = declared.enumeration(resource, str(name)) or found.get(str(name))
+            if isinstance(source, SourceText) and kind is not None:
+                found.setdefault(str(source), kind)
+    return found
+
+
+class Stages:
+    """Reads stages one after the other. `called` is the pipeline in words."""
+
+    def __init__(self, names: Names, called: str) -> None:
+        self.names = names
+        self._called = called
+
+    def read(self, stages: object, where: Where) -> None:
+        """All stages of a pipeline."""
+        for index, stage in enumerate(items(stages)):
+            for kind, content in pairs(stage):
+                reader = getattr(self, f"_{kind}", None)
+                if reader is not None and str(kind) in _READ:
+                    reader(content, where.to(index, kind))
+
+    def tie(self, enumeration: str | None, why: str) -> None:
+        """Note that the values of an enumeration are texts or constants of a message."""
+        self.names.naming.tie_values(enumeration, why)
+
+    def _spoken(self, name: object) -> str:
+        return f"{self._called} says the values of `{name}` by their names"
+
+    def _rename(self, content: object, where: Where) -> None:
+        made = []
+        for field, name in pairs(content):
+            at = where.to(field)
+            if self.names.incoming:
+                is_message = not self.names.is_known(field)
+                made.append((name, at, self.names.read(field, at), is_message))
+            else:
+                self.tie(self.names.read(name, at), self._spoken(name))
+        for name, at, found, is_message in made:
+            enumeration = self.names.give(name, at)
+            self.names.naming.link(enumeration, found)
+            if is_message or found is None:
+                self.tie(enumeration, self._spoken(name))
+        if not self.names.incoming:
+            for field, _ in pairs(content):
+                self.names.give(field, where.to(field))
+
+    def _constant(self, content: object, where: Where) -> None:
+        for field, _ in pairs(content):
+            self.names.give(field, where.to(field))
+
+    def _expression(self, content: object, where: Where) -> None:
+        # All are read before one is given.
+        for name, written in pairs(content):
+            own = self._enumeration(name)
+            is_message = read_calculation(self.names, written, where.to(name), own)
+            is_single = isinstance(written, SourceText) and str(written).isidentifier()
+            if is_message or (is_single and self.names.enumeration(str(written)) is None):
+                self.tie(own, self._spoken(name))
+            elif not self.names.incoming and is_single:
+                self.tie(self.names.enumeration(str(written)), self._spoken(written))
+        for name, _ in pairs(content):
+            self.names.give(name, where.to(name))
+
+    def _filter(self, content: object, where: Where) -> None:
+        read_calculation(self.names, content, where)
+
+    def _discretise(self, content: object, where: Where) -> None:
+        self.names.read(entry(content, "field"), where.to("field"), is_message=True)
+        self._made(content, where)
+
+    def _match(self, content: object, where: Where) -> None:
+        self._discretise(content, where)
+
+    def _made(self, content: object, where: Where) -> None:
+        enumeration = self.names.give(entry(content, "variable"), where.to("variable"))
+        for section in ("values", "ranges"):
+            self._values(enumeration, (key for key, _ in pairs(entry(content, section))), where.to(section))
+        self._value(enumeration, entry(content, "otherwise"), where.to("otherwise"))
+
+    def _undiscretise(self, content: object, where: Where) -> None:
+        enumeration = self.names.read(entry(content, "variable"), where.to("variable"))
+        self._values(enumeration, (key for key, _ in pairs(entry(content, "values"))), where.to("values"))
+        self.names.give(entry(content, "field"), where.to("field"))
+
+    def _map(self, content: object, where: Where) -> None:
+        if not self.names.incoming:
+            self._undiscretise(content, where)
+            return
+        read = self.names.read(entry(content, "field"), where.to("field"), is_message=True)
+        made = self.names.give(entry(content, "variable"), where.to("variable"))
+        for key, value in pairs(entry(content, "values")):
+            self._value(read, key, where.to("values", key))
+            self._value(made, value, where.to("values", key))
+        self._value(made, entry(content, "otherwise"), where.to("otherwise"))
+
+    def _table(self, content: object, where: Where) -> None:
+        fields, variables = items(entry(content, "fields")), items(entry(content, "variables"))
+        read = [self.names.read(each, where.to("fields", index)) for index, each in enumerate(fields)]
+        made = [self.names.give(each, where.to("variables", index)) for index, each in enumerate(variables)]
+        for index, row in enumerate(items(entry(content, "rows"))):
+            for key, kinds in (("when", read), ("gives", made)):
+                self._cells(kinds, entry(row, key), where.to("rows", index, key), key == "when")
+        self._cells(made, entry(content, "otherwise"), where.to("otherwise"))
+
+    def _cells(self, kinds: Iterable[str | None], cells: object, where: Where, is_pattern: bool = False) -> None:
+        for index, (kind, cell) in enumerate(zip(kinds, items(cells), strict=False)):
+            if not is_pattern or cell != ANY:
+                self._value(kind, cell, where.to(index))
+
+    def _member(self, content: object, where: Where) -> None:
+        self._discretise(content, where)
+
+    def _remember(self, content: object, where: Where) -> None:
+        of = entry(content, "of")
+        is_message = isinstance(of, SourceText) and not self.names.is_known(str(of))
+        read = self.names.read(of, where.to("of"))
+        self._cells([read] * len(items(entry(content, "except"))), entry(content, "except"), where.to("except"))
+        made = self.names.give(entry(content, "variable"), where.to("variable"))
+        self.names.naming.link(made, read)
+        if is_message or read is None:
+            self.tie(made, self._spoken(entry(content, "variable")))
+
+    def _debounce(self, content: object, where: Where) -> None:
+        self._passing(entry(content, "fields"), where.to("fields"))
+
+    def _timeout(self, content: object, where: Where) -> None:
+        self._debounce(content, where)
+
+    def _fold(self, content: object, where: Where) -> None:
+        self._passing(content, where)
+
+    def _passing(self, fields: object, where: Where) -> None:
+        for index, field in enumerate(items(fields)):
+            self.names.read(field, where.to(index))
+
+    def _override(self, content: object, where: Where) -> None:
+        for field, bounds in pairs(entry(content, "fields")):
+            at = where.to("fields", field)
+            enumeration = self.names.read(field, at)
+            among = entry(bounds, "in")
+            self._cells([enumeration] * len(items(among)), among, at.to("in"))
+
+    def _python(self, content: object, where: Where) -> None:
+        naming = self.names.naming
+        for field, _ in pairs(entry(content, "reads")):
+            before = len(naming.gathered.occurrences)
+            self.tie(self.names.read(field, where.to("reads", field)), _PYTHON_VALUE)
+            for found in naming.gathered.occurrences[before:]:
+                naming.gathered.tie(found.part, _PYTHON)
+        for field, _ in pairs(entry(content, "gives")):
+            before = len(naming.gathered.occurrences)
+            self.tie(self.names.give(field, where.to("gives", field)), _PYTHON_VALUE)
+            for found in naming.gathered.occurrences[before:]:
+                naming.gathered.tie(found.part, _PYTHON)
+
+    def _enumeration(self, name: SourceText) -> str | None:
+        declared = self.names.naming.declared
+        return declared.enumeration(self.names.resource, str(name)) if self.names.incoming else None
+
+    def _values(self, enumeration: str | None, keys: Iterable[SourceText], where: Where) -> None:
+        for key in keys:
+            self._value(enumeration, key, where.to(key))
+
+    def _value(self, enumeration: str | None, text: object, where: Where) -> None:
+        self.names.naming.note_value(enumeration, where, text)
+
+
+_READ = frozenset(
+    {
+        "rename", "constant", "expression", "filter", "discretise", "undiscretise", "map", "table", "match", "member",
+        "remember", "debounce", "timeout", "fold", "override", "python",
+    }
+)  # fmt: skip

@@ -1,0 +1,318 @@
+"""Traversal of a station's files for symbols, with the context and relation kind of each text."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+
+from sequence_planner.editor.symbols.collectors import Expressions, Naming, steps_of
+from sequence_planner.editor.symbols.index import (
+    SECTIONS,
+    Declared,
+    Gathered,
+    ModelPart,
+    Occurrence,
+    TextContext,
+    Where,
+    parameters,
+    value_of,
+    variable_of,
+)
+from sequence_planner.editor.symbols.pipelines import PipelineCollector, read_definitions
+from sequence_planner.editor.symbols.texts import (
+    OPERATIONS,
+    SPECIFICATIONS,
+    STATION,
+    WORK_MASTERS,
+    ModelContent,
+    entry,
+    items,
+    pairs,
+    text_at,
+)
+from sequence_planner.language.parser import parse
+from sequence_planner.language.syntax import ExpressionError, Name, Span
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.yaml.reader import EntryPath
+from sequence_planner.ros.types.messages import MessageRegistry
+
+# In which manner a use ties one thing to another.
+
+
+class Manner(StrEnum):
+    """What who uses a thing does with it. Those of a pipeline are said from its side: it feeds a variable."""
+
+    RUNS = "runs"  # a work master, an operation
+    AFTER = "after"  # a work master: others wait for it
+    BRINGS = "brings"  # a work master: the value for a new product
+    GOAL = "goal"
+    PRECONDITION = "precondition"
+    FORMULA = "formula"  # over the runs of an operation
+    FORBIDS = "forbids"
+    EXCLUDES = "excludes"
+    ORDERS = "orders"
+    ZONE = "zone"
+    REST = "rest"  # the station at rest
+    GUARD = "guard"  # of a start
+    PROGRESS = "progress"  # what is so while an ability is executing, and when it has finished
+    ACKNOWLEDGEMENT = "acknowledgement"  # by a person
+    COMMANDS = "commands"  # an ability, an output variable
+    WRITES = "writes"  # an ability, any other variable
+    EFFECT = "effect"  # what a device is expected to do
+    EXPECTS = "expects"  # when an effect is expected
+    READS = "reads"
+    FEEDS = "feeds"  # from ROS 2
+    SENDS = "sends"  # to ROS 2
+    SOURCE = "source"  # of a flow
+    CARRIES = "carries"  # a type of message
+    EXAMPLE = "example"
+    RANGES = "ranges"  # over an enumeration
+    NAMES = "names"  # a value, a parameter or a resource
+
+
+_ROS = ("topic", "service", "action")
+_BY_KEY = {
+    "ability": {
+        "enabled": Manner.GUARD,
+        "executing": Manner.PROGRESS,
+        "finished": Manner.PROGRESS,
+        "human": Manner.ACKNOWLEDGEMENT,
+    },
+    "operation": {"goal": Manner.GOAL, "precondition": Manner.PRECONDITION, "local": Manner.FORMULA},
+    "specification": {"exclusive": Manner.EXCLUDES, "order": Manner.ORDERS, "zone": Manner.ZONE},
+    "work_master": {"brings": Manner.BRINGS},
+}
+_OTHERWISE = {"specification": Manner.FORBIDS, "work_master": Manner.RUNS, "message": Manner.CARRIES}
+
+
+def manner_of(part: ModelPart, by: ModelPart | None, path: EntryPath, declared: Declared, *, writes: bool) -> Manner:
+    """How `by`, or the station itself, uses a part at an entry within it; `writes` holds where that gets a value."""
+    if part.kind == "enumeration":
+        return Manner.RANGES
+    if part.kind in ("value", "parameter", "resource"):
+        return Manner.NAMES
+    if by is None:
+        return Manner.REST
+    if by.kind in (*_ROS, "flow"):
+        return _of_pipeline(part, path, writes=writes, outgoing=_is_outgoing(by, path, declared))
+    key = str(path[0]) if path else ""
+    if by.kind == "ability" and key not in _BY_KEY["ability"]:
+        return _of_transition(part, path, declared, writes=writes)
+    if by.kind == "work_master" and "after" in path:
+        return Manner.AFTER
+    return _BY_KEY.get(by.kind, {}).get(key) or _OTHERWISE.get(by.kind, Manner.READS)
+
+
+def _of_transition(part: ModelPart, path: EntryPath, declared: Declared, *, writes: bool) -> Manner:
+    is_condition = "when" in path[1:]
+    if path and path[0] == "effects":
+        if is_condition:
+            return Manner.EXPECTS
+        return Manner.EFFECT if writes else Manner.READS
+    if is_condition:
+        return Manner.GUARD if path[0] == "start" else Manner.PROGRESS
+    if not writes:
+        return Manner.READS
+    variable = declared.variables.get(part.full)
+    return Manner.COMMANDS if variable is not None and variable.section == "output" else Manner.WRITES
+
+
+def _of_pipeline(part: ModelPart, path: EntryPath, *, writes: bool, outgoing: bool) -> Manner:
+    key = path[0] if path else ""
+    if part.kind == "message":
+        return Manner.CARRIES
+    if key == "from":
+        return Manner.SOURCE
+    if key == "examples":
+        return Manner.EXAMPLE
+    if writes:
+        return Manner.FEEDS
+    return Manner.SENDS if outgoing or key == "when" else Manner.READS
+
+
+def _is_outgoing(by: ModelPart, path: EntryPath, declared: Declared) -> bool:
+    """Whether a stage is of what is sent: a request, a goal, or a topic that somebody else reads."""
+    if by.kind == "topic":
+        return by.name in declared.sent
+    return bool(path) and path[0] in ("request", "goal")
+
+
+# The names in the files of a station, entry by entry: which texts there are, and what is around each.
+
+_CONDITIONS = (("enabled",), ("start", "when"), ("executing",), ("finished",), ("finish", "when"))
+_ACTIONS = (("start", "do"), ("finish", "do"), ("cancel", "do"))
+_IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
+
+
+def gather(
+    content: ModelContent, messages: MessageRegistry | None, word: str | None = None
+) -> tuple[Declared, Gathered]:
+    """What is named in the files, and where. With `word`, only in expressions that hold it."""
+    gathered = Gathered()
+    declared = Declared(content, messages)
+    naming = Naming(declared, gathered)
+    walk = _Walk(naming, Expressions(naming, word))
+    walk.station(content.get(STATION))
+    for resource, file, found in content.resources():
+        walk.resource(resource, file, found)
+    PipelineCollector(naming, content).read()
+    walk.operations(content.get(OPERATIONS))
+    walk.specifications(content.get(SPECIFICATIONS))
+    walk.work_masters(content.get(WORK_MASTERS))
+    read_definitions(content, gathered)
+    return declared, gathered
+
+
+class _Walk:
+    def __init__(self, naming: Naming, expressions: Expressions) -> None:
+        self._naming = naming
+        self._read = expressions
+        self._add = naming.gathered.add
+
+    def station(self, content: object) -> None:
+        """Enumerations, the station's variables, and the states of rest."""
+        top = Where(STATION, (), "station", 0)
+        for name, values in pairs(entry(content, "enumerations")):
+            where = top.to("enumerations", name).within(f"enumeration {name}")
+            self._add(ModelPart("enumeration", None, str(name)), where, name, declares=True)
+            for index, value in enumerate(items(values)):
+                if isinstance(value, SourceText):
+                    self._add(value_of(str(name), str(value)), where.to(index), value, declares=True)
+        self._variables(None, entry(content, "estimated"), top.to("estimated"))
+        self._read.condition(entry(content, "rest"), top.to("rest"))
+
+    def resource(self, resource: str, file: str, content: object) -> None:
+        """Variables and abilities; what stands in pipelines has a walk of its own."""
+        top = Where(file, (), f"resource {resource}", 0, TextContext(resource))
+        none = Span(0, 0)
+        part = ModelPart("resource", None, resource)
+        self._naming.gathered.occurrences.append(Occurrence(part, top, None, none, none, True))
+        for section in SECTIONS:
+            self._variables(resource, entry(content, section), top.to(section))
+        for name, ability in pairs(entry(content, "abilities")):
+            self._ability(resource, name, ability, top.to("abilities", name))
+
+    def _variables(self, resource: str | None, section: object, where: Where) -> None:
+        for name, document in pairs(section):
+            part = variable_of(resource, str(name))
+            at = where.to(name).within(f"variable {part.full}", TextContext(resource, part.full))
+            self._add(part, at, name, declares=True)
+            if (type_ := text_at(document, "type")) is not None:
+                self._enumeration(type_, at.to("type"))
+            self._parameters(part.full, entry(document, "for"), at.to("for"))
+            enumeration = self._naming.declared.enumeration(resource, str(name))
+            self._naming.note_value(enumeration, at.to("initial"), entry(document, "initial"))
+
+    def _ability(self, resource: str, name: SourceText, document: object, where: Where) -> None:
+        part = ModelPart("ability", resource, str(name))
+        around = TextContext(resource, part.full, parameters(entry(document, "parameters")), True)
+        at = where.within(f"ability {part.full}", around)
+        self._add(part, at, name, declares=True)
+        self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
+        self._title(entry(document, "title"), at.to("title"))
+        self._title(entry(document, "human", "task"), at.to("human", "task"))
+        if (acknowledgement := text_at(document, "human", "acknowledgement")) is not None:
+            self._add(variable_of(resource, str(acknowledgement)), at.to("human", "acknowledgement"), acknowledgement)
+        for path in _CONDITIONS:
+            self._read.condition(entry(document, *path), at.to(*path))
+        for path in _ACTIONS:
+            self._read.actions(entry(document, *path), at.to(*path))
+        for effect, inner in pairs(entry(document, "effects")):
+            below = at.to("effects", effect)
+            self._add(ModelPart("effect", part.full, str(effect)), below, effect, declares=True)
+            self._read.condition(entry(inner, "when"), below.to("when"))
+            self._read.actions(entry(inner, "do"), below.to("do"))
+
+    def operations(self, content: object) -> None:
+        """Preconditions, goals and formulas."""
+        for name, document in pairs(content):
+            part = ModelPart("operation", None, str(name))
+            at = self._whole(part, OPERATIONS, name, document)
+            for key in ("precondition", "goal"):
+                self._read.condition(entry(document, key), at.to(key))
+            self._read.condition(entry(document, "local"), at.to("local"), is_formula=True)
+
+    def specifications(self, content: object) -> None:
+        """What must never be, in all its forms."""
+        for name, document in pairs(content):
+            at = self._whole(ModelPart("specification", None, str(name)), SPECIFICATIONS, name, document)
+            for key in ("forbidden", "never", "while"):
+                self._read.condition(entry(document, key), at.to(key))
+            for index, text in enumerate(items(entry(document, "exclusive"))):
+                self._exclusive(text, at.to("exclusive", index))
+            for index, text in enumerate(items(entry(document, "order"))):
+                self._read.condition(text, at.to("order", index))
+            for resource, inside in pairs(entry(document, "zone")):
+                below = at.to("zone", resource)
+                self._add(ModelPart("resource", None, str(resource)), below, resource)
+                own = TextContext(str(resource), at.around.holder, at.around.parameters)
+                self._read.condition(inside, Where(below.file, below.path, below.owner, below.depth, own))
+
+    def _whole(self, part: ModelPart, file: str, name: SourceText, document: object) -> Where:
+        """The entry of an operation or a specification, with what both have."""
+        around = TextContext(None, part.id, parameters(entry(document, "parameters")))
+        at = Where(file, (str(name),), f"{part.kind} {name}", 1, around)
+        self._add(part, at, name, declares=True)
+        self._parameters(part.id, entry(document, "parameters"), at.to("parameters"))
+        self._title(entry(document, "title"), at.to("title"))
+        return at
+
+    def work_masters(self, content: object) -> None:
+        """The operations of jobs, and what a new product brings."""
+        for name, document in pairs(content):
+            at = Where(WORK_MASTERS, (str(name),), f"work master {name}", 1)
+            self._add(ModelPart("work_master", None, str(name)), at, name, declares=True)
+            self._read.actions(entry(document, "brings"), at.to("brings"))
+            for step, inner in pairs(entry(document, "operations")):
+                self._operation(step, at.to("operations", step))
+                for index, before in enumerate(items(entry(inner, "after"))):
+                    self._operation(before, at.to("operations", step, "after", index))
+
+    def _operation(self, text: object, where: Where) -> None:
+        """An operation with its arguments."""
+        if (name := self._name(text, where)) is None or not isinstance(text, SourceText) or len(name.path) != 1:
+            return
+        step = steps_of(name, text)[0]
+        self._add(ModelPart("operation", None, step.word.text), where, text, step.word.span, whole=name.span)
+        of = self._naming.declared.operations.get(step.word.text, {})
+        self._naming.note_arguments(step.arguments, of, where, text, name.span)
+
+    def _exclusive(self, text: object, where: Where) -> None:
+        """An ability, with its arguments or without."""
+        if (name := self._name(text, where)) is None or not isinstance(text, SourceText) or len(name.path) != 2:
+            return
+        resource, ability = steps_of(name, text)
+        part = ModelPart("ability", resource.word.text, ability.word.text)
+        self._add(ModelPart("resource", None, resource.word.text), where, text, resource.word.span, whole=name.span)
+        self._add(part, where, text, ability.word.span, whole=name.span)
+        of = self._naming.declared.abilities.get(part.full, {})
+        self._naming.note_arguments(ability.arguments, of, where, text, name.span)
+
+    def _name(self, text: object, where: Where) -> Name | None:
+        if not isinstance(text, SourceText):
+            return None
+        try:
+            found = parse(text)
+        except ExpressionError:
+            self._naming.gathered.unread.append((where, text))
+            return None
+        return found if isinstance(found, Name) else None
+
+    def _parameters(self, holder: str, written: object, where: Where) -> None:
+        for name, of in pairs(written):
+            self._add(ModelPart("parameter", holder, str(name)), where.to(name), name, declares=True)
+            if isinstance(of, SourceText):
+                self._enumeration(of, where.to(name))
+
+    def _enumeration(self, text: SourceText, where: Where) -> None:
+        if str(text).isidentifier() and text != "bool":
+            self._add(ModelPart("enumeration", None, str(text)), where, text)
+
+    def _title(self, text: object, where: Where) -> None:
+        """A text for people, in which a parameter stands in braces."""
+        if not isinstance(text, SourceText):
+            return
+        for match in _IN_BRACES.finditer(text):
+            if match[1] in where.around.parameters:
+                part = ModelPart("parameter", where.around.holder, match[1])
+                self._add(part, where, text, Span(*match.span(1)))

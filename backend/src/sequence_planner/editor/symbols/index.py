@@ -1,0 +1,365 @@
+"""Symbol index of a draft: named model parts, declarations and gathered occurrences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from sequence_planner.automaton.declarations import FLAGS, OPERATION
+from sequence_planner.editor.symbols.fields import inferred
+from sequence_planner.editor.symbols.texts import (
+    OPERATIONS,
+    SPECIFICATIONS,
+    STATION,
+    WORK_MASTERS,
+    ModelContent,
+    entry,
+    items,
+    message_of,
+    pairs,
+    text_at,
+)
+from sequence_planner.language.syntax import Span
+from sequence_planner.model.paths import EditError, shown_path
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.yaml.reader import EntryPath
+from sequence_planner.pipelines.graph import GOAL_STATE, GoalState
+from sequence_planner.ros.types.messages import MessageRegistry
+
+# What of a model has a name, and how each is told from all others.
+
+# What each kind is called in a sentence.
+KINDS: Mapping[str, str] = {
+    "enumeration": "the enumeration",
+    "value": "the value",
+    "resource": "the resource",
+    "variable": "the variable",
+    "ability": "the ability",
+    "effect": "the effect",
+    "operation": "the operation",
+    "specification": "the specification",
+    "work_master": "the work master",
+    "parameter": "the parameter",
+    "topic": "the topic",
+    "flow": "the flow",
+    "service": "the service",
+    "action": "the action",
+    "message": "the type of message",
+}
+# Kinds whose names are those of ROS 2, and known in the whole station.
+ROS_KINDS = frozenset({"topic", "service", "action", "message"})
+_OF_RESOURCE = frozenset({"variable", "ability", "flow"})
+_WITHIN = frozenset({"effect", "parameter"})
+
+
+class ModelPart(NamedTuple):
+    """Something with a name. `owner` is what it belongs to, without which the name does not tell it:
+
+    the enumeration of a value; the resource of a variable, an ability or a flow; the ability of an effect; and for a
+    parameter the full name of its ability or variable, or `operation:` or `specification:` and a name.
+    """
+
+    kind: str
+    owner: str | None
+    name: str
+
+    @property
+    def id(self) -> str:
+        """Such as `variable:robot.pose`, `value:pose.home`, `parameter:robot.move.to` or `topic:/robot/state`."""
+        return f"{self.kind}:{self.full}"
+
+    @property
+    def full(self) -> str:
+        """The name with its owner, such as `robot.pose`."""
+        return self.name if self.owner is None else f"{self.owner}.{self.name}"
+
+    def __str__(self) -> str:
+        return f"{KINDS[self.kind]} `{self.full.rpartition(':')[2]}`"
+
+
+def parse_part(text: str) -> ModelPart:
+    """The part of an `id`. Raises `EditError` for a text that is none."""
+    kind, _, full = text.partition(":")
+    if kind not in KINDS or not full:
+        known = ", ".join(KINDS)
+        raise EditError(f"`{text}` names no part: write its kind and its name, as in variable:robot.pose ({known})")
+    owner, _, name = ("", "", full) if kind in ROS_KINDS else full.rpartition(".")
+    return ModelPart(kind, owner or None, name)
+
+
+def value_of(enumeration: str, name: str) -> ModelPart:
+    """A value of an enumeration."""
+    return ModelPart("value", enumeration, name)
+
+
+def variable_of(resource: str | None, name: str) -> ModelPart:
+    """A variable of a resource, or of the station."""
+    return ModelPart("variable", resource, name)
+
+
+def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
+    """What `part` is called when `old` is called `new`: the same, or with that name, or with an owner of that name."""
+    if part == old:
+        return new
+    owner = part.owner
+    if owner is None:
+        return part
+    match old.kind:
+        case "resource":
+            is_own = part.kind in _OF_RESOURCE and owner == old.name
+            if is_own:
+                return part._replace(owner=new.name)
+            if part.kind in _WITHIN and owner.startswith(f"{old.name}."):
+                return part._replace(owner=f"{new.name}{owner[len(old.name) :]}")
+        case "enumeration" if part.kind == "value" and owner == old.name:
+            return part._replace(owner=new.name)
+        case "ability" | "variable" if part.kind in _WITHIN and owner == old.full:
+            return part._replace(owner=new.full)
+        case "operation" | "specification" if part.kind == "parameter" and owner == old.id:
+            return part._replace(owner=new.id)
+    return part
+
+
+def belongs_to(part: ModelPart, whole: ModelPart) -> bool:
+    """Whether `part` is `whole`, or goes with it when it is deleted."""
+    return part == whole or following(part, whole, whole._replace(name=f"{whole.name}'")) != part
+
+
+# The names that a draft declares, as far as it can be read: what grounding's declarations are to a sound model.
+
+SECTIONS = ("measured", "output", "estimated")
+
+# The parameters of a part, each with the name of its enumeration.
+Parameters = Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class DeclaredVariable:
+    """A variable: the section it stands in, its type as written, its parameters, and whether a file declares it."""
+
+    section: str
+    type: str | None = None
+    parameters: Parameters = field(default_factory=dict)
+    is_written: bool = True
+
+
+class Declared:
+    """The names of a draft. Variables and abilities are known by their full names.
+
+    A variable that no file declares is there as well if the stages of a pipeline give it, or a message does whose
+    fields `messages` knows.
+    """
+
+    def __init__(self, content: ModelContent, messages: MessageRegistry | None) -> None:
+        self.messages = messages
+        self.enumerations: dict[str, tuple[str, ...]] = {}
+        self.resources: dict[str, object] = {name: found for name, _, found in content.resources()}
+        self.variables: dict[str, DeclaredVariable] = {}
+        self.abilities: dict[str, Parameters] = {}
+        self.operations: dict[str, Parameters] = {}
+        self.parts: list[ModelPart] = []
+        self.sent: set[str] = set()  # topics on which the station speaks
+        station = content.get(STATION)
+        for name, values in pairs(entry(station, "enumerations")):
+            self.enumerations[str(name)] = tuple(str(value) for value in items(values) if isinstance(value, SourceText))
+            self.parts.append(ModelPart("enumeration", None, str(name)))
+            self.parts += [ModelPart("value", str(name), value) for value in self.enumerations[str(name)]]
+        self._read_variables(None, "estimated", entry(station, "estimated"))
+        for resource, found in self.resources.items():
+            self._read_resource(resource, found)
+        self._read_others(content)
+        self.parts += [ModelPart("message", None, name) for name in map(message_of, content.definitions) if name]
+        has_actions = any(pairs(entry(found, "actions")) for found in self.resources.values())
+        if has_actions:
+            self.enumerations.setdefault(GOAL_STATE, tuple(map(str, GoalState)))
+        self.values: dict[str, list[str]] = {}
+        for enumeration, names in self.enumerations.items():
+            for value in names:
+                self.values.setdefault(value, []).append(enumeration)
+
+    def own(self, resource: str, section: str) -> Iterator[tuple[str, DeclaredVariable]]:
+        """The variables of one section of a resource, by their names without it."""
+        for name, variable in self.variables.items():
+            owner, _, own = name.rpartition(".")
+            if owner == resource and variable.section == section:
+                yield own, variable
+
+    def enumeration(self, resource: str | None, name: str) -> str | None:
+        """The enumeration over which a variable ranges, if it does."""
+        found = self.variables.get(variable_of(resource, name).full)
+        return None if found is None or found.type not in self.enumerations else found.type
+
+    def _read_variables(self, resource: str | None, section: str, written: object) -> None:
+        for name, document in pairs(written):
+            part = variable_of(resource, str(name))
+            type_ = text_at(document, "type")
+            of = parameters(entry(document, "for"))
+            self.variables.setdefault(part.full, DeclaredVariable(section, None if type_ is None else str(type_), of))
+            self._note(part, of, part.full)
+
+    def _read_resource(self, resource: str, found: object) -> None:
+        self.parts.append(ModelPart("resource", None, resource))
+        for section in SECTIONS:
+            self._read_variables(resource, section, entry(found, section))
+        for name, document in pairs(entry(found, "abilities")):
+            part = ModelPart("ability", resource, str(name))
+            self.abilities[part.full] = parameters(entry(document, "parameters"))
+            self._note(part, self.abilities[part.full], part.full)
+            self.parts += [ModelPart("effect", part.full, str(each)) for each, _ in pairs(entry(document, "effects"))]
+        self.parts += [ModelPart("flow", resource, str(flow)) for flow, _ in pairs(entry(found, "flows"))]
+        self.sent |= {str(each) for each, topic in pairs(entry(found, "topics")) if entry(topic, "direction") == "out"}
+        for kind in ("topic", "service", "action"):
+            self.parts += [ModelPart(kind, None, str(each)) for each, _ in pairs(entry(found, f"{kind}s"))]
+        for own, variable in inferred(found, self.messages).items():
+            full = f"{resource}.{own}"
+            declared = self.variables.get(full)
+            if declared is None and full not in self.abilities and own not in FLAGS:
+                self.variables[full] = DeclaredVariable(variable.section, variable.type, is_written=False)
+            elif declared is not None and declared.type is None and variable.type is not None:
+                self.variables[full] = DeclaredVariable(declared.section, variable.type, declared.parameters)
+
+    def _read_others(self, content: ModelContent) -> None:
+        for name, document in pairs(content.get(OPERATIONS)):
+            part = ModelPart("operation", None, str(name))
+            self.operations[part.name] = parameters(entry(document, "parameters"))
+            self._note(part, self.operations[part.name], part.id)
+        for name, document in pairs(content.get(SPECIFICATIONS)):
+            part = ModelPart("specification", None, str(name))
+            self._note(part, parameters(entry(document, "parameters")), part.id)
+        self.parts += [ModelPart("work_master", None, str(name)) for name, _ in pairs(content.get(WORK_MASTERS))]
+
+    def _note(self, part: ModelPart, of: Parameters, holder: str) -> None:
+        self.parts.append(part)
+        self.parts += [ModelPart("parameter", holder, name) for name in of]
+
+
+def parameters(written: object) -> Parameters:
+    """The parameters of a part, each with its enumeration."""
+    return {str(name): str(of) for name, of in pairs(written) if isinstance(of, SourceText)}
+
+
+def is_activity(names: list[str]) -> bool:
+    """Whether a dotted name is that of an operation's activity."""
+    return len(names) == 3 and names[0] == OPERATION and names[2] == "active"
+
+
+# Places at which parts of a model are named, as they are gathered from its files.
+
+
+@dataclass(frozen=True, slots=True)
+class TextContext:
+    """What names mean around a text: its resource, and the parameters of what it stands in, with their enumerations.
+
+    `holder` is the owner of these parameters; `has_flags` holds within an ability.
+    """
+
+    resource: str | None = None
+    holder: str = ""
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    has_flags: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """An entry of a file, and whom it is a part of: `owner`, which stands at the first `depth` steps of its path."""
+
+    file: str
+    path: EntryPath
+    owner: str
+    depth: int
+    around: TextContext = TextContext()
+
+    def to(self, *steps: str | int) -> Where:
+        """An entry within this one."""
+        return Where(self.file, self.path + tuple(map(_plain, steps)), self.owner, self.depth, self.around)
+
+    def within(self, owner: str, around: TextContext | None = None) -> Where:
+        """This entry as a part of its own, with names of its own."""
+        return Where(self.file, self.path, owner, len(self.path), self.around if around is None else around)
+
+    @property
+    def said(self) -> str:
+        """In words a person knows, such as `ability robot.move: start.when`."""
+        inner = shown_path(self.path[self.depth :])
+        return f"{self.owner}: {inner}" if inner else self.owner
+
+
+def _plain(step: str | int) -> str | int:
+    return str(step) if isinstance(step, str) else step
+
+
+@dataclass(frozen=True, slots=True)
+class Occurrence:
+    """A part named at `span` of a text, within the name at `whole`. `fixed` says why it cannot be written otherwise,
+    and `writes` holds where a variable is given a value.
+
+    The text of the declaration of a resource or of a type of message is the name of its file, so there is none.
+    """
+
+    part: ModelPart
+    where: Where
+    text: SourceText | None
+    span: Span
+    whole: Span
+    declares: bool = False
+    fixed: str | None = None
+    writes: bool = False
+
+
+class Unwritten(NamedTuple):
+    """A variable that an entry gives a value, or else reads, though no text there names it; `why` says how that is."""
+
+    part: ModelPart
+    where: Where
+    writes: bool
+    why: str
+
+
+class Binding(NamedTuple):
+    """A pipeline at whose end a variable is a field of a message, because both have the name `field`; `why` says so."""
+
+    file: str
+    path: tuple[str, ...]
+    incoming: bool
+    field: str
+    why: str
+
+
+@dataclass
+class Gathered:
+    """All that was found.
+
+    `links` are pairs of values that are one because variables of their enumerations are compared. `ties` are parts
+    whose names are not the model's alone, each with why; `bindings` are variables for which a stage could say what
+    their names do. `hidden` are pairs of parts of which one stands in the way of the other. `unwritten` are uses
+    without a text that names what is used. `unread` are texts that make no sense, so that names in them may be missed.
+    """
+
+    occurrences: list[Occurrence] = field(default_factory=list)
+    links: set[frozenset[ModelPart]] = field(default_factory=set)
+    ties: dict[ModelPart, str] = field(default_factory=dict)
+    bindings: dict[ModelPart, list[Binding]] = field(default_factory=dict)
+    hidden: set[tuple[ModelPart, ModelPart]] = field(default_factory=set)
+    unwritten: list[Unwritten] = field(default_factory=list)
+    unread: list[tuple[Where, SourceText]] = field(default_factory=list)
+
+    def add(
+        self,
+        part: ModelPart,
+        where: Where,
+        text: SourceText,
+        span: Span | None = None,
+        *,
+        whole: Span | None = None,
+        declares: bool = False,
+        fixed: str | None = None,
+        writes: bool = False,
+    ) -> None:
+        """Note that `text` names a part at `span`, or as a whole."""
+        span = Span(0, len(text)) if span is None else span
+        self.occurrences.append(Occurrence(part, where, text, span, whole or span, declares, fixed, writes))
+
+    def tie(self, part: ModelPart, why: str) -> None:
+        """Note that the name of a part is not the model's alone."""
+        self.ties.setdefault(part, why)

@@ -1,0 +1,119 @@
+"""The files of a draft, read as far as they can be: content with places, and helpers for content of any form."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+
+from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.yaml.reader import EntryPath, read_text
+
+STATION = "station.yaml"
+OPERATIONS = "operations.yaml"
+SPECIFICATIONS = "specifications.yaml"
+WORK_MASTERS = "work_masters.yaml"
+_RESOURCES = "resources/"
+_YAML = ".yaml"
+_DEFINITION = re.compile(r"messages/(\w+/(msg|srv|action)/\w+)\.\2")
+
+
+class ModelContent(Mapping[str, object]):
+    """What the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
+
+    `definitions` are those of types of messages, by their files.
+    """
+
+    def __init__(self, files: Mapping[str, str]) -> None:
+        self.texts = {file: text for file, text in files.items() if _is_read(file)}
+        self.definitions = {file: text for file, text in files.items() if message_of(file) is not None}
+        self.skipped: list[Finding] = []
+        self._read: dict[str, object] = {}
+        for file, text in sorted(self.texts.items()):
+            content, findings = _content(file, text)
+            self.skipped += findings
+            if not findings:
+                self._read[file] = content
+
+    def __getitem__(self, file: str) -> object:
+        return self._read[file]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._read)
+
+    def __len__(self) -> int:
+        return len(self._read)
+
+    def resources(self) -> Iterator[tuple[str, str, object]]:
+        """Each resource: its name, its file and the content of that."""
+        for file, content in self._read.items():
+            if (name := resource_of(file)) is not None:
+                yield name, file, content
+
+
+def resource_of(file: str) -> str | None:
+    """The name of the resource that a file describes, or nothing for other files."""
+    inside = file.startswith(_RESOURCES) and file.endswith(_YAML) and file.count("/") == 1
+    return file[len(_RESOURCES) : -len(_YAML)] if inside else None
+
+
+def file_of(resource: str) -> str:
+    """The file that describes a resource."""
+    return f"{_RESOURCES}{resource}{_YAML}"
+
+
+def message_of(file: str) -> str | None:
+    """The type of message that a file defines, such as `cell_msgs/msg/State`, or nothing for other files."""
+    found = _DEFINITION.fullmatch(file)
+    return None if found is None else found[1]
+
+
+def _is_read(file: str) -> bool:
+    return file in (STATION, OPERATIONS, SPECIFICATIONS, WORK_MASTERS) or resource_of(file) is not None
+
+
+# While a draft is edited, all of its files but one are as they were.
+@lru_cache(2048)
+def _content(file: str, text: str) -> tuple[object, tuple[Finding, ...]]:
+    try:
+        return read_text(text, file).content, ()
+    except ModelError as error:
+        return None, tuple(error.findings)
+
+
+def pairs(content: object) -> list[tuple[SourceText, object]]:
+    """The entries of a mapping; none of anything else."""
+    if not isinstance(content, dict):
+        return []
+    return [(key, value) for key, value in content.items() if isinstance(key, SourceText)]
+
+
+def items(content: object) -> list[object]:
+    """The entries of a list; none of anything else."""
+    return content if isinstance(content, list) else []
+
+
+def entry(content: object, *names: str) -> object:
+    """What stands in a mapping, and in the mappings in it, under these names; nothing where there is none."""
+    for name in names:
+        content = content.get(name) if isinstance(content, dict) else None
+    return content
+
+
+def text_at(content: object, *names: str) -> SourceText | None:
+    """The same, if it is a text."""
+    found = entry(content, *names)
+    return found if isinstance(found, SourceText) else None
+
+
+def texts(content: object, path: EntryPath) -> Iterator[tuple[EntryPath, SourceText]]:
+    """All texts in some content, names included, each with its path."""
+    if isinstance(content, SourceText):
+        yield path, content
+    elif isinstance(content, dict):
+        for key, value in content.items():
+            yield (*path, str(key)), key
+            yield from texts(value, (*path, str(key)))
+    elif isinstance(content, list):
+        for index, value in enumerate(content):
+            yield from texts(value, (*path, index))

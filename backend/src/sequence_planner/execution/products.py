@@ -1,0 +1,46 @@
+"""What a new product brings: estimated values that are so from when it is there, and what has to be over before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from sequence_planner.automaton.automaton import Ability, Automaton, State, WorkMaster, target
+from sequence_planner.execution.state import ExecutionState
+from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.language.syntax import Constant
+from sequence_planner.language.types import Value
+
+
+def lacking(master: WorkMaster, state: State) -> dict[str, Value]:
+    """The values that its product brings and that are not so in `state`."""
+    brought: dict[str, Value] = {}
+    for action in master.brings:
+        assert isinstance(action.value, Constant)
+        if state[target(action)] != action.value.value:
+            brought[target(action)] = action.value.value
+    return brought
+
+
+def kept_back(conduct: ExecutionState) -> Iterator[str]:
+    """What has to be otherwise before values may be brought that are not so yet, in words."""
+    if conduct.production is not Production.STARTED:
+        yield "production to be started"
+    if conduct.mode is not Mode.AUTOMATIC:
+        yield "automatic mode"
+    if conduct.errand is not None:
+        yield f"the end of what is carried out: {conduct.errand.title}"
+
+
+def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[str]) -> Iterator[str]:
+    """What runs and decides on the values that its product brings, in words: that belongs to the product before."""
+    brought = frozenset(map(target, master.brings))
+    for name in sorted(running):
+        ability = automaton.abilities[name]
+        if written := sorted(_written(ability) & brought):
+            yield f"the end of {ability.title} ({name}), which decides on {', '.join(written)}"
+
+
+def _written(ability: Ability) -> frozenset[str]:
+    """The variables that a run of the ability can write."""
+    actions = (*ability.start_actions, *ability.finish_actions, *ability.cancel_actions)
+    return frozenset(map(target, actions))

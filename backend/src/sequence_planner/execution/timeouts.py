@@ -1,0 +1,84 @@
+"""Time limits of running abilities, and how they are cancelled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from sequence_planner.automaton.automaton import Ability, Automaton, State
+from sequence_planner.automaton.tick import Writes, conflicts_of, writes
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.execution.plan_tracker import PlanCursor, PlannedStart
+from sequence_planner.execution.state import ExecutionState, OutOfService
+from sequence_planner.execution.vocabulary import ServiceKind
+
+# Calling running abilities off, by the `cancel` actions that they declare.
+
+
+def cancelled(automaton: Automaton, state: State, names: Iterable[str]) -> tuple[tuple[str, ...], Writes]:
+    """Which of the abilities can be called off, and what that writes; all at once, on the state before.
+
+    Those that declare no cancel actions cannot. Of two that would write different values the one declared first is.
+    """
+    wanted = set(names)
+    candidates: dict[str, Writes] = {}
+    for ability in automaton.abilities.values():
+        if ability.name in wanted and ability.cancel_actions:
+            written = writes(ability.cancel_actions, state)
+            if written is not None:
+                candidates[ability.name] = written
+    refused = {other for _, other, _ in conflicts_of(candidates)}
+    called_off = tuple(name for name in candidates if name not in refused)
+    together: Writes = {}
+    for name in called_off:
+        together |= candidates[name]
+    return called_off, together
+
+
+# Abilities that take longer than they may: whether a run is overdue, and what is then done about it.
+
+
+def overdue(step: PlannedStart, ability: Ability, monotonic: float) -> str | None:
+    """What has not come in time of a run under way, as in `has not begun within 2 s`; None while it is in time."""
+    if step.started is None or step.ended is not None:
+        return None
+    seconds = monotonic - step.started.monotonic
+    react, finish = ability.timeouts.react, ability.timeouts.finish
+    if finish is not None and seconds > finish:
+        return f"has not finished within {finish:g} s"
+    if react is not None and seconds > react and not step.reacted:
+        return f"has not begun within {react:g} s"
+    return None
+
+
+def in_the_past(late: str) -> str:
+    """The same of a run that is over, as in `did not begin within 2 s`."""
+    return late.replace("has not begun", "did not begin").replace("has not finished", "did not finish")
+
+
+def to_call_off(automaton: Automaton, order: PlanCursor, now: Timestamp) -> dict[str, str]:
+    """The abilities that are overdue and shall then be planned anew, each with what has not come in time."""
+    late: dict[str, str] = {}
+    for step in order.running:
+        ability = automaton.abilities[step.ability]
+        if ability.timeouts.replan and (what := overdue(step, ability, now.monotonic)) is not None:
+            late[step.ability] = what
+    return late
+
+
+def after_another_try(
+    conduct: ExecutionState, automaton: Automaton, late: Mapping[str, str], now: Timestamp
+) -> tuple[ExecutionState, tuple[str, ...]]:
+    """The conduct once these abilities were tried in vain once more, and those that are given up with it."""
+    tried = {name: conduct.tried.get(name, 0) + 1 for name in late}
+    given_up = tuple(name for name, times in tried.items() if times > automaton.abilities[name].timeouts.retries)
+    gone = [
+        OutOfService(ServiceKind.ABILITY, name, now, None, f"{late[name]}, tried {_times(tried[name])}")
+        for name in given_up
+    ]
+    left = {name: times for name, times in {**conduct.tried, **tried}.items() if name not in given_up}
+    return replace(conduct.without_service(gone), tried=left), given_up
+
+
+def _times(number: int) -> str:
+    return "once" if number == 1 else f"{number} times"

@@ -1,0 +1,90 @@
+"""State of the station at any journal record, and its view."""
+
+from __future__ import annotations
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.views.builder import errand_view, force_views, packml, service_views
+from sequence_planner.controller.views.jobs import job_views
+from sequence_planner.controller.views.station import StepStatus
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.plan_tracker import PlannedStart
+from sequence_planner.execution.record.codec import HistoryError
+from sequence_planner.execution.record.replay import Replayed, replay
+from sequence_planner.history.timeline import MomentView, PastPlanView, PastStepView, PastView, record_view
+from sequence_planner.journal.full_run import WholeRun
+
+# How the station was at any record of the journal.
+
+
+def looking_back(run: WholeRun, automaton: Automaton, supervisor: Supervisor, number: int) -> Replayed:
+    """A record, with the execution as it was right after it.
+
+    Raises `HistoryError` if there is no such record, if it cannot be replayed, or is not replayed as it was written.
+    """
+    if run.get(number) is None:
+        begin = run.begin.number
+        detail = f": records up to {begin} were cut off" if number <= begin else ""
+        raise HistoryError("no-record", f"the journal has no record {number}{detail}")
+    last: Replayed | None = None
+    for last in replay(run, automaton, supervisor, number, number):
+        if last.difference is not None:
+            raise HistoryError(
+                "history-differs", f"the run cannot be replayed up to record {number}: {last.difference}"
+            )
+    if last is None or last.record.number != number:
+        raise HistoryError(
+            "history-gone", f"nothing tells how the station was at record {number}: what was before it was cut off"
+        )
+    return last
+
+
+# An execution of the past, as it is shown.
+
+
+def moment_view(replayed: Replayed) -> MomentView:
+    """A moment as it is shown."""
+    return MomentView(record=record_view(replayed.record), past=past_view(replayed.execution))
+
+
+def past_view(execution: Executor) -> PastView:
+    """An execution as it is shown."""
+    conduct, state = execution.conduct, execution.state
+    return PastView(
+        tick=execution.ticks,
+        revision=execution.revision,
+        mode=execution.mode,
+        packml=packml(execution),
+        production=execution.production,
+        stepping=conduct.stepping,
+        values={name: state[name] for name in execution.automaton.variables},
+        running=sorted(execution.running()),
+        active=sorted(execution.active),
+        by_order=conduct.jobs.by_order,
+        jobs=job_views(execution),
+        plan=_plan(execution),
+        errand=errand_view(execution),
+        forces=force_views(conduct),
+        out_of_service=service_views(execution.automaton, conduct),
+    )
+
+
+def _plan(execution: Executor) -> PastPlanView:
+    order = execution.plan.order
+    past = [_step(execution, each, StepStatus.DONE if each.ended else StepStatus.RUNNING) for each in order.past]
+    ahead = [
+        _step(execution, each, StepStatus.PLANNED if index else StepStatus.NEXT)
+        for index, each in enumerate(order.ahead)
+    ]
+    return PastPlanView(status=execution.plan.status, reason=execution.plan.reason, steps=past + ahead)
+
+
+def _step(execution: Executor, step: PlannedStart, status: StepStatus) -> PastStepView:
+    return PastStepView(
+        ability=step.ability,
+        title=execution.automaton.abilities[step.ability].title,
+        status=status,
+        tick=step.tick,
+        started=None if step.started is None else step.started.epoch,
+        ended=None if step.ended is None else step.ended.epoch,
+    )

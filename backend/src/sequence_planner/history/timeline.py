@@ -1,0 +1,274 @@
+"""Time line of past events, and the request and response schemas of the history."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from typing import Any, Final
+
+from pydantic import JsonValue
+
+from sequence_planner.controller.recovery.manual import KIND as BY_HAND
+from sequence_planner.controller.views.part import Value, View
+from sequence_planner.controller.views.station import (
+    ErrandView,
+    ForceView,
+    JobView,
+    PackML,
+    ServiceView,
+    StepStatus,
+)
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.execution.events import Answered, Asked
+from sequence_planner.execution.record.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
+from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
+from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.journal.run_journal import RecordPlace, RunRecord
+
+# What is asked about the past, and what is told of it.
+
+
+class RunRecordView(View):
+    """Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what."""
+
+    number: int
+    time: float
+    kind: str
+    content: dict[str, JsonValue]
+    hash: str
+
+
+class PlaceView(View):
+    """A record's number, and when it was written."""
+
+    number: int
+    time: float
+
+
+class MarkView(View):
+    """A record as a time line shows it. Of its content there is what is drawn."""
+
+    number: int
+    time: float
+    kind: str
+    content: dict[str, JsonValue]
+
+
+class LineView(View):
+    """What happened between two times: the records behind number `begin`, up to `end`.
+
+    `first` and `last` are those of the whole journal. `running` had been started before, and `mode` was the mode then.
+    Without `whole` there is too much for every start, end and plan to be a mark of its own. `bins` counts the records
+    in equal parts of the time.
+    """
+
+    first: PlaceView
+    last: PlaceView
+    begin: int
+    end: int
+    running: list[str]
+    mode: str | None
+    marks: list[MarkView]
+    whole: bool
+    bins: list[int]
+
+
+class PastStepView(View):
+    """A start of the plan as it was then."""
+
+    ability: str
+    title: str
+    status: StepStatus
+    tick: int
+    started: float | None
+    ended: float | None
+
+
+class PastPlanView(View):
+    """The plan as it was then, and why it was that or none."""
+
+    status: PlanStatus
+    reason: str
+    steps: list[PastStepView]
+
+
+class PastView(View):
+    """How the station was. `running` are the abilities under way, `active` the active operations."""
+
+    tick: int
+    revision: int
+    mode: Mode
+    packml: PackML
+    production: Production
+    stepping: bool
+    values: dict[str, Value | None]
+    running: list[str]
+    active: list[str]
+    by_order: bool
+    jobs: dict[str, JobView]
+    plan: PastPlanView
+    errand: ErrandView | None
+    forces: dict[str, ForceView]
+    out_of_service: list[ServiceView]
+
+
+class MomentView(View):
+    """A record, and how the station was right after it."""
+
+    record: RunRecordView
+    past: PastView
+
+
+class BranchView(View):
+    """How the station would have gone on: the records that it would have written, and how it would have been then.
+
+    `seconds` is the time that was simulated. With `cut` these are the first records only.
+    """
+
+    seconds: float
+    records: list[RunRecordView]
+    cut: bool
+    end: PastView
+
+
+class LookBack(Immutable):
+    """How was the station at this record?"""
+
+    number: int
+
+
+class TakeBranch(Immutable):
+    """How would it have gone on from there, with these corrections? `deadline` seconds are there to find out."""
+
+    number: int
+    seconds: float
+    corrections: dict[str, Value]
+    deadline: float
+
+
+class Refused(Immutable):
+    """Why there is no answer: a slug, and what a person is told."""
+
+    slug: str
+    detail: str
+
+
+Question = LookBack | TakeBranch
+Answer = MomentView | BranchView | Refused
+
+
+def record_view(record: RunRecord) -> RunRecordView:
+    """A record as it is shown. What a snapshot keeps for replay is left out: it is shown as the past that it is."""
+    content = json.loads(record.content)
+    content.pop("memory", None)
+    return RunRecordView(number=record.number, time=record.time, kind=record.kind, content=content, hash=record.hash)
+
+
+# What happened between two times, for a time line: what is a mark of its own, and how much there is of all else.
+#
+# Records of most kinds are few, and are found by the index of their kind. Starts, ends and plans are in the many
+# records of ticks and answers, which are read one by one where they are not too many; else they are only counted.
+
+MOST_READ: Final = 10_000  # records that are read one by one
+MOST_MARKS: Final = 3000
+BINS: Final = 60
+ALARM: Final = "alarm"
+_ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
+_SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND} - {TICKED, _ASKED, _ANSWERED})
+_TOLD: Final = ("started", "ended", "called_off", "given_up", "plan", "mode")
+_TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
+_PAGE: Final = 1000
+
+
+def line(run: WholeRun, since: float, until: float) -> LineView | None:
+    """What happened after `since` and up to `until`; None while the journal is empty."""
+    bounds = run.bounds()
+    if bounds is None:
+        return None
+    first, last = bounds
+    before, end = (run.at(time) for time in (since, until))
+    marks = _all(run, before, end) if end - before <= MOST_READ else None
+    whole = marks is not None and len(marks) <= MOST_MARKS
+    if marks is None or not whole:
+        found = run.after(before, MOST_MARKS + 1, _SELDOM)
+        marks = [_mark(each) for each in found if each.number <= end]
+    return LineView(
+        first=_place(first),
+        last=_place(last),
+        begin=before,
+        end=end,
+        running=_running(run, before) if whole else [],
+        mode=_mode(run, before),
+        marks=marks[:MOST_MARKS],
+        whole=whole,
+        bins=_bins(run, since, until),
+    )
+
+
+def place_at(run: WholeRun, time: float) -> PlaceView | None:
+    """The last record up to a time, or the first one there is; None while the journal is empty."""
+    bounds = run.bounds()
+    if bounds is None:
+        return None
+    number = max(bounds[0].number, run.at(time))
+    found = run.get(number)
+    return None if found is None else PlaceView(number=number, time=found.time)
+
+
+def _place(place: RecordPlace) -> PlaceView:
+    return PlaceView(number=place.number, time=place.time)
+
+
+def _all(run: WholeRun, before: int, end: int) -> list[MarkView]:
+    """Of all records behind `before`, up to `end`."""
+    marks: list[MarkView] = []
+    while before < end and (page := run.after(before, min(_PAGE, end - before))):
+        marks += [
+            _mark(each) for each in page if each.kind in _SELDOM or any(part in each.content for part in _TELLING)
+        ]
+        before = page[-1].number
+    return [each for each in marks if each.kind not in (TICKED, _ANSWERED, _ASKED, SNAPSHOT) or each.content]
+
+
+def _mark(record: RunRecord) -> MarkView:
+    content = json.loads(record.content)
+    told: dict[str, Any] = {} if record.kind == SNAPSHOT else {name: content[name] for name in _TOLD if name in content}
+    if record.kind in _SELDOM and record.kind != BEGUN:
+        told |= {name: value for name, value in content.get("what", content).items() if name not in ("now", "errand")}
+        told.pop("diagnosis", None)
+    return MarkView(number=record.number, time=record.time, kind=record.kind, content=told)
+
+
+def _running(run: WholeRun, number: int) -> list[str]:
+    """What had been started up to a record and had not ended."""
+    whole = next(iter(run.before(number + 1, 1, (BEGUN, SNAPSHOT))), None)
+    if whole is None:
+        return []
+    past = json.loads(whole.content)["memory"]["order.past"]
+    running = {each["ability"]: None for each in past if each.get("ended") is None}
+    for record in run.after(whole.number, max(number - whole.number, 0), (TICKED,)):
+        if record.number > number or not any(part in record.content for part in _TELLING):
+            continue
+        content = json.loads(record.content)
+        for name in (*content.get("ended", ()), *content.get("called_off", ())):
+            running.pop(name, None)
+        running |= dict.fromkeys(content.get("started", ()))
+    return list(running)
+
+
+def _mode(run: WholeRun, number: int) -> str | None:
+    """The mode after a record."""
+    kinds = (BEGUN, SNAPSHOT, "mode-changed", "errand-taken", "errand-stopped")
+    for record in run.before(number + 1, 1, kinds):
+        content = json.loads(record.content)
+        mode = content.get("mode") or content.get("what", {}).get("mode")
+        return None if mode is None else str(mode)
+    return None
+
+
+def _bins(run: WholeRun, since: float, until: float) -> list[int]:
+    """How many records there are in each of as many equal parts of the time."""
+    length = (until - since) / BINS
+    edges = [since + each * length for each in range(BINS + 1)]
+    numbers = [run.at(edge) for edge in edges]
+    return [max(0, after - before) for before, after in pairwise(numbers)]

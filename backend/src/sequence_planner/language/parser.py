@@ -1,0 +1,349 @@
+"""Recursive descent from words to the tree, loosest binding first.
+
+expression = disjunction ["implies" expression]
+disjunction = conjunction {"or" conjunction}
+conjunction = until {"and" until}
+until = negation [("U" | "R" | "W") until]                                       (in formulas only)
+negation = ("not" | "X" | "N" | "F" | "G") negation | relation                   (the letters in formulas only)
+relation = sum [("==" | "!=" | "<" | "<=" | ">" | ">=") sum | "in" "{" sum {"," sum} "}"]
+sum = atom {("+" | "-") atom}
+atom = "true" | "false" | ["-"] number | name | "(" expression ")"
+name = part {"." part};  part = word ["(" word {"," word} ")" | "[" word {"," word} "]"]
+assignment = name ":=" expression ["if" expression]
+
+In a formula `U`, `R` and `W` are operators where an operator may stand, that is, after a complete negation. `X`, `N`,
+`F` and `G` are operators where a negation begins and what follows can begin an operand: a word, a number, `(`, `not`,
+`true` or `false`. Everywhere else the letters are names, such as in `philosopher == R`, `N == 3`, `X and y`, `(X) U y`
+or `F(x).done`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import NoReturn, TypeVar
+
+from sequence_planner.language.lexer import INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS, Token, tokens
+from sequence_planner.language.syntax import (
+    And,
+    Arithmetic,
+    Assignment,
+    BinaryTemporal,
+    Comparison,
+    Component,
+    Constant,
+    Expression,
+    ExpressionError,
+    Implies,
+    Membership,
+    Name,
+    Not,
+    Or,
+    Span,
+    UnaryTemporal,
+    first_temporal,
+)
+
+T = TypeVar("T")
+
+# What reads a tree descends into it: deeper ones than any person writes would exhaust the stack.
+MOST_NESTED = 30
+MOST_SUMS = 50
+
+_RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+_OPERAND_BEGINS = frozenset({"name", "number", "(", "not", "true", "false"})
+
+# Words of other languages, where an operator or an operand is missing.
+_FOREIGN = {word: word for word in KEYWORDS} | {"is": "==", "equals": "==", "xor": "!=", "then": "implies"}
+_LETTERS = {
+    "until": "U",
+    "releases": "R",
+    "next": "X",
+    "eventually": "F",
+    "finally": "F",
+    "always": "G",
+    "globally": "G",
+}
+
+
+def parse(text: str) -> Expression:
+    """The tree of one predicate. Raises `ExpressionError` with the place of the first word that does not fit."""
+    return _predicate(str(text))
+
+
+def parse_assignment(text: str) -> Assignment:
+    """The tree of one action such as `bolts := tightened if pose == home`. Raises `ExpressionError`."""
+    return _assignment(str(text))
+
+
+def parse_formula(text: str) -> Expression:
+    """The tree of one formula of LTL over finite traces, such as `not bad U good`. Raises `ExpressionError`."""
+    return _Parser(text, temporal=True).whole(_Parser.expression)
+
+
+def can_go_on(text: str, action: bool = False, temporal: bool = False) -> bool:
+    """Whether a predicate, an `action` or a `temporal` formula can begin with `text`, or be it."""
+    try:
+        _Parser(text, temporal).whole(_Parser.assignment if action else _Parser.expression)
+    except ExpressionError as error:
+        return error.span.start >= len(text.rstrip())
+    return True
+
+
+# An ability's texts are read once for all of its instances.
+
+
+@lru_cache(4096)
+def _predicate(text: str) -> Expression:
+    return _ordinary(text, _Parser.expression)
+
+
+@lru_cache(4096)
+def _assignment(text: str) -> Assignment:
+    return _ordinary(text, _Parser.assignment)
+
+
+def _ordinary(text: str, rule: Callable[[_Parser], T]) -> T:
+    """`text` read without temporal operators; if it makes sense only with them, that is what the error says."""
+    try:
+        return _Parser(text).whole(rule)
+    except ExpressionError as error:
+        raise _misplaced_temporal(text, rule) or error from None
+
+
+def _misplaced_temporal(text: str, rule: Callable[[_Parser], T]) -> ExpressionError | None:
+    try:
+        tree = _Parser(text, temporal=True).whole(rule)
+    except ExpressionError:
+        return None
+    parts = (tree.value, tree.condition) if isinstance(tree, Assignment) else (tree,)
+    for part in parts:
+        if isinstance(part, Expression) and (formula := first_temporal(part)) is not None:
+            return temporal_refused(formula.operator, formula.span)
+    return None
+
+
+def temporal_refused(operator: str, span: Span) -> ExpressionError:
+    """The complaint about a temporal operator in an ordinary predicate or an action."""
+    where = "temporal operators stand only in `local` formulas of operations and in goals"
+    return ExpressionError(f"`{operator}` is a temporal operator here: {where}", span)
+
+
+class _Parser:
+    def __init__(self, text: str, temporal: bool = False) -> None:
+        self._tokens = tokens(text)
+        self._next = 0
+        self._token = self._tokens[0]
+        self._temporal = temporal
+        self._depth = 0
+        self._sums = 0
+
+    def whole(self, rule: Callable[[_Parser], T]) -> T:
+        result = rule(self)
+        if self._token.kind != "end":
+            self._no_operator("the end")
+        return result
+
+    # Words
+
+    def _advance(self) -> Token:
+        token = self._token
+        self._next += 1
+        self._token = self._tokens[self._next]
+        return token
+
+    def _expect(self, kind: str, what: str) -> Token:
+        if self._token.kind != kind:
+            self._unfit(what)
+        return self._advance()
+
+    def _since(self, start: int) -> Span:
+        return Span(start, self._tokens[self._next - 1].end)
+
+    def _nested(self, rule: Callable[[], Expression], opening: Token) -> Expression:
+        self._depth += 1
+        if self._depth > MOST_NESTED:
+            raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", opening.span)
+        result = rule()
+        self._depth -= 1
+        return result
+
+    # What does not fit
+
+    def _unfit(self, what: str) -> NoReturn:
+        token = self._token
+        hint = ""
+        if token.kind == "if":
+            hint = "; `if` stands only in actions, a condition says a implies b"
+        elif token.kind in KEYWORDS and what == "a name":
+            hint = f"; `{token.text}` is a word of the language"
+        raise ExpressionError(f"expected {what}, found {token}{hint}", token.span)
+
+    def _no_operator(self, end: str) -> NoReturn:
+        """Something else than an operator, or what ends the expression, stands behind an expression."""
+        token, after = self._token, self._tokens[self._next + 1 :]
+        last = self._tokens[self._next - 1]
+        for word in (token, last) if token.kind in _OPERAND_BEGINS else ():
+            meant = _FOREIGN.get(word.text.lower()) or (self._temporal and _LETTERS.get(word.text.lower()))
+            if word.kind == "name" and meant:
+                raise ExpressionError(f"`{word.text}` has no meaning here; write {meant}", word.span)
+        hint = ""
+        if token.kind in _RELATIONS or token.kind == "in":
+            hint = "; comparisons do not chain: join two with and"
+        elif token.kind == ":=":
+            hint = "; a condition compares with =="
+        elif token.kind == "if":
+            hint = "; `if` stands once, at the end of an action"
+        elif token.kind == "not" and after[0].kind == "in":
+            hint = "; write not x in {...}"
+        elif token.kind == "." and last.kind == "number":
+            hint = "; numbers are integers"
+        elif self._temporal and last.text in INFIX_LETTERS and self._tokens[self._next - 2].text in PREFIX_LETTERS:
+            name = self._tokens[self._next - 2].text
+            hint = f"; if `{name}` is a name, write ({name}) {last.text} {token.text}"
+        raise ExpressionError(f"expected an operator or {end}, found {token}{hint}", token.span)
+
+    # Rules
+
+    def assignment(self) -> Assignment:
+        start = self._token.start
+        target = self.name()
+        self._expect(":=", "`:=`")
+        value = self.expression()
+        condition = None
+        if self._token.kind == "if":
+            self._advance()
+            condition = self.expression()
+        return Assignment(target, value, condition, self._since(start))
+
+    def expression(self) -> Expression:
+        start = self._token.start
+        left = self.disjunction()
+        if self._token.kind == "implies":
+            return Implies(left, self._nested(self.expression, self._advance()), self._since(start))
+        return left
+
+    def disjunction(self) -> Expression:
+        start = self._token.start
+        first = self.conjunction()
+        if self._token.kind != "or":
+            return first
+        parts = [first]
+        while self._token.kind == "or":
+            self._advance()
+            parts.append(self.conjunction())
+        return Or(tuple(parts), self._since(start))
+
+    def conjunction(self) -> Expression:
+        start = self._token.start
+        operand = self.until if self._temporal else self.negation
+        first = operand()
+        if self._token.kind != "and":
+            return first
+        parts = [first]
+        while self._token.kind == "and":
+            self._advance()
+            parts.append(operand())
+        return And(tuple(parts), self._since(start))
+
+    def until(self) -> Expression:
+        start = self._token.start
+        left = self.negation()
+        if self._token.kind == "name" and self._token.text in INFIX_LETTERS:
+            letter = self._advance()
+            return BinaryTemporal(letter.text, left, self._nested(self.until, letter), self._since(start))
+        return left
+
+    def negation(self) -> Expression:
+        token = self._token
+        if token.kind == "not":
+            return Not(self._nested(self.negation, self._advance()), self._since(token.start))
+        if self._temporal and token.text in PREFIX_LETTERS and self._is_prefix():
+            letter = self._advance()
+            # Brackets right behind a letter count in its place: canonical text has them, where its tree is no deeper.
+            operand = self.negation() if self._token.kind == "(" else self._nested(self.negation, letter)
+            return UnaryTemporal(token.text, operand, self._since(token.start))
+        return self.relation()
+
+    def _is_prefix(self) -> bool:
+        """Whether the letter at hand is an operator: an operand follows, and not the arguments of `F(x).done`."""
+        following = iter(self._tokens[self._next + 1 :])
+        first = next(following)
+        if first.kind != "(":
+            return first.kind in _OPERAND_BEGINS
+        closing = next(token.kind for token in following if token.kind not in {"name", ","})
+        return closing != ")" or next(following).kind != "."
+
+    def relation(self) -> Expression:
+        start = self._token.start
+        left = self.sum()
+        kind = self._token.kind
+        if kind in _RELATIONS:
+            self._advance()
+            return Comparison(kind, left, self.sum(), self._since(start))
+        if kind == "in":
+            self._advance()
+            return Membership(left, self._options(), self._since(start))
+        return left
+
+    def _options(self) -> tuple[Expression, ...]:
+        self._expect("{", "`{`, as in `pose in {home, above}`")
+        options = [self.sum()]
+        while self._token.kind == ",":
+            self._advance()
+            options.append(self.sum())
+        self._expect("}", "`,` or `}`")
+        return tuple(options)
+
+    def sum(self) -> Expression:
+        start = self._token.start
+        left = self.atom()
+        while self._token.kind in ("+", "-"):
+            operator = self._advance()
+            self._sums += 1
+            if self._sums > MOST_SUMS:
+                raise ExpressionError(f"more than {MOST_SUMS} sums in one expression", operator.span)
+            left = Arithmetic(operator.text, left, self.atom(), self._since(start))
+        return left
+
+    def atom(self) -> Expression:
+        token = self._token
+        kind = token.kind
+        if kind == "name":
+            return self.name()
+        if kind in ("true", "false"):
+            return Constant(kind == "true", self._advance().span)
+        if kind == "number":
+            return Constant(int(token.text), self._advance().span)
+        if kind == "-":
+            self._advance()
+            number = self._expect("number", "a number")
+            return Constant(-int(number.text), self._since(token.start))
+        if kind != "(":
+            self._unfit("a name, a value or `(`")
+        inner = self._nested(self.expression, self._advance())
+        if self._token.kind != ")":
+            self._no_operator("`)`")
+        self._advance()
+        return inner
+
+    def name(self) -> Name:
+        start = self._token.start
+        parts = [self.component()]
+        while self._token.kind == ".":
+            self._advance()
+            parts.append(self.component())
+        return Name(tuple(parts), self._since(start))
+
+    def component(self) -> Component:
+        word = self._expect("name", "a name").text
+        opening = self._token.kind
+        if opening not in ("(", "["):
+            return Component(word)
+        closing = ")" if opening == "(" else "]"
+        arguments: list[str] = []
+        while not arguments or self._token.kind == ",":
+            self._advance()
+            arguments.append(self._expect("name", "a value or parameter").text)
+        self._expect(closing, f"`,` or `{closing}`")
+        return Component(word, tuple(arguments), opening == "[")

@@ -1,0 +1,246 @@
+"""The syntax tree of expressions and actions.
+
+Parsing yields `Name` nodes; resolution replaces each by a `Variable` or a `Constant`. Spans are offsets into the
+source text and take no part in comparison, so that equal expressions written at different places are equal.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+from sequence_planner.core.immutable import Immutable, uncompared
+from sequence_planner.language.types import Type, Value
+
+
+class Span(NamedTuple):
+    """Half-open range of characters in the source text."""
+
+    start: int
+    end: int
+
+
+NOWHERE = Span(0, 0)
+
+
+class ExpressionError(Exception):
+    """A text that is no expression, or one that means nothing here; `span` is the place within the text."""
+
+    def __init__(self, message: str, span: Span) -> None:
+        super().__init__(message)
+        self.message = message
+        self.span = span
+
+
+class Constant(Immutable):
+    """A truth value, an integer, or the name of an enumeration's value."""
+
+    value: Value
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Component(NamedTuple):
+    """One part of a dotted name: `run_nut`, `move_to_position(above)`, `bolts[bolt_pair_1]`."""
+
+    name: str
+    arguments: tuple[str, ...] = ()
+    indexed: bool = False
+
+    def __str__(self) -> str:
+        if not self.arguments:
+            return self.name
+        opening, closing = "[]" if self.indexed else "()"
+        return f"{self.name}{opening}{', '.join(self.arguments)}{closing}"
+
+
+class Name(Immutable):
+    """A name not yet resolved: a variable, a flag, a parameter or a value."""
+
+    path: tuple[Component, ...]
+    span: Span = uncompared(default=NOWHERE)
+
+    def __str__(self) -> str:
+        return self._text
+
+    @cached_property
+    def _text(self) -> str:
+        return self.path[0].name if self.is_word else ".".join(map(str, self.path))
+
+    @property
+    def is_word(self) -> bool:
+        """Whether the name is a single word, without dots and arguments."""
+        return len(self.path) == 1 and not self.path[0].arguments
+
+
+class Variable(Immutable):
+    """A variable by its full name, with its type."""
+
+    name: str
+    type: Type
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Not(Immutable):
+    """Negation."""
+
+    operand: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+class And(Immutable):
+    """Conjunction of two or more."""
+
+    operands: tuple[Expression, ...]
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Or(Immutable):
+    """Disjunction of two or more."""
+
+    operands: tuple[Expression, ...]
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Implies(Immutable):
+    """`left implies right`."""
+
+    left: Expression
+    right: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Comparison(Immutable):
+    """`==`, `!=`, and on integers `<`, `<=`, `>`, `>=`."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Membership(Immutable):
+    """`left in {a, b}`."""
+
+    left: Expression
+    options: tuple[Expression, ...]
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Arithmetic(Immutable):
+    """`+` and `-` on integers."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+class UnaryTemporal(Immutable):
+    """`X` (next), `N` (next, if there is one), `F` (eventually) and `G` (always) before a formula."""
+
+    operator: str
+    operand: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+class BinaryTemporal(Immutable):
+    """`U` (until), `R` (release) and `W` (weak until) between two formulas."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+Expression = (
+    Constant
+    | Name
+    | Variable
+    | Not
+    | And
+    | Or
+    | Implies
+    | Comparison
+    | Membership
+    | Arithmetic
+    | UnaryTemporal
+    | BinaryTemporal
+)
+
+
+class Assignment(Immutable):
+    """An action `target := value`, taken only where `condition` holds."""
+
+    target: Name | Variable
+    value: Expression
+    condition: Expression | None = None
+    span: Span = uncompared(default=NOWHERE)
+
+
+TRUE = Constant(True)
+FALSE = Constant(False)
+
+
+def children(expression: Expression) -> tuple[Expression, ...]:
+    """The direct parts of an expression, left to right."""
+    match expression:
+        case Not(operand) | UnaryTemporal(_, operand):
+            return (operand,)
+        case And(operands) | Or(operands):
+            return operands
+        case Implies(left, right):
+            return (left, right)
+        case Comparison(_, left, right) | Arithmetic(_, left, right) | BinaryTemporal(_, left, right):
+            return (left, right)
+        case Membership(left, options):
+            return (left, *options)
+        case Constant() | Name() | Variable():
+            return ()
+
+
+_JUNCTIONS = (And, Or)
+
+
+def occurrences(expression: Expression) -> list[Variable]:
+    """Each place where a resolved expression reads a variable, left to right."""
+    found: list[Variable] = []
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, Variable):
+            found.append(part)
+        elif isinstance(part, Comparison):  # most are comparisons, or these
+            pending += (part.right, part.left)
+        elif isinstance(part, _JUNCTIONS):
+            pending += reversed(part.operands)
+        elif not isinstance(part, Constant):
+            pending += reversed(children(part))
+    return found
+
+
+def variables(expression: Expression) -> list[str]:
+    """Full names of the variables a resolved expression reads, with repetitions."""
+    return [variable.name for variable in occurrences(expression)]
+
+
+def first_temporal(expression: Expression) -> UnaryTemporal | BinaryTemporal | None:
+    """The leftmost outermost temporal formula within `expression`, or None if it is an ordinary predicate."""
+    if isinstance(expression, UnaryTemporal | BinaryTemporal):
+        return expression
+    found = (first_temporal(child) for child in children(expression))
+    return next((formula for formula in found if formula is not None), None)
+
+
+def conjuncts(expression: Expression) -> tuple[Expression, ...]:
+    """The parts that must all hold."""
+    if isinstance(expression, And):
+        return tuple(part for operand in expression.operands for part in conjuncts(operand))
+    return (expression,)
+
+
+def conjunction(*parts: Expression) -> Expression:
+    """All of `parts`; true when there is none."""
+    needed = tuple(part for part in parts if part != TRUE)
+    if not needed:
+        return TRUE
+    return needed[0] if len(needed) == 1 else And(needed)

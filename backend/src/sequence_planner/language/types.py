@@ -1,0 +1,82 @@
+"""Finite domain types of the language (boolean, enumeration, integer range), and source positions."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sequence_planner.core.immutable import Immutable
+
+# Where a text was written.
+
+
+class Place(NamedTuple):
+    """Where something stands; line and column count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+# Types of the language: every variable ranges over a finite domain.
+
+Value = bool | int | str
+
+
+class BooleanType(Immutable):
+    """`false` and `true`."""
+
+    @property
+    def domain(self) -> tuple[Value, ...]:
+        """All values, in order."""
+        return (False, True)
+
+    def __str__(self) -> str:
+        return "bool"
+
+
+class EnumerationType(Immutable):
+    """Named values. Two enumerations are comparable when they share a name: values are their names."""
+
+    values: tuple[str, ...]
+
+    @property
+    def domain(self) -> tuple[Value, ...]:
+        """All values, in order of declaration."""
+        return self.values
+
+    def __str__(self) -> str:
+        return "{" + ", ".join(self.values) + "}"
+
+
+class IntegerRange(Immutable):
+    """The integers from `minimum` to `maximum`, both included."""
+
+    minimum: int
+    maximum: int
+
+    @property
+    def domain(self) -> tuple[Value, ...]:
+        """All values, ascending."""
+        return tuple(range(self.minimum, self.maximum + 1))
+
+    def __str__(self) -> str:
+        return f"{self.minimum}..{self.maximum}"
+
+
+Type = BooleanType | EnumerationType | IntegerRange
+
+BOOLEAN = BooleanType()
+
+
+def contains(domain: Type, value: object) -> bool:
+    """Whether `value` belongs to the type; `True` is not the integer 1 here."""
+    if isinstance(domain, BooleanType):
+        return isinstance(value, bool)
+    if isinstance(domain, IntegerRange):
+        if not isinstance(value, int) or isinstance(value, bool):
+            return False
+        return domain.minimum <= value <= domain.maximum
+    return isinstance(value, str) and value in domain.values

@@ -1,0 +1,95 @@
+"""JSON Schemas of a station's files, with which editors complete and check what is typed.
+
+A file names its own in its first line: `# yaml-language-server: $schema=../../docs/schemas/station.schema.json`.
+They know the form of the documents; what names and conditions mean, `sequence-planner check` says.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
+
+from sequence_planner.model.documents import (
+    OperationDocument,
+    ResourceDocument,
+    SpecificationDocument,
+    StationDocument,
+    WorkMasterDocument,
+)
+from sequence_planner.model.efa_document import PlainDocument
+from sequence_planner.model.stage_documents import StageDocument
+
+# The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
+FILES: Mapping[str, tuple[Any, str]] = {
+    "station": (StationDocument, "station.yaml"),
+    "resource": (ResourceDocument, "resources/<name>.yaml"),
+    "operations": (dict[str, OperationDocument], "operations.yaml"),
+    "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
+    "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
+    "efa": (PlainDocument, "*.efa.json"),
+}
+
+
+class _Generator(GenerateJsonSchema):
+    """Without the titles that only repeat a key."""
+
+    def field_title_should_be_set(self, schema: object) -> bool:
+        """A key says it."""
+        return False
+
+    def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> JsonSchemaValue:
+        """What may be left out is not left empty."""
+        inner = schema["schema"]
+        return (
+            self.generate_inner(inner["schema"])
+            if inner["type"] == "nullable"
+            else super().function_before_schema(schema)
+        )
+
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """Without the defaults of what may be left out."""
+        return (
+            self.generate_inner(schema["schema"])
+            if schema.get("default", 0) is None
+            else super().default_schema(schema)
+        )
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
+        """A document part; its title in words, and how many keys it has where that is more than their names say."""
+        made = super().model_schema(schema)
+        words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", schema["cls"].__name__.removesuffix("Document"))
+        made["title"] = words.capitalize()
+        if schema["cls"] is StageDocument:
+            made |= {"minProperties": 1, "maxProperties": 1}
+        if schema["cls"] is SpecificationDocument:
+            kinds = [key for key in made["properties"] if key not in ("title", "parameters", "while")]
+            made["oneOf"] = [{"required": [key]} for key in kinds]
+            made["dependentRequired"] = {"never": ["while"], "while": ["never"]}
+        return made
+
+
+def schema_of(name: str) -> dict[str, Any]:
+    """The schema of one of `FILES`."""
+    content, title = FILES[name]
+    made = TypeAdapter(content).json_schema(schema_generator=_Generator)
+    return {"$schema": _Generator.schema_dialect, **made, "title": title}
+
+
+def write_schemas(folder: Path) -> None:
+    """Write `<name>.schema.json` for each of `FILES`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in FILES:
+        text = json.dumps(schema_of(name), indent=2, ensure_ascii=False)
+        (folder / f"{name}.schema.json").write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_schemas(Path(sys.argv[1]))

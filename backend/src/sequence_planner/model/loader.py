@@ -1,0 +1,203 @@
+"""A station's folder, brought together.
+
+station.yaml  resources/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  messages/<package>/msg/*.msg
+messages/<package>/srv/*.srv  messages/<package>/action/*.action
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar, cast
+
+from pydantic import BaseModel, ValidationError
+
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import Place
+from sequence_planner.model.documents import (
+    OperationDocument,
+    ResourceDocument,
+    SpecificationDocument,
+    StationDocument,
+    WorkMasterDocument,
+)
+from sequence_planner.model.paths import DEFINITIONS, FILES, FOLDERS
+from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.validation import findings_of, shown
+from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text, text_of
+
+D = TypeVar("D", bound=BaseModel)
+
+
+@dataclass(frozen=True)
+class Station:
+    """A station as written. `messages` is the folder of its message definitions; `empty` are the places of files of
+    entries that are there and have none.
+    """
+
+    folder: Path
+    station: StationDocument
+    resources: dict[str, ResourceDocument]
+    operations: dict[SourceText, OperationDocument]
+    specifications: dict[SourceText, SpecificationDocument]
+    work_masters: dict[SourceText, WorkMasterDocument]
+    empty: tuple[Place, ...] = ()
+
+    @property
+    def messages(self) -> Path:
+        """The folder of message definitions; it need not exist."""
+        return self.folder / "messages"
+
+    @property
+    def title(self) -> str:
+        """What people call it."""
+        return self.station.title or self.station.name
+
+
+class ReadBefore:
+    """What the files of one station were found to hold, each for its text: what is the same is not read again."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, type[BaseModel]], tuple[str, object, tuple[Finding, ...]]] = {}
+
+    def find(self, name: str, kind: type[BaseModel], text: str) -> tuple[object, tuple[Finding, ...]] | None:
+        """What the file `name` holds as `kind`, and what is wrong with it; None unless it was read with this text."""
+        known = self._known.get((name, kind))
+        return None if known is None or known[0] != text else known[1:]
+
+    def keep(self, name: str, kind: type[BaseModel], text: str, found: object, wrong: tuple[Finding, ...]) -> None:
+        """Remember that."""
+        self._known[name, kind] = text, found, wrong
+
+    def forget_others(self, names: Collection[str]) -> None:
+        """Let go what files were read that are not among these."""
+        self._known = {key: known for key, known in self._known.items() if key[0] in names}
+
+
+def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
+    """Read a station; what was read `before` is not read again.
+
+    Raises `ModelError` with every finding of every file.
+    """
+    if not _is_file(folder / "station.yaml"):
+        message = "a station is a folder with a station.yaml: there is none here"
+        raise ModelError([Finding(Place(str(folder / "station.yaml"), 1, 1), message)])
+    reader = _FolderReader(folder, before)
+    reader.require_names()
+    station = reader.whole("station.yaml", StationDocument)
+    resources = {
+        path.stem: reader.whole(f"resources/{path.name}", ResourceDocument)
+        for path in sorted((folder / "resources").glob("*.yaml"))
+    }
+    operations = reader.entries("operations.yaml", OperationDocument)
+    specifications = reader.entries("specifications.yaml", SpecificationDocument)
+    work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
+    reader.end()
+    if reader.findings or station is None:
+        raise ModelError(reader.findings)
+    present = {name: resource for name, resource in resources.items() if resource is not None}
+    return Station(folder, station, present, operations, specifications, work_masters, tuple(reader.empty))
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a folder that must not be entered, a name that is too long
+        return False
+
+
+# The content of a file and what is wrong with it, from the file as it was read.
+_Reading = Callable[[YamlDocument], tuple[object, list[Finding]]]
+
+
+class _FolderReader:
+    def __init__(self, folder: Path, before: ReadBefore | None) -> None:
+        self._folder = folder
+        self._before = before or ReadBefore()
+        self._names: set[str] = set()
+        self.findings: list[Finding] = []
+        self.empty: list[Place] = []
+
+    def require_names(self) -> None:
+        """Note files whose name is almost right: they would be left out without a word."""
+        for path in sorted((*self._folder.glob("*.yml"), *self._folder.glob("resources/*.yml"))):
+            self.findings.append(Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read"))
+        for path in sorted((self._folder / "resources").glob("*")):
+            if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
+                message = "this is not read: each resource is a file <name>.yaml in this folder"
+                self.findings.append(Finding(Place(str(path), 1, 1), message))
+        for kind, what in DEFINITIONS.items():
+            for path in sorted((self._folder / "messages").rglob(f"*.{kind}")):
+                if len(path.relative_to(self._folder).parts) != 4 or path.parent.name != kind:
+                    message = f"this is not read: {what} definitions are files messages/<package>/{kind}/<Name>.{kind}"
+                    self.findings.append(Finding(Place(str(path), 1, 1), message))
+        for path in sorted(each for each in self._folder.glob("*") if each.is_dir() and each.name not in FOLDERS):
+            if near := suggestion(path.name, FOLDERS, likeness=0.75):
+                self.findings.append(Finding(Place(str(path), 1, 1), f"this folder is not read{near}"))
+        for path in sorted(self._folder.glob("*.yaml")):
+            if path.name not in FILES:
+                message = f"this file is not read{suggestion(path.name, FILES)}"
+                self.findings.append(Finding(Place(str(path), 1, 1), message))
+
+    def whole(self, name: str, kind: type[D]) -> D | None:
+        """A file that is one document."""
+        found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
+        return cast("D | None", found)
+
+    def entries(self, name: str, kind: type[D]) -> dict[SourceText, D]:
+        """A file that maps names to documents; it may be missing."""
+        if not (self._folder / name).exists():
+            return {}
+        found = self._once(name, kind, lambda document: _validated_entries(document, kind))
+        entries = cast("dict[SourceText, D] | None", found) or {}
+        if not entries:
+            self.empty.append(Place(str(self._folder / name), 1, 1))
+        return entries
+
+    def end(self) -> None:
+        """All files were asked for."""
+        self._before.forget_others(self._names)
+
+    def _once(self, name: str, kind: type[BaseModel], reading: _Reading) -> object:
+        """What the file holds, read now unless it was with the same text before; None where it cannot be read."""
+        self._names.add(name)
+        called = str(self._folder / name)
+        try:
+            text = text_of(self._folder / name, called)
+        except ModelError as error:
+            self.findings.extend(error.findings)
+            return None
+        known = self._before.find(name, kind, text)
+        if known is None:
+            try:
+                found, wrong = reading(read_text(text, called))
+            except ModelError as error:
+                found, wrong = None, error.findings
+            known = found, tuple(wrong)
+            self._before.keep(name, kind, text, *known)
+        self.findings.extend(known[1])
+        return known[0]
+
+
+def _validated_entries(document: YamlDocument, kind: type[BaseModel]) -> tuple[object, list[Finding]]:
+    if not isinstance(document.content, dict):
+        message = f"expected names with their definitions, found {shown(document.content)}"
+        return {}, [Finding(document.place(()), message)]
+    entries: dict[SourceText, object] = {}
+    findings: list[Finding] = []
+    for key, content in document.content.items():
+        entry, wrong = _validated(document, content, (str(key),), kind)
+        findings += wrong
+        if entry is not None:
+            entries[key] = entry
+    return entries, findings
+
+
+def _validated(
+    document: YamlDocument, content: object, at: EntryPath, kind: type[BaseModel]
+) -> tuple[BaseModel | None, list[Finding]]:
+    try:
+        return kind.model_validate(content), []
+    except ValidationError as error:
+        return None, findings_of(error, document, at, kind)

@@ -1,0 +1,41 @@
+"""The order in which the entries of a document are written: that in which its parts declare them."""
+
+from __future__ import annotations
+
+from typing import get_args, get_origin
+
+from sequence_planner.model.documents import (
+    OperationDocument,
+    ResourceDocument,
+    SpecificationDocument,
+    StationDocument,
+    WorkMasterDocument,
+)
+from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.yaml.reader import EntryPath
+
+_FILES: dict[str, object] = {
+    "station.yaml": StationDocument,
+    "operations.yaml": dict[str, OperationDocument],
+    "specifications.yaml": dict[str, SpecificationDocument],
+    "work_masters.yaml": dict[str, WorkMasterDocument],
+}
+
+
+def declared_order(file: str, path: EntryPath) -> tuple[str, ...]:
+    """The keys that the mapping at `path` of a file of a model may have, in their order; none where it is no part of a
+    document, or one whose names are free.
+    """
+    kind = ResourceDocument if file.startswith("resources/") else _FILES.get(file)
+    return () if kind is None else _order(kind, path)
+
+
+def _order(kind: object, path: EntryPath) -> tuple[str, ...]:
+    if isinstance(kind, type) and issubclass(kind, DocumentPart):
+        fields = {field.alias or name: field.annotation for name, field in kind.model_fields.items()}
+        if not path:
+            return tuple(fields)
+        return _order(fields.get(str(path[0])), path[1:])
+    if get_origin(kind) in (dict, list):
+        return _order(get_args(kind)[-1], path[1:]) if path else ()
+    return next((found for each in get_args(kind) if (found := _order(each, path))), ())

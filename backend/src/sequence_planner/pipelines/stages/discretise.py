@@ -1,0 +1,418 @@
+"""Stages `discretise` and `undiscretise`: numbers to named regions, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from typing import ClassVar, Protocol
+
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import EnumerationType, IntegerRange, Place
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.stage_documents import DiscretiseDocument, UndiscretiseDocument
+from sequence_planner.pipelines.field_paths import REAL, FieldPath, is_number, is_numeric, shown
+from sequence_planner.pipelines.record import FieldType, ListType, Record
+from sequence_planner.pipelines.stages.base import NotInvertibleError
+from sequence_planner.pipelines.stages.support import Context, ImmediateStage, only, wanted_type
+
+# Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
+
+Numbers = tuple[float, ...]
+
+
+class Regions(Protocol):
+    """Named regions. A margin widens a region on every side."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Their names, as written."""
+
+    @property
+    def axes(self) -> int:
+        """How many numbers say a place."""
+
+    def find(self, numbers: Numbers) -> str | None:
+        """The region in which `numbers` are."""
+
+    def holds(self, name: str, numbers: Numbers, margin: float) -> bool:
+        """Whether `numbers` are in that region, widened by `margin`."""
+
+    def inside(self, name: str) -> Numbers | None:
+        """Numbers in that region, and `find` says so; None when there are none."""
+
+    def outside(self, margin: float, start: Numbers | None) -> Numbers | None:
+        """Numbers in no region, not even widened by `margin`: `start` or ones near it; None when there are none."""
+
+
+def numbers_of(raw: object, axes: int) -> Numbers | None:
+    """A field's value as a place; None when it is not as many finite numbers as there are axes."""
+    numbers = raw if isinstance(raw, list) else [raw]
+    if len(numbers) != axes or not all(map(is_number, numbers)):
+        return None
+    return tuple(map(float, numbers))
+
+
+def distance(one: Numbers, other: Numbers) -> float:
+    """How far they are apart on the axis on which they are furthest apart."""
+    return max(abs(a - b) for a, b in zip(one, other, strict=True))
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points, each of which is reached when every number is within `tolerance` of its own: the nearest of several."""
+
+    points: Mapping[str, Numbers]
+    tolerance: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Their names, as written."""
+        return tuple(self.points)
+
+    @property
+    def axes(self) -> int:
+        """How many numbers say a place."""
+        return len(next(iter(self.points.values())))
+
+    def nearest(self, numbers: Numbers) -> str:
+        """The nearest point, however far it is."""
+        return min(self.points, key=lambda name: distance(self.points[name], numbers))
+
+    def find(self, numbers: Numbers) -> str | None:
+        """The point within whose tolerance `numbers` are."""
+        name = self.nearest(numbers)
+        return name if self.holds(name, numbers, 0.0) else None
+
+    def holds(self, name: str, numbers: Numbers, margin: float) -> bool:
+        """Whether `numbers` are within the tolerance of that point, widened by `margin`."""
+        return distance(self.points[name], numbers) <= self.tolerance + margin
+
+    def inside(self, name: str) -> Numbers | None:
+        """The point itself."""
+        return self.points[name]
+
+    def outside(self, margin: float, start: Numbers | None) -> Numbers | None:
+        """`start`, by default the first point, moved along the first axis until it is at no point."""
+        numbers = start or next(iter(self.points.values()))
+        step = 2 * (self.tolerance + margin)
+        while any(self.holds(name, numbers, margin) for name in self.points):
+            numbers = (numbers[0] + step, *numbers[1:])
+            step *= 2
+        return numbers
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Ranges of a single number, bounds included; None where there is no bound. Of two that touch the first counts."""
+
+    ranges: Mapping[str, tuple[float | None, float | None]]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Their names, as written."""
+        return tuple(self.ranges)
+
+    @property
+    def axes(self) -> int:
+        """One."""
+        return 1
+
+    def find(self, numbers: Numbers) -> str | None:
+        """The first range in which the number is."""
+        return next((name for name in self.ranges if self.holds(name, numbers, 0.0)), None)
+
+    def holds(self, name: str, numbers: Numbers, margin: float) -> bool:
+        """Whether the number is in that range, widened by `margin`."""
+        least, greatest = self.ranges[name]
+        (number,) = numbers
+        return (least is None or least - margin <= number) and (greatest is None or number <= greatest + margin)
+
+    def inside(self, name: str) -> Numbers | None:
+        """The middle of that range, or a number well within it where it has one bound or none."""
+        least, greatest = self.ranges[name]
+        if least is None or greatest is None:
+            tried = 0.0 if least is greatest is None else least + 1 if least is not None else (greatest or 0.0) - 1
+        else:
+            tried = (least + greatest) / 2
+        return (tried,) if self.find((tried,)) == name else None
+
+    def outside(self, margin: float, start: Numbers | None) -> Numbers | None:
+        """`start`, or a number between two ranges or beyond them."""
+        bounds = sorted(bound for pair in self.ranges.values() for bound in pair if bound is not None)
+        gaps = [(a + b) / 2 for a, b in pairwise(bounds)]
+        beyond = [bounds[0] - 1 - 2 * margin, bounds[-1] + 1 + 2 * margin] if bounds else []
+        for tried in [*([] if start is None else start), *gaps, *beyond]:
+            if not any(self.holds(name, (tried,), margin) for name in self.ranges):
+                return (tried,)
+        return None
+
+
+# `discretise` and `undiscretise`: from numbers to the name of the region they are in, and back.
+
+
+@dataclass(frozen=True)
+class DiscretiseStage:
+    """Numbers become the name of the region they are in, or `otherwise`; with none of these they are unknown.
+
+    With a hysteresis a region, once reached, is left only when the numbers are further outside than that.
+    """
+
+    place: Place
+    field: FieldPath
+    variable: str
+    type: EnumerationType
+    regions: Regions
+    otherwise: str | None
+    hysteresis: float
+    field_type: FieldType
+    kind: ClassVar[str] = "discretise"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The numbers."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The name."""
+        return {self.variable: self.type}
+
+    def begin(self) -> DiscretiseCourse:
+        """Begin in no region."""
+        return DiscretiseCourse(self)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """Numbers in the region of that name; for `otherwise` those there are already, or ones near them."""
+        name = values.get(self.variable)
+        if name is None:
+            return
+        region = name if isinstance(name, str) and name in self.regions.names else None
+        if region is None and name != self.otherwise:
+            what = f"it is neither among the values of `{self.kind}` nor its `otherwise`"
+            raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: {what}")
+        for numbers in self._tried(region, numbers_of(values.get(self.field.text), self.regions.axes)):
+            if numbers is not None and self.regions.find(fitting := _of_type(numbers, self.field_type)) == region:
+                values[self.field.text] = _as_field(fitting, self.field_type)
+                return
+        raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: leave a gap for it")
+
+    def _tried(self, region: str | None, now: Numbers | None) -> Iterator[Numbers | None]:
+        """Numbers in that region, or in none; the second ones outside are so far out that integers are, too."""
+        if region is not None:
+            yield self.regions.inside(region)
+        else:
+            yield self.regions.outside(self.hysteresis, now)
+            yield self.regions.outside(self.hysteresis + 1.0, now)
+
+
+@dataclass(slots=True)
+class DiscretiseCourse:
+    """Knows in which region the numbers were last."""
+
+    stage: DiscretiseStage
+    last: str | None = None
+    due: ClassVar[float | None] = None
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with the name of the region."""
+        stage = self.stage
+        raw = stage.field.get(record.values)
+        numbers = None if raw is None else numbers_of(raw, stage.regions.axes)
+        if numbers is None:
+            self.last = None
+            record.values[stage.variable] = None
+            if raw is not None:
+                record.troubles.append(f"{stage.field} is no position: {shown(raw)}")
+            return record
+        stays = stage.hysteresis > 0 and self.last is not None
+        if not stays or not stage.regions.holds(self.last or "", numbers, stage.hysteresis):
+            self.last = stage.regions.find(numbers)
+        record.values[stage.variable] = self.last or stage.otherwise
+        if self.last is None and stage.otherwise is None:
+            record.troubles.append(f"{stage.field} is {shown(raw)}, which is in none of the ranges")
+        return record
+
+    def wake(self, now: float) -> None:
+        """Nothing happens by itself."""
+
+
+@dataclass(frozen=True)
+class UndiscretiseStage(ImmediateStage):
+    """A name becomes the coordinates of its point."""
+
+    variable: FieldPath
+    field: str
+    type: FieldType
+    points: Mapping[str, Numbers]
+    kind: ClassVar[str] = "undiscretise"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The name."""
+        return frozenset({self.variable.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The coordinates."""
+        return {self.field: self.type}
+
+    def apply(self, record: Record) -> None:
+        """The field takes the coordinates."""
+        name = self.variable.get(record.values)
+        numbers = self.points.get(name) if isinstance(name, str) else None
+        record.values[self.field] = None if numbers is None else _as_field(numbers, self.type)
+        if name is not None and numbers is None:
+            record.troubles.append(f"{self.variable} is {shown(name)}, which has no coordinates")
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The name of the nearest point: a command is always one of them, but for rounding."""
+        raw = values.get(self.field)
+        if raw is None:
+            return
+        numbers = numbers_of(raw, len(next(iter(self.points.values()))))
+        if numbers is None:
+            raise NotInvertibleError(f"{self.field} is no position: {shown(raw)}")
+        values[self.variable.text] = Points(self.points, 0.0).nearest(numbers)
+
+
+def _of_type(numbers: Numbers, type_: FieldType) -> Numbers:
+    """`numbers` as the field can have them: rounded where it has integers."""
+    element = type_.element if isinstance(type_, ListType) else type_
+    return tuple(map(round, numbers)) if isinstance(element, IntegerRange) else numbers
+
+
+def _as_field(numbers: Numbers, type_: FieldType) -> object:
+    return list(numbers) if isinstance(type_, ListType) else numbers[0]
+
+
+# `discretise` and `undiscretise` from documents.
+
+Coordinates = Mapping[SourceText, Sequence[float]]
+Bounds = tuple[float | None, float | None]
+
+
+def build_discretise(document: DiscretiseDocument, context: Context) -> DiscretiseStage | None:
+    """From numbers to names."""
+    if not only(context, document.field.place, True, "discretise", "undiscretise"):
+        return None
+    found = context.field(document.field)
+    names = [*(document.values or document.ranges or {})]
+    names += [] if document.otherwise is None else [document.otherwise]
+    type_ = wanted_type(context, document.variable) or EnumerationType(tuple(dict.fromkeys(map(str, names))))
+    named = _are_names(context, document.field, names, type_)
+    if found is None or not named or not isinstance(type_, EnumerationType):
+        return None
+    path, field = found
+    regions = _regions(document, field, context)
+    if regions is None:
+        return None
+    otherwise = None if document.otherwise is None else str(document.otherwise)
+    variable, hysteresis = str(document.variable), document.hysteresis
+    return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, field)
+
+
+def build_undiscretise(document: UndiscretiseDocument, context: Context) -> UndiscretiseStage | None:
+    """From names to numbers."""
+    if not only(context, document.field.place, False, "undiscretise", "discretise"):
+        return None
+    found = context.field(document.variable)
+    axes = {len(point) for point in document.values.values()}
+    field = wanted_type(context, document.field) or ListType(REAL, next(iter(axes)) if len(axes) == 1 else None)
+    fits = _fit(context, document.field, document.values, field)
+    if found is None or not _are_names(context, document.field, document.values, found[1]) or not fits:
+        return None
+    path, type_ = found
+    missing = sorted(set(type_.values if isinstance(type_, EnumerationType) else ()) - set(map(str, document.values)))
+    if missing:
+        context.found(document.variable.place, f"no coordinates for {', '.join(missing)}")
+        return None
+    element = field.element if isinstance(field, ListType) else field
+    points = {str(name): _coordinates(context, name, at, element) for name, at in document.values.items()}
+    known = {name: point for name, point in points.items() if point is not None}
+    return UndiscretiseStage(context.place, path, str(document.field), field, known) if known == points else None
+
+
+def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_: FieldType) -> Numbers | None:
+    """A point as it is sent; None, and findings, where the field cannot have it."""
+    if not isinstance(type_, IntegerRange):
+        return tuple(at)
+    strange = [number for number in at if not number.is_integer() or not type_.minimum <= number <= type_.maximum]
+    for number in strange:
+        context.found(name.place, f"`{name}` has the coordinate {number:g}, and the field has integers in {type_}")
+    return None if strange else tuple(map(int, at))
+
+
+def _are_names(context: Context, where: SourceText, names: Iterable[SourceText], type_: FieldType) -> bool:
+    if not isinstance(type_, EnumerationType):
+        message = f"points have names, so the variable must be an enumeration and not {type_}"
+        context.found(where.place, message)
+        return False
+    strange = [name for name in names if name not in type_.values]
+    for name in strange:
+        context.found(name.place, f"`{name}` is none of {type_}{suggestion(name, type_.values)}")
+    return not strange
+
+
+def _regions(document: DiscretiseDocument, field: FieldType, context: Context) -> Regions | None:
+    if document.ranges is not None:
+        if not is_numeric(field):
+            context.found(document.field.place, f"`{document.field}` is {field}, and ranges are of a single number")
+            return None
+        return _ranges(document.ranges, context)
+    values, tolerance = document.values or {}, document.tolerance or 0.0
+    if not _fit(context, document.field, values, field) or not _are_apart(context, values, tolerance):
+        return None
+    return Points({str(name): tuple(point) for name, point in values.items()}, tolerance)
+
+
+def _fit(context: Context, name: SourceText, values: Coordinates, field: FieldType) -> bool:
+    """Whether points have as many coordinates as the field has numbers, and no two are the same."""
+    element = field.element if isinstance(field, ListType) else field
+    if not is_numeric(element):
+        context.found(name.place, f"`{name}` must be an array of numbers, or a number, and is {field}")
+        return False
+    lengths = {len(point) for point in values.values()}
+    length = field.length if isinstance(field, ListType) else 1
+    if len(lengths) != 1 or length not in (None, *lengths):
+        context.found(name.place, f"all points need as many coordinates as `{name}` has: {field}")
+        return False
+    first: dict[tuple[float, ...], SourceText] = {}
+    twins = [(point, twin) for point, at in values.items() if (twin := first.setdefault(tuple(at), point)) is not point]
+    for point, twin in twins:
+        context.found(point.place, f"`{point}` is at the same coordinates as `{twin}`")
+    return not twins
+
+
+def _are_apart(context: Context, values: Coordinates, tolerance: float) -> bool:
+    near = [
+        (one, other, apart)
+        for (one, here), (other, there) in combinations(values.items(), 2)
+        if (apart := distance(tuple(here), tuple(there))) <= tolerance
+    ]
+    for one, other, apart in near:
+        message = f"`{other}` is only {apart:g} from `{one}`: the tolerance of {tolerance:g} does not tell them apart"
+        context.found(other.place, message)
+    return not near
+
+
+def _ranges(ranges: Mapping[SourceText, Bounds], context: Context) -> Ranges | None:
+    wrong = not ranges
+    if not ranges:
+        context.found(context.place, "`ranges` has no range: write at least one")
+    for name, (least, greatest) in ranges.items():
+        if least is not None and greatest is not None and least > greatest:
+            context.found(name.place, f"the range of `{name}` ends before it begins: write the smaller number first")
+            wrong = True
+    for (one, here), (other, there) in combinations(ranges.items(), 2):
+        if not wrong and _overlap(here, there):
+            context.found(other.place, f"the range of `{other}` overlaps that of `{one}`")
+            wrong = True
+    return None if wrong else Ranges({str(name): bounds for name, bounds in ranges.items()})
+
+
+def _overlap(one: Bounds, other: Bounds) -> bool:
+    """Whether two ranges have more than one number in common."""
+    least = max((bound for bound in (one[0], other[0]) if bound is not None), default=None)
+    greatest = min((bound for bound in (one[1], other[1]) if bound is not None), default=None)
+    return least is None or greatest is None or least < greatest

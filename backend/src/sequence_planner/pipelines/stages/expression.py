@@ -1,0 +1,138 @@
+"""Stages `expression` and `filter`: computed fields, and conditional discarding of records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sequence_planner.language.syntax import ExpressionError
+from sequence_planner.language.types import Place
+from sequence_planner.model.source import SourceText
+from sequence_planner.pipelines.expressions import Calculation, read_calculation, read_condition
+from sequence_planner.pipelines.field_paths import as_written
+from sequence_planner.pipelines.record import FieldType, Record, RecordType
+from sequence_planner.pipelines.stages.map import is_same
+from sequence_planner.pipelines.stages.support import Context, ImmediateStage, candidates, put_at, solve
+
+# `expression` and `filter`: values computed from others, and records that do not go on.
+
+
+@dataclass(frozen=True)
+class ExpressionStage(ImmediateStage):
+    """Values of expressions over the record as it came."""
+
+    calculations: Mapping[str, Calculation]
+    kind: ClassVar[str] = "expression"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The fields in the expressions."""
+        return frozenset(name for calculation in self.calculations.values() for name in calculation.reads)
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The names of the expressions."""
+        return {name: calculation.type for name, calculation in self.calculations.items()}
+
+    def apply(self, record: Record) -> None:
+        """Give each its value."""
+        values, troubles = record.values, record.troubles
+        values |= {name: calculation.value(values, troubles) for name, calculation in self.calculations.items()}
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """Fields that give these values, tried from what is written in the expressions."""
+        wanted = [
+            (calculation, values[name])
+            for name, calculation in self.calculations.items()
+            if values.get(name) is not None
+        ]
+        _solve(
+            wanted, values, self.gives, f"no values tried for {_fields(self.reads)} give {', '.join(self.calculations)}"
+        )
+
+
+@dataclass(frozen=True)
+class FilterStage:
+    """Only records for which a condition holds go on; where it is undetermined they do not."""
+
+    place: Place
+    condition: Calculation
+    kind: ClassVar[str] = "filter"
+    gives: ClassVar[Mapping[str, FieldType]] = {}
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The fields in the condition."""
+        return frozenset(self.condition.reads)
+
+    def begin(self) -> FilterCourse:
+        """Its course, which has nothing to remember."""
+        return FilterCourse(self.condition)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """Fields with which a record goes on."""
+        _solve([(self.condition, True)], values, (), f"no values tried for {_fields(self.reads)} pass the filter")
+
+
+@dataclass(frozen=True, slots=True)
+class FilterCourse:
+    """Lets go on what fulfils the condition."""
+
+    condition: Calculation
+    due: ClassVar[float | None] = None
+
+    def take(self, record: Record, now: float) -> Record | None:
+        """The record, if the condition holds for it."""
+        return record if self.condition.value(record.values, record.troubles) is True else None
+
+    def wake(self, now: float) -> None:
+        """Nothing happens by itself."""
+
+
+def _fields(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in sorted(names))
+
+
+def _solve(
+    wanted: Sequence[tuple[Calculation, object]], values: dict[str, object], gives: Iterable[str], complaint: str
+) -> None:
+    constants = [constant for calculation, _ in wanted for constant in calculation.constants]
+    reads = {name: field for calculation, _ in wanted for name, field in calculation.reads.items()}
+    tried = {name: candidates(type_, constants) for name, (_, type_) in reads.items()}
+
+    def agrees(given: Mapping[str, object]) -> bool:
+        record: dict[str, object] = {}
+        for name, (path, _) in reads.items():
+            put_at(record, (path.key, *path.steps), given[name])
+        return all(is_same(calculation.value(record, []), value) for calculation, value in wanted)
+
+    solve(tried, agrees, values, gives, complaint)
+
+
+# `expression` and `filter` from documents.
+
+Scalar = SourceText | bool | int | float
+
+
+def build_expression(texts: Mapping[SourceText, Scalar], context: Context) -> ExpressionStage | None:
+    """`{name: expression}`, all over the record as it is before the stage."""
+    read = {str(name): _read(read_calculation, text, name.place, context) for name, text in texts.items()}
+    known = {name: calculation for name, calculation in read.items() if calculation is not None}
+    return ExpressionStage(context.place, known) if len(known) == len(read) else None
+
+
+def build_filter(text: SourceText | bool, context: Context) -> FilterStage | None:
+    """A condition on records."""
+    condition = _read(read_condition, text, context.place, context)
+    return None if condition is None else FilterStage(context.place, condition)
+
+
+def _read(
+    reader: Callable[[str, RecordType], Calculation], text: Scalar, place: Place, context: Context
+) -> Calculation | None:
+    try:
+        return reader(text if isinstance(text, str) else as_written(text), context.fields)
+    except ExpressionError as error:
+        context.found(text.at(error.span) if isinstance(text, SourceText) else place, error.message)
+        return None

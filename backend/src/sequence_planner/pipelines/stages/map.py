@@ -1,0 +1,257 @@
+"""Stages `map` and `table`: value translation of one field, or of several together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.stage_documents import MapDocument, TableDocument, TableRowDocument
+from sequence_planner.pipelines.field_paths import FieldPath, as_written, domain, shown
+from sequence_planner.pipelines.record import FieldType, Record
+from sequence_planner.pipelines.stages.base import NotInvertibleError
+from sequence_planner.pipelines.stages.support import (
+    Context,
+    ImmediateStage,
+    Passing,
+    candidates,
+    passing,
+    place_of,
+    solve,
+    type_for,
+    value_of,
+    values_of,
+)
+
+# `map` and `table`: each value, or several at once, become others.
+
+
+def is_same(one: object, other: object) -> bool:
+    """Whether two values are the same; `True` is not the number 1."""
+    return one == other and isinstance(one, bool) == isinstance(other, bool)
+
+
+@dataclass(frozen=True)
+class MapStage(ImmediateStage):
+    """Each value of `source` becomes another, all others `otherwise`; without that they are unknown."""
+
+    source: FieldPath
+    source_type: FieldType
+    target: str
+    target_type: FieldType
+    pairs: tuple[tuple[object, object], ...]
+    otherwise: object
+    kind: ClassVar[str] = "map"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The field that is mapped."""
+        return frozenset({self.source.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """What it is mapped to."""
+        return {self.target: self.target_type}
+
+    def apply(self, record: Record) -> None:
+        """Give what the value means."""
+        value = self.source.read(record.values, record.troubles)
+        meaning = None if value is None else self.meaning(value)
+        record.values[self.target] = meaning
+        if value is not None and meaning is None:
+            record.troubles.append(f"{self.source} is {shown(value)}, to which no value of {self.target} is given")
+
+    def meaning(self, value: object) -> object:
+        """What `value` becomes."""
+        return next((meant for key, meant in self.pairs if is_same(key, value)), self.otherwise)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The first value with that meaning, or one that is not listed."""
+        wanted = values.get(self.target)
+        if wanted is None:
+            return
+        known = values.get(self.source.text) if self.source.text != self.target else None
+        tried = [known] if known is not None else candidates(self.source_type, [key for key, _ in self.pairs])
+        for value in tried:
+            if is_same(self.meaning(value), wanted):
+                values[self.source.text] = value
+                return
+        raise NotInvertibleError(f"no value of `{self.source}` becomes {shown(wanted)}: add it to `values`")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a table: what each field must be, where that matters, and what it gives."""
+
+    when: tuple[object, ...]
+    gives: tuple[object, ...]
+
+    def applies(self, given: tuple[object, ...]) -> bool | None:
+        """Whether the row applies; None where that depends on something unknown. A None in `when` fits everything."""
+        undetermined = False
+        for wanted, value in zip(self.when, given, strict=True):
+            if wanted is None:
+                continue
+            if value is None:
+                undetermined = True
+            elif not is_same(wanted, value):
+                return False
+        return None if undetermined else True
+
+
+@dataclass(frozen=True)
+class TableStage(ImmediateStage):
+    """The first row that applies says what the targets are; without one `otherwise` does, or they are unknown."""
+
+    sources: tuple[FieldPath, ...]
+    source_types: tuple[FieldType, ...]
+    gives: Mapping[str, FieldType]
+    rows: tuple[Row, ...]
+    otherwise: tuple[object, ...] | None
+    kind: ClassVar[str] = "table"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The fields that are looked at."""
+        return frozenset(source.text for source in self.sources)
+
+    def apply(self, record: Record) -> None:
+        """Give what the first row that applies says."""
+        given = tuple(source.read(record.values, record.troubles) for source in self.sources)
+        found = self.meaning(given)
+        record.values.update(zip(self.gives, found or (None,) * len(self.gives), strict=True))
+        if found is None and None not in given:
+            names = ", ".join(map(str, self.sources))
+            record.troubles.append(f"no row of the table fits {shown(list(given))} for {names}")
+
+    def meaning(self, given: tuple[object, ...]) -> tuple[object, ...] | None:
+        """What the targets are; None where no row applies, or that depends on something unknown."""
+        for row in self.rows:
+            applies = row.applies(given)
+            if applies is not False:
+                return row.gives if applies else None
+        return self.otherwise
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """Values that give what is wanted, the uppermost row first."""
+        wanted = [values.get(name) for name in self.gives]
+        if all(value is None for value in wanted):
+            return
+        columns = zip(self.sources, self.source_types, zip(*(row.when for row in self.rows), strict=True), strict=True)
+        tried = {source.text: candidates(type_, filter(_is_given, column)) for source, type_, column in columns}
+
+        def agrees(given: Mapping[str, object]) -> bool:
+            found = self.meaning(tuple(given[source.text] for source in self.sources))
+            pairs = zip(found or (), wanted, strict=bool(found))
+            return found is not None and all(value is None or is_same(meant, value) for meant, value in pairs)
+
+        solve(tried, agrees, values, self.gives, f"no row gives {shown(wanted)} for {', '.join(self.gives)}")
+
+
+def _is_given(value: object) -> bool:
+    return value is not None
+
+
+# `map` and `table` from documents.
+
+ANY = "any"
+
+
+def build_map(document: MapDocument, context: Context) -> MapStage | None:
+    """From field to variable for incoming topics, from variable to field for outgoing ones."""
+    names = (document.field, document.variable)
+    source, target = names if context.is_incoming else reversed(names)
+    found = context.field(source)
+    meanings = [*document.values.values(), *([] if document.otherwise is None else [document.otherwise])]
+    target_type = type_for(context, target, meanings)
+    if found is None or target_type is None:
+        return None
+    path, source_type = found
+    given = values_of(context, source_type, list(document.values), source.place)
+    meant = values_of(context, target_type, meanings, target.place)
+    if given is None or meant is None or _are_twice(list(document.values), given, context):
+        return None
+    missing = [value for value in domain(source_type) or () if value not in given]
+    if missing and document.otherwise is None and not context.is_incoming:
+        context.found(source.place, f"nothing is given for {', '.join(map(as_written, missing))}")
+        return None
+    otherwise = None if document.otherwise is None else meant[-1]
+    pairs = tuple(zip(given, meant, strict=False))
+    return MapStage(context.place, path, source_type, str(target), target_type, pairs, otherwise)
+
+
+def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
+    """Whether two of the keys are the same value, such as `1` and `1.0`; a finding for each."""
+    first: dict[object, SourceText] = {}
+    twins = [
+        (text, other)
+        for text, value in zip(written, values, strict=True)
+        if (other := first.setdefault(value, text)) is not text
+    ]
+    for text, other in twins:
+        context.found(text.place, f"`{text}` is the same as `{other}`, for which there is a value already")
+    return bool(twins)
+
+
+def build_table(document: TableDocument, context: Context) -> TableStage | None:
+    """From several fields to several variables, whichever way the topic goes."""
+    sources = passing(context, document.fields)
+    right = [_has_cells(row, document, context) for row in document.rows]
+    if document.otherwise is not None and len(document.otherwise) != len(document.variables):
+        place = place_of(document.otherwise, document.variables[0].place)
+        context.found(place, f"`otherwise` needs {_cells(document.variables)}")
+        right.append(False)
+    twice = [name for index, name in enumerate(document.variables) if name in document.variables[:index]]
+    for name in twice:
+        context.found(name.place, f"`{name}` is given twice here")
+    if sources is None or not all(right) or twice:
+        return None
+    given = [row.gives for row in document.rows] + ([] if document.otherwise is None else [document.otherwise])
+    types = [
+        type_for(context, name, column)
+        for name, column in zip(document.variables, zip(*given, strict=True), strict=True)
+    ]
+    gives = {str(name): type_ for name, type_ in zip(document.variables, types, strict=True) if type_ is not None}
+    if len(gives) != len(types):
+        return None
+    rows = [_row(row, sources, gives, context) for row in document.rows]
+    otherwise = None if document.otherwise is None else _values(document.otherwise, list(gives.values()), context)
+    known = tuple(row for row in rows if row is not None)
+    if len(known) != len(rows) or (document.otherwise is not None and otherwise is None):
+        return None
+    paths = tuple(source.path for source in sources)
+    kinds = tuple(source.type for source in sources)
+    return TableStage(context.place, paths, kinds, gives, known, otherwise)
+
+
+def _cells(names: Sequence[SourceText]) -> str:
+    return f"{len(names)} value{'s' if len(names) > 1 else ''}: for {', '.join(names)}"
+
+
+def _has_cells(row: TableRowDocument, document: TableDocument, context: Context) -> bool:
+    place = place_of([*row.when, *row.gives], document.fields[0].place)
+    for key, cells, names in (("when", row.when, document.fields), ("gives", row.gives, document.variables)):
+        if len(cells) != len(names):
+            context.found(place, f"`{key}` needs {_cells(names)}")
+            return False
+    return True
+
+
+def _row(
+    row: TableRowDocument, sources: Sequence[Passing], gives: Mapping[str, FieldType], context: Context
+) -> Row | None:
+    place = place_of([*row.when, *row.gives], context.place)
+    when = [
+        None if cell == ANY else value_of(context, source.type, cell, place)
+        for cell, source in zip(row.when, sources, strict=True)
+    ]
+    meant = _values(row.gives, list(gives.values()), context)
+    wrong = any(value is None and cell != ANY for value, cell in zip(when, row.when, strict=True))
+    return None if wrong or meant is None else Row(tuple(when), meant)
+
+
+def _values(cells: Sequence[object], types: Sequence[FieldType], context: Context) -> tuple[object, ...] | None:
+    place = place_of(cells, context.place)
+    meant = tuple(value_of(context, type_, cell, place) for cell, type_ in zip(cells, types, strict=True))
+    return None if None in meant else meant

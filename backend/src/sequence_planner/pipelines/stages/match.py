@@ -1,0 +1,226 @@
+"""Stages `match` and `member`: pattern recognition in texts, and membership tests on lists."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal, get_args
+
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.stage_documents import MatchDocument, MemberDocument
+from sequence_planner.pipelines.field_paths import TEXT, FieldPath, is_number, is_textual, shown
+from sequence_planner.pipelines.record import FieldType, ListType, RealType, Record
+from sequence_planner.pipelines.stages.map import is_same
+from sequence_planner.pipelines.stages.support import (
+    Context,
+    ImmediateStage,
+    candidates,
+    only,
+    solve,
+    type_for,
+    value_of,
+    values_of,
+)
+
+# `match` and `member`: texts that are recognised, and lists that contain something.
+
+Way = Literal["contains", "begins", "ends", "equals"]
+
+_RECOGNISES: Mapping[Way, Callable[[str, str], bool]] = {
+    "contains": str.__contains__,
+    "begins": str.startswith,
+    "ends": str.endswith,
+    "equals": str.__eq__,
+}
+
+
+@dataclass(frozen=True)
+class MatchStage(ImmediateStage):
+    """Whether a text contains, begins with, ends with or equals another; letters count as written."""
+
+    field: FieldPath
+    variable: str
+    way: Way
+    text: str
+    kind: ClassVar[str] = "match"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The text."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """Whether it is recognised."""
+        return {self.variable: BOOLEAN}
+
+    def apply(self, record: Record) -> None:
+        """Give whether the text is recognised."""
+        record.values[self.variable] = self._recognises(self.field.get(record.values))
+
+    def _recognises(self, text: object) -> bool | None:
+        return _RECOGNISES[self.way](text, self.text) if isinstance(text, str) else None
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The text itself, or another one."""
+        wanted = values.get(self.variable)
+        if wanted is None:
+            return
+        tried = {self.field.text: candidates(TEXT, [self.text])}
+        complaint = f"no text of `{self.field}` makes `{self.variable}` {shown(wanted)} together with what it says else"
+        solve(tried, lambda given: self._recognises(given[self.field.text]) is wanted, values, self.gives, complaint)
+
+
+@dataclass(frozen=True)
+class MatchNamesStage(ImmediateStage):
+    """Texts become the name under which they are listed, all others `otherwise`, without that they are unknown."""
+
+    field: FieldPath
+    variable: str
+    type: FieldType
+    names: Mapping[str, object]
+    otherwise: object
+    kind: ClassVar[str] = "match"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The text."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The name."""
+        return {self.variable: self.type}
+
+    def apply(self, record: Record) -> None:
+        """Give the name of the text."""
+        text = self.field.get(record.values)
+        name = self.names.get(text, self.otherwise) if isinstance(text, str) else None
+        record.values[self.variable] = name
+        if text is not None and name is None:
+            record.troubles.append(f"{self.field} is {shown(text)}, which is no value of {self.variable}")
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The first text with that name, or one that is not listed."""
+        wanted = values.get(self.variable)
+        if wanted is None:
+            return
+        tried = {self.field.text: candidates(TEXT, self.names)}
+
+        def agrees(given: Mapping[str, object]) -> bool:
+            return is_same(self.names.get(str(given[self.field.text]), self.otherwise), wanted)
+
+        solve(
+            tried, agrees, values, self.gives, f"no text of `{self.field}` means {shown(wanted)}: add one to `values`"
+        )
+
+
+@dataclass(frozen=True)
+class MemberStage(ImmediateStage):
+    """Whether a list contains an item."""
+
+    field: FieldPath
+    type: ListType
+    item: object
+    variable: str
+    kind: ClassVar[str] = "member"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The list."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """Whether it contains the item."""
+        return {self.variable: BOOLEAN}
+
+    def apply(self, record: Record) -> None:
+        """Give whether the item is there; where one that is no number might be it, that is unknown."""
+        items = self.field.get(record.values)
+        contains = None
+        if isinstance(items, list):
+            contains = self._contains(items)
+            if not contains and isinstance(self.type.element, RealType) and not all(map(is_number, items)):
+                record.troubles.append(f"{self.field} is {shown(items)}, with an item that is no number")
+                contains = None
+        record.values[self.variable] = contains
+
+    def _contains(self, items: list[object]) -> bool:
+        return any(is_same(item, self.item) for item in items)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The list that there is, with the item or without it; one of a fixed length has nothing else in it."""
+        wanted, items = values.get(self.variable), values.get(self.field.text)
+        if wanted is None:
+            return
+        known = list(items) if isinstance(items, list) else []
+        if self._contains(known) is not wanted or self.type.length not in (None, len(known)):
+            others = [item for item in candidates(self.type.element, [self.item]) if not is_same(item, self.item)]
+            filling = self.item if wanted is True else next(iter(others), None)
+            if self.type.length is not None:
+                known = [filling] * self.type.length
+            else:
+                known = [item for item in known if not is_same(item, self.item)] + [self.item] * (wanted is True)
+        values[self.field.text] = known
+
+
+# `match` and `member` from documents.
+
+
+def build_match(document: MatchDocument, context: Context) -> MatchStage | MatchNamesStage | None:
+    """Texts recognised in one way, or listed by what they mean."""
+    if not only(context, document.field.place, True, "match"):
+        return None
+    found = context.field(document.field)
+    if found is None:
+        return None
+    path, type_ = found
+    if not is_textual(type_):
+        context.found(document.field.place, f"`{document.field}` is {type_}, and only texts are matched")
+        return None
+    if document.values is not None:
+        return _names(document, document.values, path, context)
+    ways: tuple[Way, ...] = get_args(Way)
+    way, text = next((way, text) for way in ways if (text := getattr(document, way)) is not None)
+    return MatchStage(context.place, path, str(document.variable), way, str(text))
+
+
+def _names(
+    document: MatchDocument, values: Mapping[SourceText, Sequence[SourceText]], path: FieldPath, context: Context
+) -> MatchNamesStage | None:
+    names = [*values, *([] if document.otherwise is None else [document.otherwise])]
+    type_ = type_for(context, document.variable, names)
+    meant = None if type_ is None else values_of(context, type_, names, document.variable.place)
+    twice = _texts_with_two_meanings(values)
+    for text, other in twice:
+        context.found(text.place, f"`{text}` means `{other}` already")
+    if type_ is None or meant is None or twice:
+        return None
+    meanings = {str(text): name for name, texts in zip(meant, values.values(), strict=False) for text in texts}
+    otherwise = None if document.otherwise is None else meant[-1]
+    return MatchNamesStage(context.place, path, str(document.variable), type_, meanings, otherwise)
+
+
+def _texts_with_two_meanings(
+    values: Mapping[SourceText, Sequence[SourceText]],
+) -> list[tuple[SourceText, SourceText]]:
+    first: dict[SourceText, SourceText] = {}
+    listed = [(text, name) for name, texts in values.items() for text in texts]
+    return [(text, other) for text, name in listed if (other := first.setdefault(text, name)) is not name]
+
+
+def build_member(document: MemberDocument, context: Context) -> MemberStage | None:
+    """Whether a list contains an item."""
+    if not only(context, document.field.place, True, "member"):
+        return None
+    found = context.field(document.field)
+    if found is None:
+        return None
+    path, type_ = found
+    if not isinstance(type_, ListType):
+        context.found(document.field.place, f"`{document.field}` is {type_}, and no list")
+        return None
+    item = value_of(context, type_.element, document.item, document.field.place)
+    return None if item is None else MemberStage(context.place, path, type_, item, str(document.variable))

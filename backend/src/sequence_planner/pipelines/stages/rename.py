@@ -1,0 +1,117 @@
+"""Stages `rename` and `constant`: renamed fields, and fields with fixed values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.model.source import SourceText
+from sequence_planner.pipelines.field_paths import FieldPath, common_type, fits, shown
+from sequence_planner.pipelines.record import FieldType, Record
+from sequence_planner.pipelines.stages.support import Context, ImmediateStage, plain, wanted_type
+
+# `rename` and `constant`: fields under other names, and fields that never change.
+
+
+@dataclass(frozen=True)
+class Renaming:
+    """A field under another name."""
+
+    source: FieldPath
+    target: str
+    type: FieldType
+
+
+@dataclass(frozen=True)
+class RenameStage(ImmediateStage):
+    """Fields also under other names; all are read before one is given, so that two can change places."""
+
+    kind: ClassVar[str] = "rename"
+    renamings: tuple[Renaming, ...]
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The old names."""
+        return frozenset(renaming.source.text for renaming in self.renamings)
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The new names."""
+        return {renaming.target: renaming.type for renaming in self.renamings}
+
+    def apply(self, record: Record) -> None:
+        """Give each field its other name."""
+        values = record.values
+        values |= {renaming.target: renaming.source.get(values) for renaming in self.renamings}
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """Give each its old name."""
+        values |= {
+            renaming.source.text: values[renaming.target]
+            for renaming in self.renamings
+            if values.get(renaming.target) is not None
+        }
+
+
+@dataclass(frozen=True)
+class ConstantStage(ImmediateStage):
+    """Fields that never change."""
+
+    kind: ClassVar[str] = "constant"
+    fields: Mapping[str, object]
+    gives: Mapping[str, FieldType]
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """Nothing."""
+        return frozenset()
+
+    def apply(self, record: Record) -> None:
+        """Set them."""
+        record.values.update(self.fields)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """They say nothing about other fields."""
+
+
+# `rename` and `constant` from documents.
+
+
+def build_rename(names: Mapping[SourceText, SourceText], context: Context) -> RenameStage | None:
+    """`{field: variable}`: the variable is given for incoming topics, and read for outgoing ones."""
+    pairs = [(field, variable) if context.is_incoming else (variable, field) for field, variable in names.items()]
+    seen: set[str] = set()
+    for _, target in pairs:
+        if target in seen:
+            context.found(target.place, f"`{target}` is given twice here")
+        seen.add(target)
+    found = [(context.field(source), target) for source, target in pairs]
+    renamings = [Renaming(field[0], str(target), field[1]) for field, target in found if field is not None]
+    complete = len(renamings) == len(seen) == len(pairs)
+    return RenameStage(context.place, tuple(renamings)) if complete else None
+
+
+def build_constant(fields: Mapping[SourceText, object], context: Context) -> ConstantStage | None:
+    """Fixed values, each of the type of its field in the message."""
+    if context.is_incoming:
+        for name in fields:
+            context.found(name.place, "`constant` is for outgoing topics: an incoming message has its own values")
+        return None
+    types = {str(name): _type(context, name, plain(value)) for name, value in fields.items()}
+    known = {name: type_ for name, type_ in types.items() if type_ is not None}
+    values = {str(name): plain(value) for name, value in fields.items()}
+    return ConstantStage(context.place, values, known) if len(known) == len(types) else None
+
+
+def _type(context: Context, name: SourceText, value: object) -> FieldType | None:
+    type_ = wanted_type(context, name)
+    if type_ is None:
+        type_ = None if isinstance(value, list | dict) else common_type([value])
+        if type_ is None:
+            context.found(name.place, f"the message has no field `{name}`{suggestion(name, context.wanted)}")
+    elif not fits(type_, value):
+        context.found(name.place, f"`{name}` is {type_}, and {shown(value)} is no value of that type")
+        return None
+    return type_

@@ -1,1 +1,0 @@
-"""Why there is no plan at all, and what would bring one back."""

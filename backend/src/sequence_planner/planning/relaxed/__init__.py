@@ -1,1 +1,0 @@
-"""The relaxation in which nothing is ever undone, and planning with what it touches."""

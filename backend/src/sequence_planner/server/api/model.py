@@ -1,0 +1,453 @@
+"""Routes of the model editor: draft, checks, pipelines, language service and topic attachment."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+import tempfile
+from asyncio.subprocess import PIPE
+from pathlib import Path as LocalPath
+from typing import Annotated, Any, Literal
+
+from fastapi import Depends, Path, Query, Request, Response, WebSocket
+from fastapi.requests import HTTPConnection
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
+from starlette.concurrency import run_in_threadpool
+
+from sequence_planner.analysis.report import FindingDocument
+from sequence_planner.auth.roles import Role, Scope
+from sequence_planner.controller.commands.queries import AskRecord
+from sequence_planner.controller.ipc import ControllerClient
+from sequence_planner.controller.views.details import AutomatonView
+from sequence_planner.core.actor import Actor as Acting
+from sequence_planner.core.secrets import environment
+from sequence_planner.editor.draft import ChangeBody, Edit, FilePath, PartChangedError, WriteText
+from sequence_planner.editor.language.schemas import CompletionView
+from sequence_planner.editor.model_graph import GraphView
+from sequence_planner.editor.pipelines.schemas import (
+    DraftPipelinesView,
+    Everything,
+    Examples,
+    FitsView,
+    Fitting,
+    PipelineId,
+    PipelineQuestion,
+    Preview,
+    PreviewView,
+    RecordedView,
+    RunsView,
+    Trial,
+)
+from sequence_planner.editor.processes import (
+    FormatView,
+    HoverAnswer,
+    LanguageQuestionKind,
+    PlaceInText,
+    ProblemsView,
+    TextAt,
+)
+from sequence_planner.editor.schemas.check import CheckView
+from sequence_planner.editor.schemas.draft import DraftView, FilesView, UsagesView
+from sequence_planner.journal.audit import append
+from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.model.files import read_files, write_files
+from sequence_planner.model.paths import EditError
+from sequence_planner.server.auth import IdentityService, allowed
+from sequence_planner.server.dependencies import (
+    JSON_ONLY,
+    Actor,
+    Body,
+    Controller,
+    Identity,
+    NothingBody,
+    UnreadBody,
+    found,
+    takes,
+)
+from sequence_planner.server.errors import ProblemFound, refused
+from sequence_planner.server.interface import interface
+from sequence_planner.server.services.editor import Workshop
+from sequence_planner.server.stream.endpoints import serve
+
+# The model while it is edited: the draft that all engineers of the station share, and what is found in it.
+#
+# Nothing of the station that runs is touched by it.
+
+Finding = Annotated[int, Path(ge=0, le=2**31)]
+AbilityName = Annotated[str, Query(min_length=1, max_length=400)]
+PartId = Annotated[str, Field(min_length=3, max_length=500)]
+VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
+ENGINEER = allowed(Role.ENGINEER)
+
+model_router = interface("/model", tags=["model"], responses=refused(409, 503))
+
+
+async def workshop(connection: HTTPConnection) -> Workshop:
+    """The workshop of the station. Raises `ProblemFound` where the server does not know its model, or stands by.
+
+    Who stands by has a folder of its own, which may be older than the draft that all share.
+    """
+    client: ControllerClient = connection.app.state.controller
+    if client.stands_by:
+        detail = "The model is edited at the station that commands. Open its page."
+        raise ProblemFound(503, "stands-by", "This station stands by", detail)
+    shop: Workshop | None = connection.app.state.workshop
+    if shop is None:
+        detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
+        raise ProblemFound(409, "no-model", "The model is not known", detail)
+    return shop
+
+
+TheWorkshop = Annotated[Workshop, Depends(workshop)]
+
+
+class RenameBody(Body):
+    """A part of the model by its id, such as `variable:robot.pose`, and what it shall be called."""
+
+    part: PartId
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+
+
+@model_router.get("", dependencies=[VIEWER])
+async def draft(shop: TheWorkshop, actor: Actor) -> DraftView:
+    """The draft of the model: its files, and the last changes."""
+    return await shop.view(actor)
+
+
+@model_router.get("/files", dependencies=[VIEWER], response_model=FilesView)
+async def draft_files(
+    shop: TheWorkshop, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None
+) -> Response:
+    """Files of the draft with what they hold; all of them where no `path` is named."""
+    return found(await shop.files(path))
+
+
+@model_router.get("/check", dependencies=[VIEWER])
+async def check_model(shop: TheWorkshop) -> CheckView:
+    """What is found in the draft, as far as that has come."""
+    return await shop.checked()
+
+
+@model_router.get("/check/findings/{finding}/run", dependencies=[VIEWER], responses=refused(404))
+async def finding_run(
+    shop: TheWorkshop, finding: Finding, ability: AbilityName, number: Annotated[int, Query(ge=0, le=2**53 - 1)]
+) -> list[AutomatonView]:
+    """How an ability goes through the run that shows a finding: its automaton in the initial state and after each step.
+
+    The finding is named by its place in the check of the draft after change `number`.
+    """
+    try:
+        return await shop.played(finding, ability, number)
+    except EditError as error:
+        raise ProblemFound(404, "no-run", "There is no such run", _sentence(error)) from error
+
+
+@model_router.post(
+    "/changes",
+    dependencies=[ENGINEER],
+    response_model=FilesView,
+    responses=refused(422),
+    openapi_extra=takes(ChangeBody),
+)
+async def change_draft(body: UnreadBody, shop: TheWorkshop, actor: Actor) -> Response:
+    """Carry edits out; the files that are others now.
+
+    An edit of a part that somebody else has changed meanwhile is refused with `part-changed`, and nothing is done.
+    """
+    try:
+        return found(await shop.request(body, actor))
+    except EditError as error:
+        raise refusal(error) from error
+
+
+@model_router.post("/rename", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))
+async def rename_part(body: RenameBody, shop: TheWorkshop, actor: Actor) -> Response:
+    """Give a part of the model another name, which all that name it follow; the files that are others now."""
+    try:
+        return found(await shop.rename(body.part, body.name, actor))
+    except EditError as error:
+        raise refusal(error) from error
+
+
+@model_router.get("/usages", dependencies=[VIEWER], response_model=UsagesView, responses=refused(422))
+async def usages(shop: TheWorkshop, part: PartId) -> Response:
+    """Where a part of the model, such as `variable:robot.pose`, is named, and what could not be without it."""
+    try:
+        return found(await shop.usages(part))
+    except EditError as error:
+        raise refusal(error) from error
+
+
+@model_router.get("/graph", dependencies=[VIEWER], response_model=GraphView)
+async def model_graph(shop: TheWorkshop) -> Response:
+    """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
+    return found(await shop.tied())
+
+
+@model_router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))
+async def undo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> Response:
+    """Take back your last change that is not taken back yet; the files that are others now."""
+    try:
+        return found(await shop.undo(actor))
+    except EditError as error:
+        raise refusal(error) from error
+
+
+@model_router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))
+async def redo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> Response:
+    """Do again what you took back last; the files that are others now."""
+    try:
+        return found(await shop.redo(actor))
+    except EditError as error:
+        raise refusal(error) from error
+
+
+@model_router.websocket("/stream", dependencies=[VIEWER])
+async def stream(websocket: WebSocket) -> None:
+    """Serve one client: the draft and its check, whenever they change."""
+    shop = await workshop(websocket)
+    await shop.open()
+    await serve(websocket, shop.latest)
+
+
+def refusal(error: EditError) -> ProblemFound:
+    """The problem that says why an edit is not made."""
+    text = _sentence(error)
+    if isinstance(error, PartChangedError):
+        detail = f"{text} Nothing was changed: look at what it is now, and repeat yours if it is still wanted."
+        return ProblemFound(409, "part-changed", "It was changed meanwhile", detail)
+    return ProblemFound(422, "edit-refused", "It cannot be changed so", text)
+
+
+def _sentence(error: Exception) -> str:
+    return f"{str(error)[:1].upper()}{str(error)[1:]}."
+
+
+# Attaching a topic of the network to the draft of the model; the station itself goes on as it is.
+#
+# `sequence-planner attach` does it to a copy of the draft, as a process of its own: it joins the network and checks the
+# model without holding the server up. What it has changed there becomes a change of the draft.
+
+LONGEST = 60.0  # seconds
+STATUS = {"no-topic": 404, "attached": 409, "not-written": 409}  # of refusals; others are 422
+
+attachments_router = interface("/ros", tags=["ros"], dependencies=[allowed(Role.ENGINEER), JSON_ONLY])
+
+
+class AttachmentBody(BaseModel):
+    """A topic, and the resource that gets it, which may be a new one. Without a direction the network tells it.
+
+    With `dry_run` nothing is changed.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    topic: Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
+    resource: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
+    direction: Literal["in", "out"] | None = None
+    dry_run: bool = False
+
+
+class AttachmentAnswer(BaseModel):
+    """What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
+
+    `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.
+    `number` is that of the change of the draft, null where none was made.
+    """
+
+    topic: str
+    type: str
+    direction: Literal["in", "out"]
+    resource: str
+    made: bool
+    number: int | None
+    difference: str
+    findings: list[FindingDocument]
+
+
+@attachments_router.post("/attachments", responses=refused(404, 409, 504))
+async def attach(body: AttachmentBody, request: Request, identity: Identity, actor: Actor) -> AttachmentAnswer:
+    """Enter a topic that is on the network into the draft of the model; what runs does not change before a deployment.
+
+    It is recorded before anything is changed, and again when its outcome is known.
+    """
+    settings, shop = request.app.state.settings, await workshop(request)
+    lock: asyncio.Lock = request.app.state.attaching
+    async with lock:
+        if body.dry_run:
+            return _told((await _tried(shop, settings.transport, body))[0], None)
+        details: dict[str, JsonValue] = {"resource": body.resource, "direction": body.direction}
+        entry = Entry(actor=actor, action="attach-topic", subject=f"topic {body.topic}", details=details)
+        asked = await _record(identity, entry.model_copy(update={"outcome": Outcome.REQUESTED}), by=actor)
+        outcome, number = Outcome.FAILED, None
+        try:
+            answer, edits = await _tried(shop, settings.transport, body)
+            outcome = Outcome.REFUSED
+            if answer.get("made"):
+                number = await shop.change(edits, actor, f"{body.topic} belongs to {body.resource}")
+                outcome = Outcome.DONE
+        except EditError as error:
+            raise refusal(error) from error
+        finally:
+            await _record(identity, entry.model_copy(update={"outcome": outcome, "about": asked}))
+    return _told(answer, number)
+
+
+async def _tried(shop: Workshop, transport: str, body: AttachmentBody) -> tuple[dict[str, Any], list[Edit]]:
+    """What the command says of a copy of the draft, and what it has changed there."""
+    draft = await shop.open()
+    with tempfile.TemporaryDirectory(prefix="sequence-planner-attach-") as scratch:
+        folder = LocalPath(scratch) / "model"
+        await run_in_threadpool(write_files, draft.files, folder, shop.folder)
+        answer = await _run(_arguments(folder, transport, body))
+        after = await run_in_threadpool(read_files, folder)
+    edits: list[Edit] = [
+        WriteText(file=path, was=draft.files.get(path), text=text)
+        for path, text in after.items()
+        if draft.files.get(path) != text
+    ]
+    plain: dict[str, Any] = json.loads(json.dumps(answer).replace(f"{folder}/", ""))
+    return plain, edits
+
+
+async def _record(identity: IdentityService, entry: Entry, *, by: Acting | None = None) -> int:
+    """Write an entry, if `by` still may act; its number."""
+    now = identity.now()
+    record = await identity.write(lambda connection: append(connection, entry, now), by=by)
+    return record.number
+
+
+def _told(answer: dict[str, Any], number: int | None) -> AttachmentAnswer:
+    if "refused" in answer:
+        slug, detail = answer["refused"]["slug"], answer["refused"]["detail"]
+        raise ProblemFound(STATUS.get(slug, 422), slug, "The topic cannot be attached", detail)
+    return AttachmentAnswer.model_validate({**answer, "number": number})
+
+
+def _arguments(model: LocalPath, transport: str, body: AttachmentBody) -> list[str]:
+    arguments = [str(model), body.topic, "--resource", body.resource, "--transport", transport, "--json"]
+    arguments += ["--direction", body.direction] if body.direction else []
+    return [*arguments, "--dry-run"] if body.dry_run else arguments
+
+
+async def _run(arguments: list[str]) -> dict[str, Any]:
+    """What the command says."""
+    command = [sys.executable, "-m", "sequence_planner.cli", "attach", *arguments]
+    process = await asyncio.create_subprocess_exec(*command, stdout=PIPE, stderr=PIPE, env=environment())
+    try:
+        async with asyncio.timeout(LONGEST):
+            out, err = await process.communicate()
+    except TimeoutError:
+        detail = f"It took more than {LONGEST:g} s and was given up. Look at the model before trying again."
+        raise ProblemFound(504, "attach-no-answer", "The topic was not attached in time", detail) from None
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+    try:
+        found: dict[str, Any] = json.loads(out)
+    except ValueError:
+        raise RuntimeError(f"attach ended with code {process.returncode}: {err.decode(errors='replace')}") from None
+    return found
+
+
+# The pipelines of the draft: their graph, what could be put where, and runs of them. What is edited is edited as the
+# rest of the model is, with `POST /model/changes`.
+
+draft_pipelines_router = interface("/model/pipelines", tags=["model"], responses=refused(409, 503))
+
+
+class RecordBody(Body):
+    """What the station has heard or said last of a pipeline becomes an example of this name in the draft."""
+
+    pipeline: PipelineId
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+
+
+@draft_pipelines_router.get("", dependencies=[VIEWER], response_model=DraftPipelinesView)
+async def draft_pipelines(shop: TheWorkshop) -> Response:
+    """The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong."""
+    return await _found(shop, Everything())
+
+
+@draft_pipelines_router.post("/fits", dependencies=[VIEWER, JSON_ONLY], response_model=FitsView, responses=refused(422))
+async def find_fits(body: Fitting, shop: TheWorkshop) -> Response:
+    """What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow."""
+    return await _found(shop, body)
+
+
+@draft_pipelines_router.post(
+    "/preview", dependencies=[VIEWER], response_model=PreviewView, openapi_extra=takes(Preview)
+)
+async def preview_pipelines(body: UnreadBody, shop: TheWorkshop) -> Response:
+    """What edits would bring about; nothing is changed."""
+    return await _found(shop, body)
+
+
+@draft_pipelines_router.post(
+    "/examples", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422)
+)
+async def run_examples(body: Examples, shop: TheWorkshop) -> Response:
+    """How the examples of a pipeline end, with the record at every edge."""
+    return await _found(shop, body)
+
+
+@draft_pipelines_router.post(
+    "/trials", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422)
+)
+async def try_pipeline(body: Trial, shop: TheWorkshop) -> Response:
+    """What comes of a message, or of several in time that is told, with the record at every edge."""
+    return await _found(shop, body)
+
+
+@draft_pipelines_router.post(
+    "/recordings", dependencies=[allowed(Role.ENGINEER), JSON_ONLY], status_code=201, responses=refused(422, 504)
+)
+async def record_example(body: RecordBody, shop: TheWorkshop, client: Controller, actor: Actor) -> RecordedView:
+    """Make an example of what the station has heard or said last; it is added to the draft."""
+    heard = await client.ask(AskRecord(pipeline=body.pipeline))
+    try:
+        return await shop.record(body.pipeline, body.name, heard, actor)
+    except EditError as error:
+        raise refusal(error) from error
+
+
+async def _found(shop: Workshop, question: PipelineQuestion | bytes) -> Response:
+    try:
+        return found(await shop.ask_pipelines(question))
+    except EditError as error:
+        raise refusal(error) from error
+
+
+# The language of guards and actions, for whoever writes them: what is wrong, what could stand there, what is meant.
+
+language_router = interface(
+    "/model/language",
+    tags=["model"],
+    dependencies=[allowed(Role.VIEWER, scope=Scope.READ), JSON_ONLY],
+    responses=refused(409, 503),
+)
+
+
+@language_router.post("/check", response_model=ProblemsView)
+async def check_text(body: TextAt, shop: TheWorkshop) -> Response:
+    """What is wrong with a text, as the check of the whole draft would find it there."""
+    return found(await shop.ask(LanguageQuestionKind.CHECK, body))
+
+
+@language_router.post("/completion", response_model=CompletionView)
+async def complete_text(body: PlaceInText, shop: TheWorkshop) -> Response:
+    """What can stand at a place in a text."""
+    return found(await shop.ask(LanguageQuestionKind.COMPLETION, body))
+
+
+@language_router.post("/hover", response_model=HoverAnswer)
+async def explain_text(body: PlaceInText, shop: TheWorkshop) -> Response:
+    """What the name at a place in a text is."""
+    return found(await shop.ask(LanguageQuestionKind.HOVER, body))
+
+
+@language_router.post("/format", response_model=FormatView)
+async def format_text(body: TextAt, shop: TheWorkshop) -> Response:
+    """The text as it is written best; one that cannot be read stays as it is."""
+    return found(await shop.ask(LanguageQuestionKind.FORMAT, body))

@@ -1,0 +1,205 @@
+"""Reading the station: each part of the view at an address of its own.
+
+Every answer carries the tick and the time of the view it was cut from, and none is ever older than two seconds: when
+the controller is silent the answer is 503.
+"""
+
+from __future__ import annotations
+
+from pydantic import BaseModel
+
+from sequence_planner.analysis.report import AnalysisDocument
+from sequence_planner.auth.roles import Role, Scope
+from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.station import (
+    AbilityView,
+    AlarmView,
+    ApprovalView,
+    DeploymentView,
+    ErrandView,
+    ForceView,
+    LastCorrectionView,
+    LastErrandView,
+    OperationView,
+    OverrideView,
+    PackML,
+    PlanView,
+    QuestionView,
+    ResourceView,
+    ServiceView,
+    StandbyView,
+    StationIdentity,
+    StationStanding,
+    TaskView,
+    TopicView,
+    UndecidedOutputView,
+    VariableView,
+    WhoCanView,
+)
+from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.server.auth import allowed
+from sequence_planner.server.dependencies import LiveView
+from sequence_planner.server.interface import interface
+
+router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+
+
+class Answer(BaseModel):
+    """The tick and the time (seconds since the epoch, the controller's clock) at which this was so."""
+
+    tick: int
+    time: float
+
+
+class StationAnswer(Answer):
+    """What is running, and how; and all that people have asked of it, or that it asks of them."""
+
+    station: StationIdentity
+    revision: int  # of the state: counts up with every change, and what was previewed holds for one
+    mode: Mode
+    packml: PackML
+    standing: StationStanding
+    silent: list[str]
+    failing: list[str]
+    stepping: bool
+    production: Production
+    by_order: bool
+    unconfirmed: bool
+    undecided: dict[str, UndecidedOutputView]
+    control: ControlView | None
+    errand: ErrandView | None
+    last_errand: LastErrandView | None
+    forces: dict[str, ForceView]
+    out_of_service: list[ServiceView]
+    questions: list[QuestionView]
+    last_correction: LastCorrectionView | None
+    standby: StandbyView | None
+    deployment: DeploymentView | None
+    approvals: dict[str, ApprovalView]
+    who_can: WhoCanView | None
+
+
+class StateAnswer(Answer):
+    """Every variable."""
+
+    variables: dict[str, VariableView]
+
+
+class ResourcesAnswer(Answer):
+    """Every resource."""
+
+    resources: dict[str, ResourceView]
+
+
+class OperationsAnswer(Answer):
+    """Every operation."""
+
+    operations: dict[str, OperationView]
+
+
+class AbilitiesAnswer(Answer):
+    """Every ability."""
+
+    abilities: dict[str, AbilityView]
+
+
+class PlanAnswer(Answer):
+    """The live plan."""
+
+    plan: PlanView
+
+
+class TasksAnswer(Answer):
+    """The tasks that wait for a person."""
+
+    tasks: dict[str, TaskView]
+
+
+class TopicsAnswer(Answer):
+    """Every topic of the station."""
+
+    topics: dict[str, TopicView]
+
+
+class OverridesAnswer(Answer):
+    """What a person may set, and what is set."""
+
+    overrides: dict[str, OverrideView]
+
+
+class AnalysisAnswer(Answer):
+    """What synthesis has found of the station; null before it has found anything."""
+
+    analysis: AnalysisDocument | None
+
+
+class AlarmsAnswer(Answer):
+    """The alarms that last."""
+
+    alarms: dict[str, AlarmView]
+
+
+@router.get("/station")
+async def station(view: LiveView) -> StationAnswer:
+    """What is running, its mode, whether production has been started, and what people have asked of it."""
+    return StationAnswer(**{name: getattr(view, name) for name in StationAnswer.model_fields})
+
+
+@router.get("/state")
+async def state(view: LiveView) -> StateAnswer:
+    """Every variable; a null value is unknown, and `awaits` names the topic that would tell it."""
+    return StateAnswer(tick=view.tick, time=view.time, variables=view.variables)
+
+
+@router.get("/resources")
+async def resources(view: LiveView) -> ResourcesAnswer:
+    """Every resource, whether it is online, and which topics are awaited."""
+    return ResourcesAnswer(tick=view.tick, time=view.time, resources=view.resources)
+
+
+@router.get("/operations")
+async def operations(view: LiveView) -> OperationsAnswer:
+    """Every operation, whether it is active, and how often it was completed."""
+    return OperationsAnswer(tick=view.tick, time=view.time, operations=view.operations)
+
+
+@router.get("/abilities")
+async def abilities(view: LiveView) -> AbilitiesAnswer:
+    """Every ability: enabled, executing, finished."""
+    return AbilitiesAnswer(tick=view.tick, time=view.time, abilities=view.abilities)
+
+
+@router.get("/plan")
+async def plan(view: LiveView) -> PlanAnswer:
+    """The live plan: what is done, what runs, what comes next and what that waits for."""
+    return PlanAnswer(tick=view.tick, time=view.time, plan=view.plan)
+
+
+@router.get("/tasks")
+async def tasks(view: LiveView) -> TasksAnswer:
+    """The tasks that wait for a person, by id."""
+    return TasksAnswer(tick=view.tick, time=view.time, tasks=view.tasks)
+
+
+@router.get("/topics")
+async def topics(view: LiveView) -> TopicsAnswer:
+    """Every ROS 2 topic of the station, and whether it speaks."""
+    return TopicsAnswer(tick=view.tick, time=view.time, topics=view.topics)
+
+
+@router.get("/overrides")
+async def overrides(view: LiveView) -> OverridesAnswer:
+    """What a person may set within which bounds, what is set, and when it expires."""
+    return OverridesAnswer(tick=view.tick, time=view.time, overrides=view.overrides)
+
+
+@router.get("/analysis")
+async def analysis(view: LiveView) -> AnalysisAnswer:
+    """The guards that the supervisor adds, how many states can be reached, and findings with runs that show them."""
+    return AnalysisAnswer(tick=view.tick, time=view.time, analysis=view.analysis)
+
+
+@router.get("/alarms")
+async def alarms(view: LiveView) -> AlarmsAnswer:
+    """What wants a person's attention now."""
+    return AlarmsAnswer(tick=view.tick, time=view.time, alarms=view.alarms)

@@ -1,0 +1,234 @@
+"""Every refusal is a problem document (RFC 9457): the same members, a stable `type`, and words for a person.
+
+`type` is a reference below `/problems/` and never changes once it is published; a client decides by it. `detail` is
+for reading. A document never shows a stack trace: what went wrong inside is written in the server's log.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+import structlog
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.routing import iter_route_contexts
+from pydantic import BaseModel, JsonValue
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from sequence_planner.auth.roles import IdentityRefused
+from sequence_planner.controller.commands.commands import CommandRefused, TextPlace
+from sequence_planner.core.storage_error import StorageError
+from sequence_planner.core.validation_messages import complained
+from sequence_planner.editor.processes import BodyError
+from sequence_planner.mes.order import OrderCommand, OrderRefused
+from sequence_planner.process.worker import WorkEndedError
+
+LOG = structlog.get_logger(__name__)
+MEDIA_TYPE = "application/problem+json"
+
+SLUGS = {
+    400: "bad-request",
+    404: "not-found",
+    405: "method-not-allowed",
+    413: "body-too-large",
+    500: "internal-error",
+}
+# What FastAPI says of a body that Python's parser of JSON gives up.
+UNREAD = "There was an error parsing the body"
+UNREADABLE = "The body cannot be read: it has to be JSON in UTF-8, and not nested more than some hundred times."
+DETAILS = {
+    404: "There is nothing at this address. GET /api/v1/openapi.json describes what there is.",
+    405: "This address does not know the method; the header Allow names those it knows.",
+}
+
+
+def refused(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Declares in the `responses` of a route with which status it may refuse, beside what concerns all routes."""
+    return {status: {"description": "A problem"} for status in statuses}
+
+
+class FieldError(BaseModel):
+    """One place in a request that is not as it must be, e.g. `body.mode`, and what was expected there."""
+
+    field: str
+    expected: str
+
+
+class Problem(BaseModel):
+    """Why a request was refused.
+
+    `errors` is empty unless `type` is `/problems/invalid-request`, `place` null unless it is `/problems/bad-predicate`.
+    `allowed` are the commands that a job order does allow where `type` is `/problems/command-not-allowed`.
+    """
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    errors: list[FieldError]
+    place: TextPlace | None
+    allowed: list[OrderCommand]
+
+
+class ProblemFound(HTTPException):
+    """Raised anywhere in a request to answer it with a problem."""
+
+    def __init__(
+        self,
+        status: int,
+        slug: str,
+        title: str,
+        detail: str,
+        headers: Mapping[str, str] | None = None,
+        errors: Sequence[FieldError] = (),
+    ) -> None:
+        super().__init__(status, detail, headers)
+        self.slug = slug
+        self.title = title
+        self.errors = errors
+
+
+def problem_response(
+    status: int,
+    slug: str,
+    title: str,
+    detail: str,
+    *,
+    errors: Sequence[FieldError] = (),
+    place: TextPlace | None = None,
+    allowed: Sequence[OrderCommand] = (),
+    headers: Mapping[str, str] | None = None,
+    more: Mapping[str, JsonValue] | None = None,
+) -> Response:
+    """The answer that carries a problem, with `more` members beside those of all problems (RFC 9457, section 3.2)."""
+    problem = Problem(
+        type=f"/problems/{slug}",
+        title=title,
+        status=status,
+        detail=detail,
+        errors=list(errors),
+        place=place,
+        allowed=list(allowed),
+    )
+    # In ASCII: a name that came with the request may hold what UTF-8 cannot write, such as half a surrogate pair.
+    body = json.dumps({**(more or {}), **problem.model_dump()}, ensure_ascii=True)
+    kept = {"Cache-Control": "no-store", **(headers or {})}
+    return Response(body, status_code=status, media_type=MEDIA_TYPE, headers=kept)
+
+
+def install(app: FastAPI) -> None:
+    """Let `app` answer every refusal and every failure with a problem."""
+    app.add_exception_handler(HTTPException, _http)
+    app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(CommandRefused, _refused)
+    app.add_exception_handler(IdentityRefused, _identity_refused)
+    app.add_exception_handler(OrderRefused, _order_refused)
+    app.add_exception_handler(StorageError, _storage_unavailable)
+    app.add_exception_handler(BodyError, _unexpected)
+    app.add_exception_handler(WorkEndedError, _work_ended)
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    if isinstance(error, ProblemFound):
+        return problem_response(
+            error.status_code, error.slug, error.title, error.detail, headers=error.headers, errors=error.errors
+        )
+    status = error.status_code
+    title = HTTPStatus(status).phrase
+    detail = DETAILS.get(status, UNREADABLE if error.detail == UNREAD else str(error.detail))
+    headers = dict(error.headers or {})
+    if status == 405 and (methods := _methods(request)):
+        headers["Allow"] = ", ".join(sorted(methods))
+    return problem_response(status, SLUGS.get(status, "refused"), title, detail, headers=headers)
+
+
+def _methods(request: Request) -> set[str]:
+    """The methods of all routes of the address: without this, only those of the first of them are named."""
+    found: dict[str, set[str]] = {}
+    for route in iter_route_contexts(request.app.routes):
+        if route.methods and route.path is not None and route.path_regex.match(request.scope["path"]):
+            found.setdefault(route.path, set()).update(route.methods)
+    return found[min(found, key=lambda path: path.count("{"))] if found else set()
+
+
+async def _invalid(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    found = error.errors()
+    if any(each["type"] == "json_invalid" for each in found):
+        position = found[0]["loc"][-1]
+        detail = f"The body is not JSON: {found[0]['ctx']['error']} at character {position}."
+        return problem_response(400, "malformed-json", "The body is not JSON", detail)
+    errors = [FieldError(field=".".join(map(str, each["loc"])), expected=complained(each)) for each in found]
+    detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
+    return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
+
+
+async def _unexpected(request: Request, error: Exception) -> Response:
+    assert isinstance(error, BodyError)
+    return await _invalid(request, RequestValidationError(error.errors))
+
+
+async def _work_ended(request: Request, error: Exception) -> Response:
+    assert isinstance(error, WorkEndedError)
+    text = str(error)
+    end = "" if text.endswith("?") else "."
+    detail = f"{text[:1].upper()}{text[1:]}{end} Try again."
+    return problem_response(503, "workshop-failed", "It could not be found out", detail)
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    assert isinstance(error, CommandRefused)
+    return problem_response(error.status, error.slug, error.title, error.detail, place=error.place)
+
+
+async def _identity_refused(request: Request, error: Exception) -> Response:
+    assert isinstance(error, IdentityRefused)
+    headers = {} if error.retry_after is None else {"Retry-After": str(error.retry_after)}
+    if error.status == 401:
+        headers["WWW-Authenticate"] = "Bearer"  # RFC 9110 wants a challenge; this one makes no browser ask by itself
+    return problem_response(error.status, error.slug, error.title, error.detail, headers=headers)
+
+
+async def _order_refused(request: Request, error: Exception) -> Response:
+    assert isinstance(error, OrderRefused)
+    return problem_response(error.status, error.slug, error.title, error.detail, allowed=error.allowed)
+
+
+async def _storage_unavailable(request: Request, error: Exception) -> Response:
+    LOG.error("the database is not available", says=str(error))  # it names the place: not for who asks
+    detail = "The station's database does not answer, so nobody can be let in and nothing is recorded. Try again."
+    return problem_response(503, "storage-unavailable", "The database is not available", detail)
+
+
+class ErrorMiddleware:
+    """Answers with a problem when something inside failed, and writes the error to the log."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        started = False
+
+        async def watch(message: Message) -> None:
+            nonlocal started
+            started = started or message["type"] == "http.response.start"
+            await send(message)
+
+        try:
+            await self.app(scope, receive, watch)
+        except Exception:
+            LOG.exception("a request failed", path=scope["path"])
+            if started:
+                raise  # too late for another answer: the connection is cut
+            detail = "The server met an error of its own; it is written in the server's log."
+            response = problem_response(500, SLUGS[500], "Internal error", detail)
+            await response(scope, receive, send)

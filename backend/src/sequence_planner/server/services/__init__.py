@@ -1,0 +1,1 @@
+"""What the server does beside answering requests: orders, backups, retention, and the processes of the editor."""

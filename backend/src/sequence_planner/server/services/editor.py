@@ -1,0 +1,386 @@
+"""The server's workshop: the one draft of its station, kept in the database and checked whenever it changes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection
+from starlette.concurrency import run_in_threadpool
+
+from sequence_planner.controller.views.details import AutomatonView
+from sequence_planner.controller.views.pipelines import RecordView
+from sequence_planner.controller.views.station import DeploymentState, StationView
+from sequence_planner.core.actor import Actor
+from sequence_planner.editor import draft as drafts
+from sequence_planner.editor.draft import (
+    AddEntry,
+    Differences,
+    Draft,
+    DraftChange,
+    DraftProposal,
+    Edit,
+    PartChangedError,
+    WriteText,
+)
+from sequence_planner.editor.pipelines.schemas import (
+    DraftQuestion,
+    Examples,
+    PipelineQuestion,
+    RecordedView,
+    Recording,
+)
+from sequence_planner.editor.processes import (
+    Changed,
+    CheckDesk,
+    DraftAnswering,
+    DraftProcess,
+    EditingProcess,
+    LanguageQuestionKind,
+    TextAt,
+)
+from sequence_planner.editor.revision import Revision
+from sequence_planner.editor.schemas.check import CheckView, waiting
+from sequence_planner.editor.schemas.draft import (
+    DraftView,
+    FileMark,
+    RevisionsView,
+    RevisionView,
+    WorkshopView,
+    change_view,
+    marks,
+    revisions_view,
+)
+from sequence_planner.model.files import Files, FolderReader
+from sequence_planner.model.launch_requirements import StartNeeds
+from sequence_planner.model.paths import EditError
+from sequence_planner.process.worker import worked
+from sequence_planner.server.auth import IdentityService
+from sequence_planner.server.settings import StreamLimits
+from sequence_planner.server.stream.broadcast import LatestValue
+from sequence_planner.server.stream.messages import WorkshopSnapshot
+
+MOST_SHOWN = 50  # changes
+ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
+RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
+
+
+class Workshop:
+    """The draft of the station in the folder `model`, which is run as `start` says, and its `revisions`. Used from one
+    event loop.
+    """
+
+    def __init__(
+        self, identity: IdentityService, model: Path, revisions: Path, limits: StreamLimits, start: StartNeeds
+    ) -> None:
+        self.latest = LatestValue(self._present, limits)
+        self.folder = model
+        self._files = FolderReader(model)
+        self._identity = identity
+        self._revisions = revisions
+        self._editing = EditingProcess()
+        self._process = DraftProcess()
+        self._desk = CheckDesk(model, start, self._process, self._found)
+        self._pipelines = DraftAnswering(
+            "sequence_planner.editor.pipelines.worker", "answering", 2
+        )  # the draft, and what runs
+        self._check: CheckView | None = None
+        self._shown: WorkshopView | None = None
+        self._encoded: str | None = None
+        self._marks: tuple[Draft, dict[str, FileMark]] | None = None
+        self._opening = asyncio.Lock()
+        self._deployed_over: tuple[float, Files] | None = None  # when, and what: until it is seen what became of it
+        self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
+        self._tying = asyncio.Lock()
+
+    async def close(self) -> None:
+        """End what is being checked and answered."""
+        await self._desk.close()
+        await self._editing.close()
+        await self._process.close()
+        await self._pipelines.close()
+
+    async def open(self) -> Draft:
+        """The draft, begun if there is none yet, with what has happened to the files of the station since.
+
+        Raises `WorkEndedError`.
+        """
+        async with self._opening:
+            files = await run_in_threadpool(self._files.read)
+            draft = await self._identity.read(drafts.read)
+            if draft.number and draft.base != files and self._was_before_the_deployment(files):
+                # A deployment was undone. What was deployed stays in the draft, where it can be mended.
+                await self._identity.write(lambda connection: drafts.rebase(connection, files))
+                draft = replace(draft, base=files)
+            while not draft.number or draft.base != files:
+                proposal = await self._proposed(draft, "taken_up", draft.number, draft.base, files)
+                taking = partial[Draft | None](_taken_up, draft, files, proposal, self._identity.now())
+                if (taken := await self._identity.write(taking)) is None:
+                    taken = await self._identity.read(drafts.read)
+                draft = taken
+            await self._noticed(draft)
+        return draft
+
+    async def view(self, by: Actor) -> DraftView:
+        """The draft, for somebody who could undo what they did. Raises `WorkEndedError`."""
+        draft = await self.open()
+        files = await self._marked(draft)
+
+        def read(connection: Connection) -> DraftView:
+            done, undone = drafts.stacks(connection, by)
+            return DraftView(
+                number=draft.number,
+                files=files,
+                changes=[change_view(each) for each in drafts.changes(connection, MOST_SHOWN)],
+                undo=done[-1].title if done else None,
+                redo=undone[-1].title if undone else None,
+            )
+
+        return await self._identity.read(read)
+
+    async def files(self, paths: Sequence[str] | None = None) -> str:
+        """JSON of a `FilesView` of the draft; all its files where none are named. Raises `WorkEndedError`."""
+        return await self._files_of(await self.open(), paths)
+
+    async def request(self, body: bytes, by: Actor) -> str:
+        """Carry out the edits of a `ChangeBody`; the files that are others now, as JSON of a `FilesView`.
+
+        Raises `BodyError`, `EditError` and `WorkEndedError`.
+        """
+        return (await self._changed(lambda draft: self._proposed(draft, "requested", body), by))[1]
+
+    async def change(self, edits: Sequence[Edit], by: Actor, title: str) -> int:
+        """Carry edits out; the number of the change. Raises `EditError` and `WorkEndedError`."""
+        return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[0]
+
+    async def rename(self, part: str, name: str, by: Actor) -> str:
+        """Give a part another name, which all that name it follow; the files that are others now, as JSON.
+
+        Raises `EditError` and `WorkEndedError`.
+        """
+
+        async def propose(draft: Draft) -> DraftProposal:
+            found = await self._process.ask(draft.files, "renamed_files", part, name)
+            assert isinstance(found, dict)
+            edits = [WriteText(file=path, was=draft.files.get(path), text=text) for path, text in found.items()]
+            return await self._proposed(draft, "edited", edits, f"{part.partition(':')[2]} is called {name}")
+
+        return (await self._changed(propose, by))[1]
+
+    async def usages(self, part: str) -> str:
+        """Where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkEndedError`."""
+        found = await self._process.ask((await self.open()).files, "used", part)
+        assert isinstance(found, str)
+        return found
+
+    async def tied(self) -> str:
+        """What is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
+        async with self._tying:
+            draft = await self.open()
+            if self._tied is None or self._tied[0] != draft.number:
+                found = await self._process.ask(draft.files, "tied", draft.number)
+                assert isinstance(found, str)
+                self._tied = draft.number, found
+            return self._tied[1]
+
+    async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
+        """How an ability goes through the run that shows a finding of the check of change `number`.
+
+        Raises `EditError` where there is no such run or ability, and `WorkEndedError`.
+        """
+        check, draft = await self.checked(), await self.open()
+        if number != check.number or number != draft.number:
+            raise EditError("the draft has changed since: look at its findings again")
+        trace = check.findings[finding].trace if finding < len(check.findings) else None
+        if trace is None:
+            raise EditError("there is no run that shows such a finding")
+        found = await worked("drawn", draft.files, self.folder, ability, trace)
+        if isinstance(found, str):
+            raise EditError(found)
+        assert isinstance(found, list)
+        return found
+
+    async def undo(self, by: Actor) -> str:
+        """Take back what somebody did last; JSON of a `FilesView`. Raises `EditError` and `WorkEndedError`."""
+        return (await self._changed(lambda draft: self._again(draft, by, undo=True), by))[1]
+
+    async def redo(self, by: Actor) -> str:
+        """Do again what somebody took back last; JSON of a `FilesView`. Raises `EditError` and `WorkEndedError`."""
+        return (await self._changed(lambda draft: self._again(draft, by, undo=False), by))[1]
+
+    async def checked(self) -> CheckView:
+        """What is known of the draft."""
+        draft = await self.open()
+        return self._check or waiting(draft.number)
+
+    async def revised(self) -> RevisionsView:
+        """All revisions. Raises `WorkEndedError`."""
+        draft = await self.open()
+        found = await self._editing.ask(draft.files, "revised", self._revisions, draft.base)
+        assert isinstance(found, tuple)
+        return revisions_view(*found)
+
+    async def files_of(self, revision: str) -> dict[str, str]:
+        """The files of a revision. Raises `EditError` where there is none, and `WorkEndedError`."""
+        found = await self._editing.ask((await self.open()).files, "files_of", self._revisions, revision)
+        assert isinstance(found, dict)
+        return found
+
+    async def save(self, draft: Draft, name: str, message: str, by: Actor) -> RevisionView:
+        """Save the draft under a name. Raises `EditError` and `WorkEndedError`."""
+        asked = self._revisions, draft.base, name, message, by, self._identity.now()
+        saved = await self._editing.ask(draft.files, "saved", *asked)
+        assert isinstance(saved, Revision)
+        return next(each for each in (await self.revised()).revisions if each.id == saved.id)
+
+    def note_deployment(self, draft: Draft) -> None:
+        """The draft is about to be deployed."""
+        self._deployed_over = self._identity.now(), draft.base
+
+    def hear(self, view: StationView) -> None:
+        """Take note of what the controller shows: whoever brings files back that were there before a deployment that
+        went well has changed the model, and nothing is undone by that.
+        """
+        deployment, deployed = view.deployment, self._deployed_over
+        if deployment is None or deployed is None or deployment.state is not DeploymentState.RUNS:
+            return
+        if deployment.at >= deployed[0]:  # not an earlier one
+            self._deployed_over = None
+
+    def _was_before_the_deployment(self, files: Files) -> bool:
+        return self._deployed_over is not None and self._deployed_over[1] == files
+
+    async def restore(self, draft: Draft, files: Files, name: str, by: Actor) -> str:
+        """Let the draft become these files, those of the revision `name`; JSON of a `FilesView` of what is other now.
+
+        Raises `EditError` and `WorkEndedError`.
+        """
+        edits = [
+            WriteText(file=path, was=draft.files.get(path), text=files.get(path))
+            for path in sorted(draft.files.keys() | files.keys())
+            if draft.files.get(path) != files.get(path)
+        ]
+        title = f"Back to “{name}”"
+        return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
+
+    async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> str:
+        """What is answered to a question about a text, as JSON. Raises `WorkEndedError`."""
+        draft = await self.open()
+        answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
+        assert isinstance(answer, str)
+        return answer
+
+    async def ask_pipelines(self, question: PipelineQuestion | bytes) -> str:
+        """What is answered to a question about the pipelines, as JSON; bytes are the body of a `Preview`.
+
+        Raises `EditError`, `BodyError` and `WorkEndedError`.
+        """
+        answer = await self._asked(question, as_json=True)
+        assert isinstance(answer, str)
+        return answer
+
+    async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
+        """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
+        question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)
+        (made,) = await self._asked(question, as_json=False)
+        edit = AddEntry(file=made.file, path=[*made.path, 0], value=made.example)
+        number = await self.change([edit], by, f"An example of {pipeline}: {name}")
+        (runs,) = await self._asked(Examples(pipeline=pipeline, name=name), as_json=False)
+        return RecordedView(number=number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
+
+    async def _asked(self, question: PipelineQuestion | bytes, *, as_json: bool) -> Any:  # noqa: ANN401 - one or the other
+        draft = await self.open()
+
+        def asked(changed: Changed, running: Changed) -> DraftQuestion:
+            return DraftQuestion(draft.number, changed, running, self.folder, question, as_json)
+
+        return await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
+
+    async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> DraftProposal:
+        def last(connection: Connection) -> tuple[DraftChange, Differences]:
+            done, undone = drafts.stacks(connection, by)
+            if not (found := done if undo else undone):
+                raise EditError(f"there is nothing of yours to {'undo' if undo else 'do again'}")
+            return found[-1], drafts.differences_of(connection, found[-1])
+
+        return await self._proposed(draft, "undone" if undo else "redone", *await self._identity.read(last))
+
+    async def _proposed(self, draft: Draft, name: str, *asked: object) -> DraftProposal:
+        proposal = await self._editing.ask(draft.files, name, *asked)
+        assert isinstance(proposal, DraftProposal)
+        return proposal
+
+    async def _files_of(self, draft: Draft, paths: Sequence[str] | None) -> str:
+        found = await self._editing.ask(draft.files, "shown", draft.number, paths)
+        assert isinstance(found, str)
+        return found
+
+    async def _changed(self, propose: Callable[[Draft], Awaitable[DraftProposal]], by: Actor) -> tuple[int, str]:
+        """Let the draft be what is proposed, which is thought of again where somebody else was quicker; the number of
+        the change, and the files that are others then as JSON of a `FilesView`.
+        """
+        while True:
+            before = await self.open()
+            try:
+                proposal = await propose(before)
+            except PartChangedError as error:
+                raise await self._told_by_whom(error, by) from error
+            now = self._identity.now()
+            after = await self._identity.write(partial(_written, before, proposal, by, now), by=by)
+            if after is not None:
+                break
+        await self._noticed(after)
+        return after.number, await self._files_of(after, list(proposal.changed))
+
+    async def _told_by_whom(self, error: PartChangedError, by: Actor) -> PartChangedError:
+        """The same with the name of who was there before."""
+        last = await self._identity.read(lambda connection: drafts.last_of(connection, error.file))
+        if last is None or last.by_id == by.id:
+            return error
+        return PartChangedError(error.file, error.path, f"{error}, by {last.by_name}")
+
+    async def _noticed(self, draft: Draft) -> None:
+        """Show the draft, and check it, where it is another one; after a deployment only how its files stand is."""
+        files = await self._marked(draft)
+        if (shown := self._shown) is not None and shown.number == draft.number:
+            if files != shown.files:
+                self._show(shown.model_copy(update={"files": files}))
+            return
+        changes = await self._identity.read(lambda connection: drafts.changes(connection, 1))
+        last = change_view(changes[0]) if changes else None
+        self._shown = WorkshopView(number=draft.number, files=files, last=last, check=waiting(draft.number))
+        self._desk.check(draft.number, draft.files)
+
+    async def _marked(self, draft: Draft) -> dict[str, FileMark]:
+        """How each file stands; found once for each draft."""
+        if self._marks is None or self._marks[0] != draft:
+            self._marks = draft, await run_in_threadpool(marks, draft)
+        return self._marks[1]
+
+    def _found(self, check: CheckView) -> None:
+        self._check = check
+        if self._shown is not None:
+            self._show(self._shown.model_copy(update={"check": check}))
+
+    def _show(self, shown: WorkshopView) -> None:
+        self._shown = shown
+        self._encoded = None
+        self.latest.tell()
+
+    def _present(self) -> str:
+        if self._encoded is None:
+            assert self._shown is not None  # nobody listens before it was opened
+            self._encoded = WorkshopSnapshot(kind="workshop", workshop=self._shown).model_dump_json()
+        return self._encoded
+
+
+def _taken_up(draft: Draft, files: Files, proposal: DraftProposal, now: float, connection: Connection) -> Draft | None:
+    return drafts.take_up(connection, draft, files, proposal, now)
+
+
+def _written(draft: Draft, proposal: DraftProposal, by: Actor, now: float, connection: Connection) -> Draft | None:
+    return drafts.write(connection, draft, proposal, by, now)

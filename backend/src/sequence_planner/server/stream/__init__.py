@@ -1,0 +1,1 @@
+"""The WebSockets: the station as it changes, for pages and watches."""

@@ -1,0 +1,210 @@
+"""WebSocket message schemas: station stream, ROS graph, pipeline edges and draft."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, RootModel
+from typing_extensions import TypedDict
+
+from sequence_planner.analysis.report import AnalysisDocument
+from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.details import NetworkView
+from sequence_planner.controller.views.pipelines import FlowsView
+from sequence_planner.controller.views.station import (
+    AbilityView,
+    AlarmView,
+    ApprovalView,
+    DeploymentView,
+    ErrandView,
+    ForceView,
+    JobView,
+    LastCorrectionView,
+    LastErrandView,
+    OperationView,
+    OverrideView,
+    PackML,
+    PlanView,
+    QuestionView,
+    ResourceView,
+    ServiceView,
+    StandbyView,
+    StationIdentity,
+    StationStanding,
+    StationView,
+    TaskView,
+    TopicView,
+    UndecidedOutputView,
+    VariableView,
+    WayBackView,
+    WhoCanView,
+)
+from sequence_planner.editor.schemas.draft import WorkshopView
+from sequence_planner.execution.vocabulary import Mode, Production
+
+# What is said on the WebSocket `/api/v1/stream`. The page's TypeScript types are generated from these models.
+#
+# The server sends one snapshot, then deltas. `sequence` counts what is told to everybody; a client that misses a number
+# asks for a new snapshot with `resync`. A snapshot carries the number of the last message that it includes, so the
+# delta after it carries the next one.
+
+
+class StationChange(TypedDict, total=False):
+    """Members of `StationView` that changed. Of a map, only the entries that are new or changed."""
+
+    station: StationIdentity
+    tick: int
+    time: float
+    revision: int
+    mode: Mode
+    packml: PackML
+    standing: StationStanding
+    silent: list[str]
+    failing: list[str]
+    stepping: bool
+    production: Production
+    unconfirmed: bool
+    undecided: dict[str, UndecidedOutputView]  # whole: it is no map of which entries are sent
+    control: ControlView | None
+    resources: dict[str, ResourceView]
+    variables: dict[str, VariableView]
+    abilities: dict[str, AbilityView]
+    operations: dict[str, OperationView]
+    by_order: bool
+    jobs: dict[str, JobView]
+    plan: PlanView
+    errand: ErrandView | None
+    last_errand: LastErrandView | None
+    forces: dict[str, ForceView]  # whole, too
+    out_of_service: list[ServiceView]
+    questions: list[QuestionView]
+    last_correction: LastCorrectionView | None
+    approvals: dict[str, ApprovalView]  # whole, too
+    who_can: WhoCanView | None
+    tasks: dict[str, TaskView]
+    topics: dict[str, TopicView]
+    overrides: dict[str, OverrideView]
+    alarms: dict[str, AlarmView]
+    way_back: WayBackView | None
+    analysis: AnalysisDocument | None
+    standby: StandbyView | None
+    deployment: DeploymentView | None
+
+
+class StationRemoval(TypedDict, total=False):
+    """Keys that are no longer in the maps of `StationView`."""
+
+    resources: list[str]
+    variables: list[str]
+    abilities: list[str]
+    operations: list[str]
+    jobs: list[str]
+    tasks: list[str]
+    topics: list[str]
+    overrides: list[str]
+    forces: list[str]
+    undecided: list[str]
+    approvals: list[str]
+    alarms: list[str]
+
+
+class ControllerState(StrEnum):
+    """Whether the server hears the controller. While it is lost, what was shown before is old."""
+
+    HEARD = "heard"
+    LOST = "lost"
+
+
+class StreamPart(BaseModel):
+    """Base of all messages: immutable, and nothing beside what is declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Snapshot(StreamPart):
+    """The whole view."""
+
+    kind: Literal["snapshot"]
+    sequence: int
+    view: StationView
+
+
+class Delta(StreamPart):
+    """What changed since the message before; at least one each second, with at least a fresh `time`."""
+
+    kind: Literal["delta"]
+    sequence: int
+    changed: StationChange
+    removed: StationRemoval
+
+
+class Link(StreamPart):
+    """The controller fell silent, or is back; then a snapshot follows."""
+
+    kind: Literal["link"]
+    sequence: int
+    controller: ControllerState
+
+
+class StreamError(StreamPart):
+    """Something the client sent cannot be understood. The connection goes on."""
+
+    kind: Literal["error"]
+    detail: str
+
+
+class StreamMessage(RootModel[Annotated[Snapshot | Delta | Link | StreamError, Field(discriminator="kind")]]):
+    """Any message from the server."""
+
+
+class Resync(StreamPart):
+    """The client wants a new snapshot."""
+
+    kind: Literal["resync"]
+
+
+# What is said on the WebSockets that show one document again and again: the ROS graph, what passes the
+# pipelines, and the draft of the model.
+#
+# Each message has the whole document. A client may ask for it again with `resync`, as on `/api/v1/stream`.
+
+
+class NetworkSnapshot(StreamPart):
+    """The ROS graph as it is now."""
+
+    kind: Literal["network"]
+    network: NetworkView
+
+
+class FlowsSnapshot(StreamPart):
+    """What has passed the pipelines by now."""
+
+    kind: Literal["flows"]
+    flows: FlowsView
+
+
+class WorkshopSnapshot(StreamPart):
+    """The draft of the model and its check as they are now."""
+
+    kind: Literal["workshop"]
+    workshop: WorkshopView
+
+
+class Silence(StreamPart):
+    """There is nothing to show: the controller is not heard, or is still preparing the station."""
+
+    kind: Literal["link"]
+    controller: ControllerState
+
+
+class NetworkStreamMessage(RootModel[Annotated[NetworkSnapshot | Silence | StreamError, Field(discriminator="kind")]]):
+    """Any message of `/api/v1/ros/stream`."""
+
+
+class FlowsStreamMessage(RootModel[Annotated[FlowsSnapshot | Silence | StreamError, Field(discriminator="kind")]]):
+    """Any message of `/api/v1/pipelines/stream`."""
+
+
+class WorkshopStreamMessage(RootModel[Annotated[WorkshopSnapshot | StreamError, Field(discriminator="kind")]]):
+    """Any message of `/api/v1/model/stream`."""

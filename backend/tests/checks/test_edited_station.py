@@ -1,0 +1,54 @@
+"""The truck engine station after an edit: what is proven again of it is what is found out from nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from cli.commands import TRUCK
+from core.replaying import replay
+from sequence_planner.analysis.checks.evidence import Evidence
+from sequence_planner.analysis.checks.large_reachability import FarAnswers, from_afar
+from sequence_planner.analysis.checks.supervised import subjects_of
+from sequence_planner.cli.loading import load_model
+from sequence_planner.synthesis.supervisor import supervised, supervisor
+
+STATION = TRUCK.with_name("truck_engine_station")
+LOOSENED = (
+    "position == AttachAtlasTCPPose implies end_effector.tool in {none, ATLASTOOL}",
+    "position == AttachAtlasTCPPose implies end_effector.tool in {none, ATLASTOOL, OFTOOL}",
+)
+
+
+PLANNING = 120.0  # seconds at most: without runs that are known all takes much longer, also beside other tests
+
+
+def found(station: Path, known: Evidence | None = None) -> FarAnswers:
+    """What is found of a station, with what is `known` of it from before an edit or without."""
+    automaton = load_model(station).automaton
+    supervision = supervised(automaton)
+    safe = supervision.plant.diagrams.exported(supervision.safe)
+    return from_afar(automaton, list(subjects_of(automaton)), safe, supervisor(supervision), PLANNING, known)
+
+
+@pytest.mark.timeout(1200)
+def test_after_a_guard_was_loosened_the_same_is_found_as_from_nothing(tmp_path: Path) -> None:
+    """Tried on that very station, as its sets of states are what random stations do not have: large."""
+    known = found(STATION).evidence
+    assert known is not None
+    edited = copytree(STATION, tmp_path / STATION.name)
+    file = edited / "resources" / "robot.yaml"
+    text = file.read_text(encoding="utf-8")
+    assert LOOSENED[0] in text
+    file.write_text(text.replace(*LOOSENED), encoding="utf-8")
+    again, anew = found(edited, known), found(edited)
+    assert again.findings
+    assert [(each.subject.name, each.kind, each.message) for each in again.findings] == [
+        (each.subject.name, each.kind, each.message) for each in anew.findings
+    ]
+    automaton = load_model(edited).automaton
+    for each in again.findings:
+        assert each.trace is not None
+        replay(automaton, each.trace)

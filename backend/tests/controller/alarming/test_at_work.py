@@ -1,0 +1,35 @@
+"""Alarms of a controller that runs: commands reach them, and the journal hears of them."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from controller.bench import STATE, Arm, bench
+from sequence_planner.controller.commands.commands import AcknowledgeAlarm, CommandRefused
+from sequence_planner.controller.views.station import AlarmState
+from sequence_planner.core.actor import SYSTEM
+
+
+def test_an_alarm_comes_is_acknowledged_and_goes() -> None:
+    async def scenario() -> None:
+        async with bench() as on:
+            arm = Arm(on.network)
+            with arm.saying("home"):
+                await on.until(lambda: on.controller.execution.state["arm.pose"] == "home")
+            arm.transport.close()
+            await on.until(lambda: "silent:arm" in on.controller.view().alarms)
+            alarm = on.controller.view().alarms["silent:arm"]
+            assert alarm.text.startswith(f"No message any more on {STATE}")
+            command = AcknowledgeAlarm(actor=SYSTEM, alarm="silent:arm", since=alarm.since)
+            await on.controller.command(command)
+            known = on.controller.view().alarms["silent:arm"]
+            assert (known.state, known.by) == (AlarmState.ACKNOWLEDGED, SYSTEM.name)
+            with Arm(on.network).saying("home"):
+                await on.until(lambda: "silent:arm" not in on.controller.view().alarms)
+            with pytest.raises(CommandRefused) as refused:
+                await on.controller.command(command)
+            assert refused.value.slug == "alarm-gone"
+
+    asyncio.run(scenario())

@@ -1,0 +1,358 @@
+"""Plans by hand: what is offered, what it takes to take it, and that nothing else is carried out."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from functools import partial
+
+import pytest
+
+from core.actors import EVA
+from core.building import Does, automaton, predicate_of
+from sequence_planner.automaton.automaton import Operation
+from sequence_planner.controller.commands.commands import CommandRefused, GivenValue, TakeErrand
+from sequence_planner.controller.planner_client import AdvisorClient
+from sequence_planner.controller.recovery import proposals
+from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.corrections import Corrections
+from sequence_planner.controller.recovery.proposals import Offers
+from sequence_planner.controller.recovery.stalls import StallDetector
+from sequence_planner.controller.views.proposals import OfferView
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
+from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
+from sequence_planner.planning.recovery.proposals import Advice
+from sequence_planner.planning.recovery.request import AdviceRequest
+from sequence_planner.synthesis.supervisor import synthesise
+
+PLACES = EnumerationType(("home", "work"))
+RESTING = "at == target and not jammed"
+
+
+def made(precondition: str = "loaded") -> Executor:
+    """A cart that carries things from home to work; when it is jammed, only a rescue moves it."""
+    cart = automaton(
+        {
+            "go": Does(("target := work",), f"at == home and {RESTING}", executing="at != target", finish="at == work"),
+            "back": Does(
+                ("target := home",), f"at == work and {RESTING}", executing="at != target", finish="at == home"
+            ),
+            "load": Does(("loaded := true", "delivered := false"), f"at == home and not loaded and {RESTING}"),
+            "unload": Does(("loaded := false", "delivered := true"), f"at == work and loaded and {RESTING}"),
+            "rescue": Does(("jammed := false",), "jammed", restart=True),
+        },
+        measured={"at": (PLACES, "home")},
+        output={"target": (PLACES, "home")},
+        estimated={"loaded": (BOOLEAN, False), "delivered": (BOOLEAN, False), "jammed": (BOOLEAN, False)},
+        effects={
+            "go.arrives": ("target == work and at == home", ("at := work",)),
+            "back.arrives": ("target == home and at == work", ("at := home",)),
+        },
+        forbidden={"too much": "loaded and delivered"},
+    )
+    begins, delivered = predicate_of(cart, precondition), predicate_of(cart, "delivered")
+    operation = Operation("deliver", "Deliver", begins, delivered)
+    at = replace(cart.variables["at"], resource="station")
+    cart = replace(cart, operations={"deliver": operation}, variables={**cart.variables, "at": at})
+    return Executor(cart, synthesise(cart))
+
+
+class Desk:
+    """The station, and who offers what there is to do."""
+
+    def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
+        self.adviser, self.execution = adviser, execution
+        doubting = ConsistencyMonitor(execution)
+        corrections = Corrections(execution, adviser, Beliefs(execution), doubting)
+        self.offers = Offers(execution, adviser, corrections, doubting.impossible, StallDetector(execution))
+        self.seconds = 0.0
+        self.at: Value = "home"
+
+    @property
+    def now(self) -> Timestamp:
+        return Timestamp(1000.0 + self.seconds, self.seconds)
+
+    def tick(self, at: Value | None = None) -> tuple[str, ...]:
+        """The abilities that a tick starts."""
+        self.seconds += 0.1
+        self.at = at or self.at
+        return self.execution.tick({"at": self.at}, self.now).started
+
+    def enter(self, mode: Mode) -> None:
+        self.execution.change_mode(mode, "Eva", self.now)
+
+    def correct(self, **values: Value) -> None:
+        self.execution.correct(values, "Eva", "seen", self.now)
+
+    def believe(self, **values: Value) -> None:
+        """As an ability would have written it: nobody has said that it is so."""
+        self.execution.state = self.execution.corrected(values)
+
+    def take(
+        self, offer: OfferView, starts: list[str] | None = None, corrections: dict[str, GivenValue] | None = None
+    ) -> None:
+        """Take it as it was shown, or with other things confirmed."""
+        shown = [] if offer.errand is None else [step.ability for step in offer.errand.steps]
+        changes = {change.name: change.then for change in offer.corrections}
+        command = TakeErrand(
+            actor=EVA,
+            reason="to try it",
+            offer=offer.id,
+            starts=shown if starts is None else starts,
+            corrections=changes if corrections is None else corrections,
+        )
+        self.offers.take(command, self.now)
+
+
+def refused(slug: str, act: Callable[[], object], status: int = 409) -> str:
+    """What is said."""
+    with pytest.raises(CommandRefused) as found:
+        act()
+    assert (found.value.slug, found.value.status) == (slug, status)
+    assert (found.value.place is not None) == (slug == "bad-predicate")
+    return found.value.detail
+
+
+async def refused_later(slug: str, asking: Awaitable[object], status: int = 409) -> str:
+    with pytest.raises(CommandRefused) as found:
+        await asking
+    assert (found.value.slug, found.value.status) == (slug, status)
+    return found.value.detail
+
+
+@asynccontextmanager
+async def desk(precondition: str = "loaded") -> AsyncIterator[Desk]:
+    execution = made(precondition)
+    adviser = AdvisorClient(execution.automaton, execution.supervisor)
+    try:
+        yield Desk(adviser, execution)
+    finally:
+        adviser.close()
+
+
+def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            there.tick()
+            offer = await there.offers.goal("at == work and not loaded")
+            assert offer.errand is not None
+            assert [(step.ability, step.tick) for step in offer.errand.steps] == [("go", 1)]
+            assert (offer.kind, offer.needs_restart, offer.ends) == ("goal", False, "at == work and not loaded")
+            assert offer.obstacle == refused("production-waiting", lambda: there.take(offer))
+            there.execution.start_production()
+            assert "changed" in refused("state-moved", lambda: there.take(offer))
+            offer = await there.offers.goal("at == work")
+            assert offer.obstacle == refused("wrong-mode", lambda: there.take(offer))
+            there.enter(Mode.PAUSED)
+            offer = await there.offers.goal("at == work")
+            assert offer.obstacle is None
+            refused("not-confirmed", lambda: there.take(offer, starts=[]))
+            refused("not-confirmed", lambda: there.take(offer, corrections={"jammed": False}))
+            refused("offer-gone", lambda: there.take(offer.model_copy(update={"id": "another-1"})))
+            assert there.execution.errand is None
+            there.take(offer)
+            assert there.execution.errand is not None
+            assert (there.execution.errand.by, there.execution.errand.why) == ("Eva", "to try it")
+            assert there.tick() == ("go",)
+            await refused_later("errand-under-way", there.offers.goal("loaded"))
+            await refused_later("errand-under-way", there.offers.advice())
+            assert there.tick(at="work") == ()
+            assert there.execution.errand is None
+            assert there.execution.conduct.last_errand is not None
+            assert there.execution.conduct.last_errand.done
+            assert there.execution.mode is Mode.PAUSED
+
+    asyncio.run(scenario())
+
+
+def test_what_cannot_be_offered_is_said() -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            there.tick()
+            text = await refused_later("bad-predicate", there.offers.goal("loaded and att == work"), 422)
+            assert text.startswith("character 12, `att`: ")
+            await refused_later("bad-predicate", there.offers.goal("loaded and"), 422)
+            await refused_later("goal-holds", there.offers.goal("at == home"))
+            text = await refused_later("no-plan", there.offers.goal("loaded and delivered"))
+            assert "There is no plan as long as all of this is so" in text
+            await refused_later("unknown-operation", there.offers.reset("carry"), 404)
+
+    asyncio.run(scenario())
+
+
+def test_an_operation_is_reset_to_where_it_begins() -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            there.execution.start_production()
+            there.tick(at="work")
+            there.correct(delivered=True)
+            there.execution.correct({"target": "work"}, "Eva", "seen", there.now)
+            there.enter(Mode.PAUSED)
+            there.tick()
+            offer = await there.offers.reset("deliver")
+            assert (offer.kind, offer.operation, offer.title) == ("reset", "deliver", "Reset Deliver")
+            assert offer.errand is not None
+            assert [step.ability for step in offer.errand.steps] == ["back", "load"]
+            there.take(offer)
+            assert there.tick() == ("back",)
+            assert there.tick(at="home") == ("load",)
+            there.tick()
+            assert there.execution.errand is None
+            there.tick()
+            assert "deliver" in there.execution.active
+
+    asyncio.run(scenario())
+
+
+def test_where_there_was_too_little_time_for_advice_asking_again_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(proposals, "AdviceRequest", partial(AdviceRequest, deadline=0.0))
+    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the adviser is only being started
+
+    async def scenario() -> None:
+        async with desk() as there:
+            there.tick()
+            hurried = await there.offers.advice()
+            assert (hurried.offers, hurried.complete) == ([], False)
+            advice = await there.offers.advice()
+            assert advice.offers
+            assert await there.offers.advice() is advice
+
+    asyncio.run(scenario())
+
+
+def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            at_leisure = there.adviser.answer
+
+            async def answer(request: AdviceRequest, deadline: float) -> Advice:
+                advice = await at_leisure(request, deadline)
+                if request.deadline >= proposals.LONGER:
+                    return advice
+                return replace(advice, offers=tuple(each for each in advice.offers if each.corrections), complete=False)
+
+            monkeypatch.setattr(there.adviser, "answer", answer)
+            monkeypatch.setattr(proposals, "WAITING", 60.0)  # the adviser is only being started
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.believe(jammed=True)
+            there.tick()
+            hurried = await there.offers.advice()
+            assert [bool(offer.corrections) for offer in hurried.offers] == [True]
+            advice = await there.offers.advice()
+            assert any(offer.errand is not None and not offer.corrections for offer in advice.offers)
+            assert await there.offers.advice() is advice
+
+    asyncio.run(scenario())
+
+
+def test_all_who_ask_at_once_get_one_answer_though_one_of_them_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the adviser is only being started
+
+    async def scenario() -> None:
+        async with desk() as there:
+            there.tick()
+            leaving, *staying = (asyncio.create_task(there.offers.advice()) for _ in range(4))
+            await asyncio.sleep(0)  # all have asked, and nobody can have answered
+            leaving.cancel()
+            first, *others = await asyncio.gather(*staying)
+            assert first.offers
+            assert all(each is first for each in others)
+            assert leaving.cancelled()
+
+    asyncio.run(scenario())
+
+
+def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.believe(jammed=True)
+            there.tick()
+            assert there.execution.active == {"deliver"}
+            said = next(offer for offer in (await there.offers.advice()).offers if offer.corrections)
+            assert said.obstacle == refused("not-in-restart", lambda: there.take(said))
+            there.enter(Mode.RESTART)
+            advice = await there.offers.advice()
+            assert [offer.obstacle for offer in advice.offers if offer.corrections] == [None]
+            assert advice.revision == there.execution.revision
+            assert await there.offers.advice() is advice, "the same question is not asked twice"
+            monkeypatch.setattr(proposals, "MOST_KEPT", len(advice.offers))
+            await there.offers.goal("not jammed")  # and for it another offer is forgotten
+            advice = await there.offers.advice()
+            rescue = next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps)
+            correction = next(offer for offer in advice.offers if offer.corrections)
+            assert [step.ability for step in rescue.errand.steps] == ["rescue"] if rescue.errand else False
+            assert rescue.needs_restart
+            assert rescue.then is not None
+            assert {step.ability for step in rescue.then.steps} == {"go", "unload"}
+            assert [(each.name, each.now, each.then) for each in correction.corrections] == [("jammed", True, False)]
+            refused("not-confirmed", lambda: there.take(correction, corrections={}))
+            refused("not-confirmed", lambda: there.take(correction, corrections={"jammed": 0}))
+            there.take(correction)
+            assert there.execution.state["jammed"] is False
+            refused("state-moved", lambda: there.take(rescue))
+            there.correct(jammed=True)
+            there.enter(Mode.PAUSED)
+            advice = await there.offers.advice()
+            rescue = next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps)
+            assert "Enter it" in refused("wrong-mode", lambda: there.take(rescue))
+            there.enter(Mode.RESTART)
+            advice = await there.offers.advice()
+            there.take(next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps))
+            assert there.tick() == ("rescue",)
+            there.tick()
+            assert there.execution.errand is None
+            assert there.execution.mode is Mode.RESTART, "to leave it is another act"
+            replan = (await there.offers.advice()).offers[0]
+            assert replan.kind == "replan"
+            assert replan.obstacle == refused("nothing-to-take", lambda: there.take(replan))
+
+    asyncio.run(scenario())
+
+
+def test_a_resource_comes_back_where_nobody_knows_whether_an_operation_can_begin() -> None:
+    async def scenario() -> None:
+        async with desk("loaded and at == work") as there:
+            execution = there.execution
+            execution.start_production()
+            there.tick("work")
+            there.correct(loaded=True)
+            execution.tick({"at": None}, there.now, silent=frozenset({"station"}))
+            assert not execution.active
+            (offer,) = (await there.offers.advice()).offers
+            assert (offer.kind, offer.online, offer.goals) == ("physical", ["station"], ["deliver"])
+            execution.set_service(ServiceKind.OPERATION, "deliver", False, "Eva", "not today", there.now)
+            assert [offer.kind for offer in (await there.offers.advice()).offers] == ["replan"]
+
+    asyncio.run(scenario())
+
+
+def test_what_somebody_has_said_is_contradicted_by_no_offer() -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.believe(jammed=True)
+            there.tick()
+            there.enter(Mode.RESTART)
+            advice = await there.offers.advice()
+            said = {change.name for offer in (*advice.offers, *advice.if_checked) for change in offer.corrections}
+            assert said == {"jammed"}, "that it is loaded was said"
+            assert not advice.offers[0].corrections
+            there.execution.confirm(frozenset({"jammed"}), "Eva", there.now)
+            advice = await there.offers.advice()
+            assert advice.offers
+            assert not any(offer.corrections for offer in (*advice.offers, *advice.if_checked))
+
+    asyncio.run(scenario())

@@ -1,0 +1,151 @@
+"""When the steps of a plan are expected: by the model, by the runs there were, and by what happened last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from controller.test_local_formulas import beginning
+from controller.test_receding_horizon import asked, ticks
+from core.building import Does, automaton
+from sequence_planner.automaton.automaton import Automaton, HumanTask, Timeouts
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.forecast import Forecast, waiting_for_people
+from sequence_planner.execution.vocabulary import Mode
+from sequence_planner.language.types import EnumerationType, Value
+from sequence_planner.planning.problem import Plan, PlanAnswer, PlanTick, Verdict
+
+PLACES = EnumerationType(("here", "detour", "there", "back"))
+AT_REST: dict[str, Value] = {"at": "here"}
+
+
+def going(place: str, since: str) -> Does:
+    """Goes there from `since`, which is over on arrival."""
+    return Does(
+        start=(f"target := {place}",),
+        enabled=f"at == {since} and target == {since}",
+        executing=f"target == {place} and at != {place}",
+        finish=f"target == {place} and at == {place}",
+    )
+
+
+WAY = automaton(
+    {
+        "aside": going("detour", "here"),
+        "return": going("here", "detour"),
+        "onwards": going("there", "detour"),
+        "away": going("back", "there"),
+    },
+    measured={"at": (PLACES, "here")},
+    output={"target": (PLACES, "here")},
+    effects={str(place): (f"target == {place} and at != {place}", (f"at := {place}",)) for place in PLACES.domain},
+    goals={"come": "at == back"},
+)
+SLOW = replace(WAY, effects=tuple(replace(effect, shortest=2.0, longest=4.0) for effect in WAY.effects))
+TICKS = ticks(("", "aside"), ("detour", "onwards"), ("there", "away"), ("back", ""))
+
+
+class Watched:
+    """An execution that follows a plan, and its timetable."""
+
+    def __init__(self, automaton: Automaton, plan: tuple[PlanTick, ...] = TICKS) -> None:
+        self.execution, _ = beginning(automaton, **AT_REST)
+        self.timetable = Forecast(self.execution)
+        answer = PlanAnswer(Verdict.FOUND, Plan(plan, False, False), ("come",), (), 0, 0.01)
+        assert self.execution.adopt(asked(self.execution), answer)
+
+    def tick(self, seconds: float, at: str = "here") -> None:
+        self.execution.tick({"at": at}, Timestamp(1000 + seconds, seconds))
+        self.timetable.note(1000 + seconds)
+
+    @property
+    def expected(self) -> dict[str, tuple[float, float]]:
+        """By ability, in seconds after the first tick."""
+        order = self.execution.plan.order
+        names = {step.number: step.ability for step in (*order.past, *order.ahead)}
+        table = self.timetable.expected().items()
+        return {names[number]: (each.start - 1000, each.end - 1000) for number, each in table}
+
+
+def test_steps_follow_one_another_as_the_plan_orders_them() -> None:
+    watched = Watched(SLOW)
+    watched.tick(0)
+    assert watched.expected == {"aside": (0, 3), "onwards": (3, 6), "away": (6, 9)}
+
+
+def test_nothing_moves_on_while_nothing_happens() -> None:
+    watched = Watched(SLOW)
+    watched.tick(0)
+    before = watched.expected
+    watched.tick(2)
+    assert watched.expected == before
+
+
+def test_what_is_late_makes_what_follows_late() -> None:
+    watched = Watched(SLOW)
+    watched.tick(0)
+    watched.tick(5, at="detour")
+    assert watched.expected["onwards"][0] == 5
+    assert watched.expected["away"][0] - watched.expected["onwards"][0] == 3
+
+
+def test_runs_there_were_tell_more_than_the_model() -> None:
+    watched = Watched(SLOW, ticks(("", "aside"), ("detour", "return"), ("here", "aside")) + TICKS[1:])
+    watched.tick(0)
+    watched.tick(1, at="detour")
+    assert watched.expected == {"return": (1, 4), "aside": (4, 5), "onwards": (5, 8), "away": (8, 11)}
+
+
+AGAIN = ticks(("", "aside"), ("detour", "return"), ("here", "aside")) + TICKS[1:]
+
+
+def after_a_long_run(station: Automaton, disturb: Callable[[Executor], None] = lambda execution: None) -> float:
+    """How long the next run of an ability is expected to take, of which one has taken 900 s."""
+    watched = Watched(station, AGAIN)
+    watched.tick(0)
+    disturb(watched.execution)
+    watched.tick(900, at="detour")
+    watched.execution.change_mode(Mode.AUTOMATIC, "Eva", Timestamp(1900, 900))
+    start, end = watched.expected["aside"]
+    return end - start
+
+
+def test_what_a_person_takes_is_no_duration_of_an_ability() -> None:
+    assert after_a_long_run(SLOW) == 900
+    aside = SLOW.abilities["aside"]
+    asks = replace(aside, human=HumanTask("Push it aside.", "done"))
+    person = replace(SLOW, abilities={**SLOW.abilities, "aside": asks})
+    assert waiting_for_people(person) == {"aside"}
+    assert after_a_long_run(person) == 3
+    elsewhere = replace(SLOW.abilities["away"], human=HumanTask("Say where it is.", "at"))
+    awaiting = replace(SLOW, abilities={**SLOW.abilities, "away": elsewhere})
+    assert "aside" in waiting_for_people(awaiting)
+    assert after_a_long_run(awaiting) == 3
+
+
+def test_a_run_in_which_the_station_stood_tells_nothing_of_how_long_it_takes() -> None:
+    assert after_a_long_run(SLOW, lambda execution: execution.change_mode(Mode.PAUSED, "Eva", Timestamp(1001, 1))) == 3
+    late = replace(SLOW.abilities["aside"], timeouts=Timeouts(finish=30.0))
+    assert after_a_long_run(replace(SLOW, abilities={**SLOW.abilities, "aside": late})) == 3
+
+
+@pytest.mark.parametrize("plan_dropped", [True, False])
+def test_without_a_plan_nothing_is_expected(plan_dropped: bool) -> None:
+    execution, _ = beginning(SLOW, **AT_REST)
+    timetable = Forecast(execution)
+    timetable.note(1000)
+    if plan_dropped:
+        execution.plan.drop("for a test")
+        timetable.note(1001)
+    assert timetable.expected() == {}
+
+
+def test_the_execution_is_left_as_it_is() -> None:
+    """What is simulated is a run of its own."""
+    execution: Executor = Watched(SLOW).execution
+    before = dict(execution.state)
+    Forecast(execution).note(1000)
+    assert dict(execution.state) == before

@@ -1,0 +1,221 @@
+"""Why not? Every condition in the way, with the variables that decide it and who could change them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+
+import pytest
+
+from controller.test_offers import Desk, made
+from core.building import Does, automaton, predicate_of
+from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.queries import AskWhyNot
+from sequence_planner.controller.planner_client import AdvisorClient
+from sequence_planner.controller.recovery.consistency import Beliefs
+from sequence_planner.controller.recovery.explain import ConditionContext, HindranceKind, of_ability
+from sequence_planner.controller.recovery.why_not import WhyNot
+from sequence_planner.controller.views.details import ConditionView, WhyNotView
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import Mode, ServiceKind
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.problem import PlanRequest
+from sequence_planner.synthesis.guards import shown_guards
+from sequence_planner.synthesis.supervisor import supervised, supervisor
+
+
+class Inquirer:
+    """Somebody who asks about the cart."""
+
+    def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
+        self.desk = Desk(adviser, execution)
+        around = ConditionContext({"at": "/cart/state"}, lambda name: 7.0, Beliefs(execution), dict)
+        self.execution = execution
+        self.why_not = WhyNot(execution, around, adviser)
+
+    async def ability(self, name: str) -> WhyNotView:
+        return await self.why_not.answer(AskWhyNot(of="ability", name=name))
+
+    async def operation(self, name: str = "deliver") -> WhyNotView:
+        return await self.why_not.answer(AskWhyNot(of="operation", name=name))
+
+    async def goal(self, predicate: str) -> WhyNotView:
+        return await self.why_not.answer(AskWhyNot(of="goal", name=predicate))
+
+    def plan(self) -> None:
+        request = self.execution.request(20)
+        assert isinstance(request, PlanRequest)
+        planner = Planner(self.execution.automaton, self.execution.supervisor)
+        self.execution.adopt(request, planner.answer(request))
+
+
+@asynccontextmanager
+async def inquirer() -> AsyncIterator[Inquirer]:
+    execution = made()
+    adviser = AdvisorClient(execution.automaton, execution.supervisor)
+    try:
+        yield Inquirer(adviser, execution)
+    finally:
+        adviser.close()
+
+
+def found(view: WhyNotView) -> list[tuple[str, str]]:
+    return [(each.kind, each.text) for each in view.conditions]
+
+
+def who(condition: ConditionView, variable: str) -> list[tuple[str, str]]:
+    (involved,) = [each for each in condition.involved if each.name == variable]
+    return [(each.how, each.name) for each in involved.changers]
+
+
+def test_an_ability_says_all_that_is_in_its_way_and_who_could_change_it() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            desk, execution = asked.desk, asked.execution
+            desk.tick()
+            desk.enter(Mode.PAUSED)
+            view = await asked.ability("unload")
+            assert found(view) == [
+                ("station", "production to be started"),
+                ("station", "automatic mode: the station is paused"),
+                ("written", "at == work"),
+                ("written", "loaded"),
+            ]
+            assert view.summary == "It waits for 4 things."
+            place, loaded = view.conditions[2:]
+            (at,) = place.involved
+            assert (at.name, at.value, at.wanted, at.since, at.topic) == ("at", "home", ["work"], 7.0, "/cart/state")
+            assert who(place, "at") == [("effect", "go"), ("device", "station")]
+            assert who(loaded, "loaded") == [("start", "load"), ("correction", "loaded")]
+            execution.start_production()
+            execution.set_service(ServiceKind.ABILITY, "unload", False, "Eva", "a test", desk.now)
+            desk.enter(Mode.AUTOMATIC)
+            assert found(await asked.ability("unload"))[0] == ("service", "unload to be put back in service")
+            assert found(await asked.ability("rescue")) == [
+                ("service", "restart mode, and a way back that has it"),
+                ("written", "jammed"),
+            ]
+            desk.execution.tick({"at": None}, desk.now)
+            (unheard,) = (await asked.ability("load")).conditions[:1]
+            assert (unheard.text, who(unheard, "at")) == ("a message on /cart/state", [("message", "/cart/state")])
+            with pytest.raises(CommandRefused) as refused:
+                await asked.ability("fly")
+            assert (refused.value.slug, refused.value.status) == ("unknown-ability", 404)
+
+    asyncio.run(scenario())
+
+
+def test_the_supervisor_and_the_plan_can_be_in_the_way() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            desk, execution = asked.desk, asked.execution
+            execution.start_production()
+            desk.tick()
+            view = await asked.ability("go")
+            assert [each.kind for each in view.conditions] == ["plan"]
+            assert view.summary == "It may start, and the plan does not have it now."
+            desk.correct(loaded=True)
+            desk.tick()
+            asked.plan()
+            view = await asked.ability("go")
+            assert (view.conditions, view.summary) == ([], "Nothing is in the way: it starts in the next tick.")
+            assert desk.tick() == ("go",)
+            assert (await asked.ability("go")).summary == "It runs."
+            execution.set_stepping(True)
+            assert ("station", "a step: the station goes step by step") in found(await asked.ability("unload"))
+
+    asyncio.run(scenario())
+
+
+def test_what_the_supervisor_adds_is_told_with_its_specification() -> None:
+    both = automaton(
+        {"one": Does(("first := true",), "not first"), "other": Does(("second := true",), "not second")},
+        estimated={"first": (BOOLEAN, False), "second": (BOOLEAN, False)},
+        forbidden={"both": "first and second"},
+    )
+    supervision = supervised(both)
+    execution = Executor(both, supervisor(supervision))
+    execution.correct({"first": True}, "Eva", "seen", Timestamp(0.0, 0.0))
+    ability, guard = both.abilities["other"], shown_guards(supervision)["other"]
+    (added,) = of_ability(execution, ability, {}, guard)
+    assert (added.kind, added.text) == (HindranceKind.SUPERVISOR, "not first, for the sake of: both")
+    assert added.expression == predicate_of(both, "not first")
+    (long,) = of_ability(execution, ability, {}, replace(guard, expression=None))
+    assert long.text == "not first (the nearest state in which it may start), for the sake of: both"
+    assert long.expression == predicate_of(both, "not first")
+    (unworded,) = of_ability(execution, ability, {}, None)
+    assert unworded.text == "a safe start: both (both)"
+
+
+def test_an_operation_says_why_it_is_not_active_or_how_far_it_is() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            desk, execution = asked.desk, asked.execution
+            execution.start_production()
+            desk.tick()
+            view = await asked.operation()
+            assert found(view) == [("written", "loaded")]
+            assert view.summary == "It is not active. It waits for loaded."
+            execution.set_service(ServiceKind.OPERATION, "deliver", False, "Eva", "a test", desk.now)
+            assert found(await asked.operation())[0] == ("service", "Deliver to be put back in service")
+            execution.set_service(ServiceKind.OPERATION, "deliver", True, "Eva", "a test", desk.now)
+            desk.correct(loaded=True)
+            desk.tick()
+            asked.plan()
+            view = await asked.operation()
+            assert view.summary == "It is active, and the plan leads to its goal."
+            assert found(view) == [("written", "delivered")]
+            desk.enter(Mode.RESTART)
+            assert "restart mode" in (await asked.operation()).summary
+            desk.correct(loaded=False, delivered=True)
+            desk.tick()
+            assert found(await asked.operation()) == [
+                ("written", "not delivered: its goal holds"),
+                ("written", "loaded"),
+            ]
+
+    asyncio.run(scenario())
+
+
+def test_a_goal_says_whether_the_station_could_reach_it() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            asked.desk.tick()
+            assert (await asked.goal("at == home")).summary == "It holds."
+            view = await asked.goal("at == work and delivered")
+            assert found(view) == [("written", "at == work"), ("written", "delivered")]
+            assert view.plan is not None
+            assert [step.ability for step in view.plan.steps] == ["load", "go", "unload"]
+            assert view.summary.endswith("The station could reach it with 3 starts.")
+            never = await asked.goal("loaded and delivered")
+            assert never.plan is None
+            assert never.reasons is not None
+            assert "the goal asked for" in never.reasons.members
+            with pytest.raises(CommandRefused, match="character 1, `up`"):
+                await asked.goal("up")
+
+    asyncio.run(scenario())
+
+
+def test_what_is_out_of_service_is_said_to_be_so_and_what_is_silent_to_be_offline() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            desk, execution = asked.desk, asked.execution
+            desk.tick()
+            execution.set_service(ServiceKind.RESOURCE, "station", False, "Eva", "it squeaks", desk.now)
+            reasons = (await asked.goal("at == work")).reasons
+            assert reasons is not None
+            assert "station is out of service" in reasons.members
+            assert reasons.corrections == ["station in service"]
+            execution.set_service(ServiceKind.RESOURCE, "station", True, "Eva", "oiled", desk.now)
+            execution.tick({"at": "home"}, desk.now, silent=frozenset({"station"}))
+            reasons = (await asked.goal("at == work")).reasons
+            assert reasons is not None
+            assert "station is offline" in reasons.members
+            assert reasons.corrections == ["station online"]
+
+    asyncio.run(scenario())

@@ -1,0 +1,49 @@
+"""A process that is asked about the draft again and again ends when nobody asks, and knows everything when it is."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+
+import pytest
+
+from controller.bench import until
+from sequence_planner.editor.processes import EditingProcess
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
+from sequence_planner.model.files import read_files
+from sequence_planner.process import worker
+
+STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
+
+
+def living() -> list[Child]:
+    return [child for child in children() if child.name == "editing_worker"]
+
+
+def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_question(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(worker, "RESTS_AFTER", 0.2)
+    files = read_files(STATION)
+
+    async def shown(editing: EditingProcess) -> object:
+        answer = await editing.ask(files, "shown", 1, None)
+        assert isinstance(answer, str)
+        return json.loads(answer)
+
+    async def scenario() -> None:
+        editing = EditingProcess()
+        try:
+            first = await shown(editing)
+            (before,) = living()
+            assert await shown(editing) == first
+            assert [each.pid for each in living()] == [before.pid], "it is kept as long as somebody asks"
+            await until(lambda: not living())
+            assert await shown(editing) == first
+        finally:
+            await editing.close()
+        assert living() == []
+
+    asyncio.run(scenario())

@@ -1,0 +1,248 @@
+"""A small station to show: two resources, a task, a plan of two starts, one alarm."""
+
+from __future__ import annotations
+
+from sequence_planner.controller.commands.commands import CorrectionAct
+from sequence_planner.controller.views.station import (
+    AbilityView,
+    AlarmState,
+    AlarmView,
+    ApprovalState,
+    ApprovalView,
+    BeliefView,
+    ForceView,
+    JobStepState,
+    JobStepView,
+    JobView,
+    OperationView,
+    OverrideFieldView,
+    OverrideView,
+    PackML,
+    PlanStepView,
+    PlanView,
+    Priority,
+    ResourceView,
+    StationIdentity,
+    StationStanding,
+    StationView,
+    StepStatus,
+    TaskView,
+    TopicView,
+    UndecidedOutputView,
+    VariableKind,
+    VariableView,
+)
+from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
+from sequence_planner.planning.problem import Contract
+
+
+def ability(resource: str, title: str) -> AbilityView:
+    return AbilityView(
+        resource=resource,
+        title=title,
+        human=resource == "operator",
+        restart=False,
+        enabled=True,
+        executing=False,
+        finished=False,
+        running_since=None,
+    )
+
+
+def step(name: str, resource: str, status: StepStatus, tick: int) -> PlanStepView:
+    return PlanStepView(
+        id=f"{name}@{tick}",
+        ability=f"{resource}.{name}",
+        title=name,
+        resource=resource,
+        status=status,
+        tick=tick,
+        started=None,
+        ended=None,
+        expected_start=None,
+        expected_end=None,
+        new=False,
+        waits_for=[],
+    )
+
+
+def example_view(**changes: object) -> StationView:
+    """The station at tick 1, with `changes` to its members."""
+    view = StationView(
+        station=StationIdentity(
+            name="bolting",
+            title="Bolting",
+            description="Tightens a bolt pair.",
+            transport="cyclonedds",
+            emulated=True,
+        ),
+        tick=1,
+        time=1000.0,
+        revision=1,
+        mode=Mode.AUTOMATIC,
+        packml=PackML.EXECUTE,
+        standing=StationStanding.WORKING,
+        silent=[],
+        failing=[],
+        stepping=False,
+        production=Production.STARTED,
+        unconfirmed=False,
+        undecided={
+            "robot.target_pose": UndecidedOutputView(
+                value="home", reacts=["robot reacts: robot.moving"], quiet=["above"], unsafe=["at_bolt"]
+            )
+        },
+        resources={
+            "robot": ResourceView(title="Robot", online=True, awaited_topics=[]),
+            "operator": ResourceView(title="Operator", online=True, awaited_topics=[]),
+        },
+        variables={
+            "robot.pose": VariableView(
+                resource="robot",
+                kind=VariableKind.MEASURED,
+                value="home",
+                domain=["home", "above_engine", "unknown"],
+                dual_approval=False,
+                since=999.0,
+                awaits=None,
+                belief=None,
+            ),
+            "bolts[bolt_pair_1]": VariableView(
+                resource=None,
+                kind=VariableKind.ESTIMATED,
+                value="empty",
+                domain=["empty", "placed", "tightened"],
+                dual_approval=True,
+                since=None,
+                awaits=None,
+                belief=BeliefView(writer="the beginning", at=900.0, evidence=[], unconfirmed_since=None),
+            ),
+        },
+        abilities={
+            "robot.move": ability("robot", "Move"),
+            "operator.place": ability("operator", "Place bolt pair"),
+        },
+        operations={
+            "tighten": OperationView(
+                title="Tighten bolt pair 1",
+                active=True,
+                active_since=990.0,
+                completed=0,
+                goal="bolts[bolt_pair_1] = tightened",
+                precondition="true",
+                left_out=False,
+                repeat=True,
+                for_jobs=True,
+                job="4711",
+            )
+        },
+        by_order=True,
+        jobs={
+            "4711": JobView(
+                title="Engine 4711",
+                work_master="truck_engine",
+                state=JobState.RUNNING,
+                stopping=False,
+                taken=980.0,
+                begun=981.0,
+                ended=None,
+                waits_for=[],
+                steps={"tighten": JobStepView(state=JobStepState.ACTIVE, waits_for=[], started=990.0, ended=None)},
+            )
+        },
+        plan=PlanView(
+            status=PlanStatus.FOLLOWED,
+            reason="tighten became active",
+            steps=[
+                step("place", "operator", StepStatus.RUNNING, 0),
+                step("move", "robot", StepStatus.NEXT, 2),
+            ],
+            ticks=4,
+            minimal_ticks=True,
+            minimal_starts=True,
+            replanned=0,
+            replacement=None,
+            contract=Contract.MINIMAL,
+            engine="bounded model checking",
+            milliseconds=1.5,
+            why=None,
+        ),
+        errand=None,
+        last_errand=None,
+        forces={"robot.pose": ForceView(value="home", real="unknown", until=1700000100.0, by="Eva", why="a look")},
+        out_of_service=[],
+        questions=[],
+        last_correction=None,
+        who_can=None,
+        approvals={
+            "a-1": ApprovalView(
+                act=CorrectionAct(values={"bolts[bolt_pair_1]": "placed"}),
+                revision=1,
+                person="eva",
+                by="Eva",
+                why="seen with my own eyes",
+                since=1000.0,
+                until=1120.0,
+                state=ApprovalState.WAITING,
+                answered_by=None,
+                answer=None,
+            )
+        },
+        tasks={
+            "7": TaskView(
+                revision=3,
+                ability="operator.place",
+                resource="operator",
+                title="Place bolt pair 1",
+                text="Place it on the cover plate",
+                created=995.0,
+                next_moves=["Robot moves above the engine"],
+                problem=None,
+            )
+        },
+        topics={
+            "/robot/state": TopicView(
+                type="bolting_msgs/msg/RobotState",
+                direction="in",
+                resource="robot",
+                last=999.9,
+                messages=12,
+                deadline=0.5,
+                fresh=True,
+                peers=1,
+                trouble=None,
+            )
+        },
+        overrides={
+            "robot.speed": OverrideView(
+                pipeline="/robot/command",
+                resource="robot",
+                expires=60.0,
+                fields={"speed": OverrideFieldView(type="real", between=(0.05, 0.5), among=None, value=0.1)},
+                actor="local",
+                until=1030.0,
+            )
+        },
+        control=None,
+        alarms={
+            "slow": AlarmView(
+                priority=Priority.LOW,
+                state=AlarmState.UNACKNOWLEDGED,
+                text="The robot is slow",
+                consequence="The work takes longer",
+                action="Look at it",
+                since=998.0,
+                ended=None,
+                by=None,
+                until=None,
+                why=None,
+                count=1,
+                parts=[],
+            )
+        },
+        way_back=None,
+        analysis=None,
+        standby=None,
+        deployment=None,
+    )
+    return view.model_copy(update=changes)

@@ -1,0 +1,223 @@
+"""Real processes' parts in one thread: a controller's link that publishes, and the server under uvicorn."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import secrets
+import socket
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, TypeVar
+
+import httpx
+import uvicorn
+from fastapi import FastAPI
+from websockets.sync.client import ClientConnection, connect
+
+from auth.cheap import cheap_passwords
+from sequence_planner.auth import users
+from sequence_planner.auth.login import SignIn
+from sequence_planner.auth.roles import Role
+from sequence_planner.auth.sessions import SignedIn, open_session
+from sequence_planner.auth.users import Person
+from sequence_planner.controller.commands.commands import CommandRefused, TaskCommand
+from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.ipc import ControllerLink
+from sequence_planner.controller.views.station import StationView
+from sequence_planner.core.actor import SYSTEM, ActorKind
+from sequence_planner.server.auth import IdentityService, session_cookie
+from sequence_planner.server.binding import bind
+from sequence_planner.server.server import uvicorn_config
+from sequence_planner.server.settings import Settings
+
+from .example_view import example_view
+
+T = TypeVar("T")
+PUBLISH_INTERVAL = 0.2  # seconds
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def until(condition: Callable[[], bool], seconds: float = 5.0) -> None:
+    """Wait for `condition`; fails when it does not come true in time."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.01)
+
+
+class Loop:
+    """An event loop in a thread of its own."""
+
+    def __init__(self) -> None:
+        self.loop = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self.thread.start()
+
+    def run(self, work: Coroutine[Any, Any, T]) -> T:
+        return asyncio.run_coroutine_threadsafe(work, self.loop).result(20)
+
+    def close(self) -> None:
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self.thread.join(5)
+        self.loop.close()
+
+
+class Controller:
+    """Publishes a view with a fresh time five times a second, and carries out or refuses commands.
+
+    Its time begins long ago, or is that `of_now`.
+    """
+
+    of_now = False
+
+    def __init__(self, loop: Loop, path: Path) -> None:
+        self.loop = loop
+        self.view = example_view()
+        self.commands: list[Command] = []
+        self.publishing = True
+        self.link = ControllerLink(path, self.handle)
+        self._task: asyncio.Task[None] | None = None
+
+    async def handle(self, command: Command) -> None:
+        if isinstance(command, TaskCommand):
+            task = self.view.tasks.get(command.task)
+            if task is None or task.revision != command.revision:
+                raise CommandRefused("task-gone", "The task is gone", "Look at what is asked for now.")
+            if command.task == "broken":
+                raise RuntimeError("a fault of the controller")
+        self.commands.append(command)
+
+    def start(self) -> None:
+        self.loop.run(self.link.__aenter__())
+
+        async def begin() -> None:
+            self._task = asyncio.create_task(self._publish())
+
+        self.loop.run(begin())
+
+    def stop(self) -> None:
+        async def end() -> None:
+            if self._task is not None:
+                self._task.cancel()
+            await self.link.__aexit__(None, None, None)
+
+        self.loop.run(end())
+
+    def show(self, view: StationView) -> None:
+        """Publish `view` now, and again from now on."""
+
+        async def publish() -> None:
+            self.view = view
+            self.link.publish(view)
+
+        self.loop.run(publish())
+
+    async def _publish(self) -> None:
+        while True:
+            if self.publishing:
+                now = time.time() if self.of_now else self.view.time + PUBLISH_INTERVAL
+                self.view = self.view.model_copy(update={"time": now})
+                self.link.publish(self.view)
+            await asyncio.sleep(PUBLISH_INTERVAL)
+
+
+class Server:
+    """The server under uvicorn, on a free port. Its passwords are hashed with parameters that cost nothing."""
+
+    def __init__(self, loop: Loop, settings: Settings) -> None:
+        self.loop = loop
+        self.settings = settings
+        self.address = f"http://127.0.0.1:{settings.port}"
+        self.stream = f"ws://127.0.0.1:{settings.port}/api/v1/stream"
+        config = uvicorn_config(settings)
+        assert isinstance(config.app, FastAPI)
+        self.app = config.app
+        self._uvicorn = uvicorn.Server(config)
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        listener = bind(self.settings)
+
+        async def begin() -> None:
+            # `_serve` is `serve` without the signal handlers, which belong to the main thread.
+            self._task = asyncio.create_task(self._uvicorn._serve([listener]))
+
+        self.loop.run(begin())
+        until(lambda: self._uvicorn.started, 15)
+        self._hash_cheaply()
+
+    def _hash_cheaply(self) -> None:
+        office = self.identity
+        office.passwords.close()
+        office.passwords = cheap_passwords()
+        office.sign_in = SignIn(office.database, office.passwords)
+
+    @property
+    def identity(self) -> IdentityService:
+        """The server's own way to the database; use it from this thread through `reading` and `writing` alone."""
+        office: IdentityService = self.app.state.identity
+        return office
+
+    def person(self, role: Role = Role.OPERATOR, *, name: str | None = None, temporary: bool = False) -> Person:
+        """A new person, who cannot sign in with any password."""
+        name = name or f"{role.value.capitalize()} {secrets.token_hex(4)}"
+        with self.identity.database.writing() as connection:
+            return users.create(connection, name, role, "none", SYSTEM, time.time(), temporary=temporary)
+
+    def session(self, person: Person, now: float | None = None) -> tuple[str, SignedIn]:
+        """A new session and its token, without a password; opened at `now`."""
+        when = time.time() if now is None else now
+        with self.identity.database.writing() as connection:
+            kind = ActorKind.PERSON
+            return open_session(connection, person, when, kind=kind, address="127.0.0.1", agent="tests")
+
+    def cookie(self, token: str) -> dict[str, str]:
+        """The header that shows the token of a session."""
+        return {"Cookie": f"{session_cookie(self.settings)}={token}"}
+
+    def client(self, role: Role | None = None, *, token: str | None = None) -> httpx.Client:
+        """A browser in which somebody with `role` is signed in, or nobody."""
+        if role is not None:
+            token = self.session(self.person(role))[0]
+        cookies = {} if token is None else {session_cookie(self.settings): token}
+        return httpx.Client(base_url=self.address, cookies=cookies)
+
+    def stop(self) -> None:
+        async def end() -> None:
+            self._uvicorn.should_exit = True
+            if self._task is not None:
+                with contextlib.suppress(asyncio.CancelledError):
+                    await self._task
+
+        self.loop.run(end())
+
+
+def listen(
+    server: Server,
+    address: str | None = None,
+    *,
+    headers: dict[str, str] | None = None,
+    sock: socket.socket | None = None,
+    max_queue: int | None = 16,
+    max_size: int | None = 1024 * 1024,
+    close_timeout: float = 10,
+) -> ClientConnection:
+    """A stream of `server` as a viewer listens to it."""
+    shown = server.cookie(server.session(server.person(Role.VIEWER))[0]) | (headers or {})
+    return connect(
+        address or server.stream,
+        additional_headers=shown,
+        sock=sock,
+        max_queue=max_queue,
+        max_size=max_size,
+        close_timeout=close_timeout,
+    )

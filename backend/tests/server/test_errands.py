@@ -1,0 +1,115 @@
+"""Advice, goals by hand, resets and why not over REST: what is asked of the controller, and what is answered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from sequence_planner.auth.roles import Role
+from sequence_planner.controller.commands.commands import CommandRefused, StopErrand, TakeErrand, TextPlace
+from sequence_planner.controller.commands.queries import (
+    AboutWorkMasters,
+    Ask,
+    AskAdvice,
+    AskGoal,
+    AskReset,
+    AskWhyNot,
+)
+from sequence_planner.controller.ipc import ControllerLink
+from sequence_planner.controller.views.part import View
+from sequence_planner.server.settings import Settings
+
+from .example_answers import ADVICE, OFFER, example_answer
+from .running import Controller, Loop, Server
+from .test_acting import problem
+
+
+class Asked(Controller):
+    """A controller that remembers what it was asked by somebody; the server asks about work masters by itself."""
+
+    def __init__(self, loop: Loop, settings: Settings) -> None:
+        super().__init__(loop, settings.controller_socket)
+        self.asked: list[Ask] = []
+        self.refusal: CommandRefused | None = None
+        self.link = ControllerLink(settings.controller_socket, self.handle, self.answer)
+
+    async def answer(self, ask: Ask) -> View:
+        if not isinstance(ask, AboutWorkMasters):
+            self.asked.append(ask)
+        if self.refusal is not None:
+            raise self.refusal
+        return example_answer(ask)
+
+
+@pytest.fixture
+def controller(loop: Loop, settings: Settings) -> Iterator[Asked]:
+    controller = Asked(loop, settings)
+    controller.start()
+    yield controller
+    controller.stop()
+
+
+@pytest.fixture
+def engineer(server: Server) -> Iterator[httpx.Client]:
+    with server.client(Role.ENGINEER) as client:
+        client.base_url = httpx.URL(f"{server.address}/api/v1/")
+        yield client
+
+
+def test_each_question_is_asked_as_it_is_and_answered_with_its_document(
+    engineer: httpx.Client, controller: Asked
+) -> None:
+    assert engineer.get("advice").json() == ADVICE.model_dump(mode="json")
+    goal = {"predicate": "robot.pose == home"}
+    assert engineer.post("errands/goal-preview", json=goal).json() == OFFER.model_dump(mode="json")
+    assert engineer.post("errands/reset-preview", json={"operation": "tighten(1)"}).json()["id"] == OFFER.id
+    ability = engineer.get("why-not/ability/robot.move").json()
+    (condition,) = ability["conditions"]
+    assert condition["involved"][0]["wanted"] == ["home"]
+    problem(engineer.get("why-not/operation/carry%28left%29"), 404, "unknown-operation")
+    assert engineer.post("why-not/goal", json=goal).json()["plan"]["steps"][0]["ability"] == "robot.move"
+    assert controller.asked == [
+        AskAdvice(),
+        AskGoal(predicate="robot.pose == home"),
+        AskReset(operation="tighten(1)"),
+        AskWhyNot(of="ability", name="robot.move"),
+        AskWhyNot(of="operation", name="carry(left)"),
+        AskWhyNot(of="goal", name="robot.pose == home"),
+    ]
+
+
+def test_an_offer_is_taken_with_all_that_was_confirmed(engineer: httpx.Client, controller: Asked) -> None:
+    body = {
+        "offer": "81a0a8-1",
+        "starts": ["robot.move"],
+        "corrections": {"bolts": "placed", "on": True, "count": 3},
+        "reason": "the bolt is out",
+    }
+    assert engineer.post("errands", json=body).status_code == 204
+    assert engineer.post("errands/stop", json={}).status_code == 204
+    taken, stopped = controller.commands
+    assert isinstance(taken, TakeErrand)
+    assert taken.needs_control
+    assert (taken.offer, taken.starts, taken.reason) == ("81a0a8-1", ["robot.move"], "the bolt is out")
+    assert taken.corrections == {"bolts": "placed", "on": True, "count": 3}
+    assert taken.corrections["on"] is True
+    assert isinstance(stopped, StopErrand)
+    assert not stopped.needs_control
+    for wrong in ({"reason": ""}, {"reason": None}, {"starts": "robot.move"}, {"corrections": {"bolts": 1.5}}):
+        problem(engineer.post("errands", json={**body, **wrong}), 422, "invalid-request")
+    problem(engineer.post("errands", json={"offer": "81a0a8-1", "reason": "no starts"}), 422, "invalid-request")
+    assert len(controller.commands) == 2
+
+
+def test_refusals_come_in_the_controllers_words(engineer: httpx.Client, controller: Asked) -> None:
+    controller.refusal = CommandRefused("adviser-late", "The adviser was too slow", "Try again.", 504)
+    late = problem(engineer.get("advice"), 504, "adviser-late")
+    assert (late["detail"], late["place"]) == ("Try again.", None)
+    detail = "character 1, `up`: unknown name `up`"
+    place = TextPlace(start=0, end=2, message="unknown name `up`")
+    controller.refusal = CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422, place)
+    for path in ("errands/goal-preview", "why-not/goal"):
+        found = problem(engineer.post(path, json={"predicate": "up"}), 422, "bad-predicate")
+        assert (found["detail"], found["place"]) == (detail, place.model_dump())

@@ -1,0 +1,56 @@
+"""What a browser is told about every answer, and about the documents of the build besides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import httpx
+import pytest
+
+from sequence_planner.server.http.middleware import document_policy
+
+from .running import Server
+
+HASH = "'sha256-pODQO96uX/EpWyr2+2ROQmWa44F+aFLu14EKEhc5T/0='"
+DOCUMENT = (
+    f'<!doctype html><meta http-equiv="content-security-policy" content="default-src \'self\'; '
+    f"style-src-attr 'unsafe-hashes' 'sha256-S8=='; frame-ancestors *; connect-src *; script-src 'self' {HASH}\">"
+)
+
+
+def rules(policy: str) -> dict[str, str]:
+    return dict(each.partition(" ")[::2] for each in policy.split("; "))
+
+
+@pytest.mark.parametrize("path", ["/", "/healthz", "/api/v1/station", "/api/v1/nothing"])
+def test_nothing_is_loaded_run_or_framed_that_is_not_ours(client: httpx.Client, path: str) -> None:
+    headers = client.get(path).headers
+    policy = rules(headers["content-security-policy"])
+    assert policy["default-src"] == policy["script-src"] == policy["connect-src"] == "'self'"
+    assert policy["frame-ancestors"] == policy["object-src"] == policy["frame-src"] == "'none'"
+    assert "camera=()" in headers["permissions-policy"]
+    assert "screen-wake-lock=(self)" in headers["permissions-policy"]
+    assert "vibrate" not in headers["permissions-policy"]
+    assert "strict-transport-security" not in headers  # plain HTTP on the loopback
+    if path != "/":
+        assert headers["cache-control"] == "no-store"
+
+
+def test_a_document_of_the_build_may_run_its_own_scripts_and_no_more(server: Server, client: httpx.Client) -> None:
+    (server.settings.page / "index.html").write_text(DOCUMENT)
+    (server.settings.page / "theme.js").write_text("1")
+    first = client.get("/")
+    policy = rules(first.headers["content-security-policy"])
+    assert policy["script-src"] == f"'self' {HASH}"
+    assert policy["style-src-attr"] == "'unsafe-hashes' 'sha256-S8=='"
+    assert (policy["connect-src"], policy["frame-ancestors"]) == ("'self'", "'none'")
+    again = client.get("/", headers={"If-None-Match": first.headers["etag"]})
+    assert again.status_code == 304
+    assert again.headers["content-security-policy"] == first.headers["content-security-policy"]
+    assert HASH not in client.get("/theme.js").headers["content-security-policy"]
+
+
+def test_a_document_without_a_policy_of_its_own_gets_ours(tmp_path: Path) -> None:
+    document = tmp_path / "index.html"
+    document.write_text("<!doctype html>")
+    assert rules(document_policy(document))["script-src"] == "'self'"

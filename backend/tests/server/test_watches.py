@@ -1,0 +1,211 @@
+"""What a confirmed watch reads and does, and how it learns that it is none any more."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from sequence_planner.controller.commands.commands import AcknowledgeTask, ReportProblem, SolveProblem
+from sequence_planner.core.actor import ActorKind
+
+from .running import Controller, Server
+from .test_acting import problem
+from .test_people import closing_code
+from .test_stream import hear
+from .watching import DAY, FOREIGN, OWN, WATCHES, Device, active, later, station
+
+
+def test_a_watch_that_is_revoked_learns_so_at_once(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    watch = active(client, device)
+    with device.listen() as stream:
+        hear(stream)
+        assert client.delete(f"{WATCHES}/{watch}").status_code == 204
+        problem(device.acknowledge(OWN), 401, "signed-out")
+        assert closing_code(stream) == 4401
+    assert device.state() == "signed-out"
+    with pytest.raises(InvalidStatus) as refused:
+        device.listen()
+    assert refused.value.response.status_code == 401
+    assert [each["state"] for each in client.get(WATCHES).json()["watches"]] == ["revoked"]
+    assert controller.commands == []
+
+
+def test_a_watch_expires_after_ninety_days(server: Server, client: httpx.Client, device: Device) -> None:
+    active(client, device)
+    with device.listen() as stream:
+        hear(stream)
+        later(server, 90 * DAY - 60)
+        assert device.state() == "active"
+        later(server, 90 * DAY)
+        assert closing_code(stream) == 4401
+    assert device.state() == "signed-out"
+
+
+def test_a_watch_acknowledges_its_own_tasks_alone_and_by_its_own_name(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    watch = active(client, device)
+    refused = device.acknowledge(FOREIGN)
+    problem(refused, 403, "not-your-task")
+    assert "nspector" not in refused.text
+    problem(device.acknowledge("9"), 409, "task-gone")
+    problem(device.acknowledge(OWN, revision=2), 409, "task-changed")
+    problem(device.post(f"/api/v1/tasks/{OWN}/acknowledgement", json={}), 422, "invalid-request")
+    assert controller.commands == []
+    assert device.acknowledge(OWN).status_code == 204
+    (command,) = controller.commands
+    assert isinstance(command, AcknowledgeTask)
+    assert (command.task, command.revision) == (OWN, 3)
+    assert (command.actor.kind, command.actor.id, command.actor.name) == (ActorKind.WATCH, watch, "Watch 1")
+    assert command.actor.address == "127.0.0.1"
+
+
+@pytest.mark.parametrize("solved", [False, True])
+def test_a_watch_tells_problems_of_its_own_tasks_alone_and_by_its_own_name(
+    client: httpx.Client, device: Device, controller: Controller, solved: bool
+) -> None:
+    watch = active(client, device)
+    problem(device.report(FOREIGN, solved=solved), 403, "not-your-task")
+    problem(device.report("9", solved=solved), 409, "task-gone")
+    problem(device.report(OWN, revision=2, solved=solved), 409, "task-changed")
+    assert controller.commands == []
+    assert device.report(OWN, solved=solved).status_code == 204
+    (command,) = controller.commands
+    assert isinstance(command, SolveProblem if solved else ReportProblem)
+    assert (command.task, command.revision) == (OWN, 3)
+    assert (command.actor.kind, command.actor.id, command.actor.name) == (ActorKind.WATCH, watch, "Watch 1")
+
+
+def test_a_watch_acknowledges_nothing_while_it_is_not_known_whose_task_it_is(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    active(client, device)
+    with device.listen() as stream:
+        hear(stream)
+        controller.publishing = False
+        while hear(stream)["kind"] != "link":
+            pass
+    problem(device.acknowledge(OWN), 503, "controller-unavailable")
+    assert controller.commands == []
+
+
+def test_two_watches_serve_one_resource_and_a_third_another(
+    client: httpx.Client, device: Device, another: Device, server: Server
+) -> None:
+    active(client, device)
+    second = active(client, another, "Watch 2")
+    with Device(server) as third:
+        active(client, third, "Watch 3", "inspector")
+        with device.listen() as one, another.listen() as two, third.listen() as other:
+            assert hear(one)["tasks"].keys() == hear(two)["tasks"].keys() == {OWN}
+            assert hear(other)["tasks"].keys() == {FOREIGN}
+            client.delete(f"{WATCHES}/{second}")
+            assert closing_code(two) == 4401
+            assert hear(one)["kind"] == "watch"
+        assert third.acknowledge(FOREIGN).status_code == 204
+    assert [each["name"] for each in client.get(WATCHES).json()["watches"]] == ["Watch 3", "Watch 2", "Watch 1"]
+
+
+def texts(document: object) -> Iterator[str]:
+    """All that is written in a document."""
+    if isinstance(document, dict):
+        for key, value in document.items():
+            yield str(key)
+            yield from texts(value)
+    elif isinstance(document, list):
+        for value in document:
+            yield from texts(value)
+    elif isinstance(document, str):
+        yield document
+
+
+def test_a_watch_reads_nothing_but_its_own_tasks(client: httpx.Client, device: Device) -> None:
+    active(client, device)
+    described = client.get("/api/v1/openapi.json").json()
+    readable = {}
+    for path, verbs in described["paths"].items():
+        # On this machine everybody reads the figures, and whether it is ready, which it is not here.
+        if "get" in verbs and path not in ("/readyz", "/metrics"):
+            answer = device.get(path)
+            if answer.status_code == 200:
+                readable[path] = answer
+            else:
+                problem(answer, 401, "signed-out")
+    assert readable.keys() == {"/healthz", "/api/v1/session", f"{WATCHES}/self"}
+    problem(device.get("/api/v1/openapi.json"), 401, "signed-out")
+    for place in ("/api/v1/stream", "/api/v1/ros/stream", "/api/v1/pipelines/stream"):
+        with pytest.raises(InvalidStatus) as refused:
+            device.listen(place)
+        assert refused.value.response.status_code == 401
+    with device.listen() as stream:
+        messages = [hear(stream)]
+        for frame in ('{"kind": "resync"}', '{"kind": "resync", "resource": "inspector"}', "what?"):
+            stream.send(frame)
+            messages.append(hear(stream))
+    read = [answer.json() for answer in readable.values()] + messages
+    told = {text for document in read for text in texts(document)}
+    foreign = station().tasks[FOREIGN]
+    for hidden in (FOREIGN, foreign.title, foreign.text, "inspector", "Inspector", "robot.pose", "/robot/state"):
+        assert not any(hidden == text or (len(hidden) > 3 and hidden in text) for text in told), hidden
+
+
+def test_the_tasks_are_told_when_they_change_and_the_time_twice_a_second(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    active(client, device)
+    with device.listen() as stream:
+        hear(stream)
+        times = []
+        for _ in range(4):
+            times.append(time.monotonic())
+            assert hear(stream)["tasks"].keys() == {OWN}
+        assert max(after - before for before, after in itertools.pairwise(times)) < 1.0
+        begun = time.monotonic()
+        for revision in range(4, 9):
+            task = station().tasks[OWN].model_copy(update={"revision": revision})
+            controller.show(station(tasks={OWN: task, FOREIGN: task.model_copy(update={"resource": "inspector"})}))
+            while hear(stream)["tasks"][OWN]["revision"] != revision:
+                pass
+        assert time.monotonic() - begun < 1.5, "nobody waits for the next time that is due"
+        controller.show(station(tasks={}))
+        while hear(stream)["tasks"]:
+            pass
+        controller.publishing = False
+        while (message := hear(stream))["kind"] == "watch":
+            pass
+        assert message == {"kind": "link", "controller": "lost"}
+        controller.publishing = True
+        assert hear(stream)["kind"] == "watch"
+
+
+def test_without_a_controller_a_watch_can_be_revoked_but_none_offered(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    watch = active(client, device)
+    with device.listen() as stream:
+        controller.stop()
+        while hear(stream)["kind"] != "link":
+            pass
+        assert client.get(WATCHES).json()["resources"] == []
+        body = {"name": "Watch 2", "resource": "operator"}
+        problem(client.post(f"{WATCHES}/offers", json=body), 503, "controller-unavailable")
+        assert client.delete(f"{WATCHES}/{watch}").status_code == 204
+        assert closing_code(stream) == 4401
+    controller.start()
+
+
+def test_an_operator_at_a_device_that_is_also_a_watch_acts_as_the_operator(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    active(client, device)
+    device.cookies.update(client.cookies)
+    assert device.acknowledge(FOREIGN).status_code == 204
+    assert controller.commands[0].actor.kind is ActorKind.PERSON
+    assert device.get("/api/v1/session").json()["watch"]["name"] == "Watch 1"
