@@ -145,7 +145,7 @@ class PromptConnection(H11Protocol):
     def _give_up(self) -> None:
         """Close it, unless a request is being answered (which is limited elsewhere) or it has become a stream."""
         answering = self.cycle is not None and not self.cycle.response_complete
-        if not answering and self.transport.get_protocol() is self:
+        if not answering and not self.transport.is_closing() and self.transport.get_protocol() is self:
             self.transport.close()
 
 
