@@ -149,7 +149,7 @@ def test_one_that_is_killed_is_replaced_without_a_question_too() -> None:
 
 
 def test_it_begins_with_a_question_and_ends_when_nobody_has_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(worker, "RESTS_AFTER", 0.2)
+    monkeypatch.setattr(worker, "ANSWERER_RESTS_AFTER", 0.2)
 
     async def scenario(asking: Asking) -> None:
         await asyncio.sleep(0.1)
@@ -170,7 +170,7 @@ def test_it_begins_with_a_question_and_ends_when_nobody_has_one(monkeypatch: pyt
 
 
 def test_a_question_in_the_moment_in_which_it_ends_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(worker, "RESTS_AFTER", 0.0)
+    monkeypatch.setattr(worker, "ANSWERER_RESTS_AFTER", 0.0)
 
     async def scenario(asking: Asking) -> None:
         for number in range(1, 6):
@@ -263,8 +263,8 @@ import signal, threading, time
 from pathlib import Path
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.planning.problem import PlanRequest, goals_of
-from sequence_planner.process.worker import Answered, Companion, Question
-from sequence_planner.planning.diagnoser import Model
+from sequence_planner.process.worker import Companion, WorkerAnswered, WorkerQuestion
+from sequence_planner.planning.diagnoser import DiagnosisModel
 from sequence_planner.planning.portfolio.worker import Planning, work
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import FewerSpecifications
@@ -274,12 +274,12 @@ if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
     automaton = prepare_station(Path({str(CELL)!r})).automaton
     ready = threading.Event()
-    hear = lambda word: ready.set() if isinstance(word, Answered) else None
+    hear = lambda word: ready.set() if isinstance(word, WorkerAnswered) else None
     supervisor = synthesise(automaton)
-    model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
+    model = DiagnosisModel(automaton, supervisor, FewerSpecifications(automaton, supervisor))
     planner = Companion(work, Planning(model, cautious=True), hear, "planner")
     request = PlanRequest(dict(initial_state(automaton)), goals_of(automaton, ("fetch(left)",)))
-    planner.ask(Question(1, 30.0, request))
+    planner.ask(WorkerQuestion(1, 30.0, request))
     ready.wait()
     print("ready", flush=True)
     time.sleep(60)
