@@ -69,7 +69,7 @@ def health(endpoint: Endpoint) -> int | None:
 
 
 def announced(endpoint: Endpoint, model: Path) -> str:
-    """Where the station in the folder `model` is opened."""
+    """Say where the station in the folder `model` is opened."""
     return f"{model} runs: open {endpoint.address} (operator's watch: {endpoint.address}/watch)"
 
 
@@ -92,7 +92,8 @@ LISTENER: Final = 200  # the least number of a descriptor that a part inherits: 
 
 @dataclass(frozen=True)
 class Launch:
-    """What to run, and how; without the URL of a `database` a demonstration, whose own is forgotten at the end.
+    """The description of what to run, and how; without the URL of a `database` a demonstration, whose own is forgotten
+    at the end.
 
     A database that is empty where a station was is used only where a `new` one is meant. `unusable` says why the model
     means nothing: where it has a draft it can be repaired in the browser. `cut_off` is a deployment that was undone, as

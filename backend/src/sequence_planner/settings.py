@@ -1,4 +1,4 @@
-"""What `run` is told, where it does not stand on the command line: in a file (TOML), or in the environment.
+"""The settings that `run` is told, where not on the command line: in a file (TOML), or in the environment.
 
 The command line comes before the environment, and that before the file. What is told nowhere is as the command says. A
 name that nobody knows is refused, as is a value that does not fit, with where it stands: else a mistake in a file would
@@ -116,7 +116,7 @@ class ConfiguredSetting:
 
     @property
     def called(self) -> str:
-        """What whoever told it calls it."""
+        """The name by which whoever told it calls it."""
         return self.where if self.where.startswith(PREFIX) else f"`{self.name}` ({self.where})"
 
 
@@ -129,7 +129,9 @@ def configured(file: Path | None, environ: Mapping[str, str] = os.environ) -> di
 
 
 def read_configuration(file: Path | None, environ: Mapping[str, str]) -> tuple[dict[str, ConfiguredSetting], list[str]]:
-    """What is told so that it can be used, by name, and what is wrong. Raises `ConfigurationError` without a file."""
+    """Return what is told so that it can be used, by name, and what is wrong. Raises `ConfigurationError` without a
+    file.
+    """
     found, wrong = dict[str, ConfiguredSetting](), list[str]()
     for source in (_in_file(file) if file is not None else (), _in_environment(environ)):
         for each in source:
@@ -152,7 +154,7 @@ def as_told(text: str, called: Mapping[str, str]) -> str:
 
 
 def has_password(url: str) -> bool:
-    """Whether a URL of a database holds one; one that cannot be read is for others to refuse."""
+    """Return whether a URL of a database holds one; one that cannot be read is for others to refuse."""
     from sqlalchemy.exc import ArgumentError  # noqa: PLC0415 - as above
 
     try:
@@ -170,7 +172,7 @@ def url_in(file: Path) -> str:
 
 
 def _in_file(file: Path) -> Iterator[ConfiguredSetting | str]:
-    """What a file tells, and what is wrong in it."""
+    """Yield what a file tells, and what is wrong in it."""
     text = _read(file)
     try:
         document = tomllib.loads(text)
@@ -194,7 +196,7 @@ def _path(file: Path, name: str, value: str | bool | int | float | list[str]) ->
 
 
 def _in_environment(environ: Mapping[str, str]) -> Iterator[ConfiguredSetting | str]:
-    """What the environment tells, and what is wrong in it. A variable that is empty tells nothing."""
+    """Yield what the environment tells, and what is wrong in it. A variable that is empty tells nothing."""
     variables = {f"{PREFIX}{name.upper()}": name for name in Configuration.model_fields}
     document: dict[str, str | list[str]] = {}
     for variable, value in environ.items():

@@ -30,7 +30,8 @@ from sequence_planner.ros.types.messages import MessageRegistry
 
 @dataclass(frozen=True)
 class ReadyStation:
-    """What the controller runs, and what the emulated devices are made from. `ros_1` are the topics of ROS 1.
+    """The station that the controller runs, and that the emulated devices are made from. `ros_1` are the topics of ROS
+    1.
 
     `goes_on` says that nobody needs to confirm production where a hot standby has taken over.
     """
@@ -44,21 +45,23 @@ class ReadyStation:
 
     @property
     def connections(self) -> Connections:
-        """What topics, services and actions feed and carry."""
+        """The connections that topics, services and actions feed and carry."""
         return Connections(frozenset(self.pipelines.feeds), self.pipelines.carried)
 
     def suspicions(self) -> list[ModelWarning]:
-        """What is suspicious in its pipelines."""
+        """Return what is suspicious in its pipelines."""
         return list(check_never_given(self.automaton, self.pipelines))
 
     def failures(self) -> list[Finding]:
-        """What is wrong with the pipelines as they run: stages that cannot be loaded, and else examples that fail."""
+        """Return what is wrong with the pipelines as they run: stages that cannot be loaded, and else examples that
+        fail.
+        """
         return loading_failures(self.pipelines) or failures(self.examples)
 
 
 @dataclass
 class Before:
-    """What is kept of a station that is read again and again while somebody edits it; reading it fills it in."""
+    """The parts kept of a station that is read again and again while somebody edits it; reading it fills them in."""
 
     files: ReadBefore = field(default_factory=ReadBefore)
     abilities: GroundBefore = field(default_factory=GroundBefore)
@@ -91,14 +94,14 @@ def read_station(folder: Path, before: Before | None = None) -> MeantStation:
 
 @dataclass(frozen=True)
 class _Kept:
-    """What is kept of a station that was read: message types are classes, and made anew."""
+    """The parts kept of a station that was read: message types are classes, and made anew."""
 
     station: Station
     automaton: Automaton
 
 
 def _read_or_kept(folder: Path) -> MeantStation:
-    """What the files of a station mean: each of its processes needs that, and they have mostly been read before."""
+    """Return what the files of a station mean: each of its processes needs that, and they have mostly been read before."""
     content = content_key(folder)
     known = None if content is None else read_before(STATION, content)
     if isinstance(known, _Kept):

@@ -20,7 +20,7 @@ COUNTING = "the number of states"  # the last that is computed, where it is not 
 
 @dataclass(frozen=True)
 class Analysis:
-    """What has been found. Of what has not been computed yet, and of what cannot be, it says None.
+    """The findings so far. Of what has not been computed yet, and of what cannot be, it says None.
 
     `pending` is what is being computed, and None when that is all. Without a supervisor in the end, `warnings` say why
     there is none. Counts are of the states of all variables that can be reached, without and with the supervisor; where

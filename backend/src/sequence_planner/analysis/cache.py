@@ -55,13 +55,13 @@ def remember(where: Path, automaton: Automaton, found: Analysis | NeverTogether 
 
 
 def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | None:
-    """What was found of this very model, by this very program; None if nothing was, or it cannot be read."""
+    """Return what was found of this very model, by this very program; None if nothing was, or it cannot be read."""
     found = read(where, NAMES[kind.__name__], key(automaton))
     return found if isinstance(found, kind) else None
 
 
 def remembered_evidence(automaton: Automaton) -> Evidence | None:
-    """What answers about the model of this name rested on when it was last looked at, in the user's cache."""
+    """Return what answers about the model of this name rested on when it was last looked at, from the user's cache."""
     from sequence_planner.analysis.checks.evidence import Evidence  # noqa: PLC0415
 
     where = cache()
@@ -97,7 +97,7 @@ def write(where: Path, kind: str, of: str, found: object) -> None:
 
 
 def read(where: Path, kind: str, of: str) -> object:
-    """What was found of that; None if nothing was, or it cannot be read."""
+    """Return what was found of that; None if nothing was, or it cannot be read."""
     try:
         if not _is_own(where):
             return None
@@ -164,11 +164,13 @@ _MOST_BYTES: Final = 20_000_000
 
 
 class _NoModelError(Exception):
-    """What is there is more than a model, or something else."""
+    """The error that what is there is more than a model, or something else."""
 
 
 def content_key(path: Path) -> str | None:
-    """What is in the files of a model, and in this program; None where that is not to be found out soon."""
+    """Return a key to what is in the files of a model, and in this program; None where that is not to be found out
+    soon.
+    """
     total, files, size = hashlib.sha256(program()), 0, 0
     total.update(f"{path}\0".encode("utf-8", "surrogateescape"))
     with contextlib.suppress(OSError, _NoModelError):
@@ -194,7 +196,7 @@ def keep_automaton(of: str, automaton: Automaton) -> None:
 
 
 def read_before(kind: str, of: str) -> object:
-    """What was kept of a model with this content; None if nothing was, or it cannot be read again."""
+    """Return what was kept of a model with this content; None if nothing was, or it cannot be read again."""
     where = cache()
     return None if where is None else read(where, kind, of)
 

@@ -1,4 +1,4 @@
-"""What synthesis finds of a model, piece by piece: whoever cannot wait for all of it has what there is."""
+"""The findings of synthesis about a model, piece by piece: whoever cannot wait for all of it has what there is."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def analyses(
     guards: bool = True,
     evidence: Evidence | None = None,
 ) -> Iterator[Analysis]:
-    """What is found of `automaton`, again and again, each time more of it.
+    """Yield what is found of `automaton`, again and again, each time more of it.
 
     No more is spent on `counting` states than so much `NodeLimit`: with 0 they are not counted. Where they soon are,
     their numbers come first. What too many states bear on is found out only with `far`: it can take a minute, so that
@@ -91,7 +91,9 @@ def analyses(
 def without_numbers(
     automaton: Automaton, guards: bool = True, far: bool = False, evidence: Evidence | None = None
 ) -> Iterator[Analysis]:
-    """What is found of `automaton` but for numbers of states, which few wait for; `guards` and `far` where wanted."""
+    """Yield what is found of `automaton` but for numbers of states, which few wait for; `guards` and `far` where
+    wanted.
+    """
     for found in analyses(automaton, counting=0, far=far, guards=guards, evidence=evidence):
         yield found
         if found.pending == COUNTING:
@@ -116,7 +118,7 @@ def guards_of(automaton: Automaton, names: frozenset[str], known: Supervisor | N
 def everything(
     automaton: Automaton, connections: Connections | None, synthesis: bool, evidence: Evidence | None = None
 ) -> Iterator[CheckProgress | Analysis]:
-    """What the checks find, and what synthesis finds where it is asked for, without numbers of states and guards.
+    """Yield what the checks find, and what synthesis finds where it is asked for, without numbers of states and guards.
 
     What may take longest comes last.
     """

@@ -52,7 +52,7 @@ class NeverTogether(Immutable):
 def never_together(
     automaton: Automaton, supervisor: Supervisor, budget: Budget, most_bits: int = MOST_BITS
 ) -> NeverTogether | None:
-    """What is never together in a station. None when the budget is spent before that is known."""
+    """Return what is never together in a station. None when the budget is spent before that is known."""
     counted = _with_all_starts(automaton)
     seen = tuple(name for name, variable in automaton.variables.items() if variable.kind is not Kind.ACTIVITY)
     diagrams, reached = _reached(counted, supervisor, most_bits) or (None, None)
@@ -142,8 +142,8 @@ _NICENESS = 15  # it only serves questions
 
 
 async def find_never_together(automaton: Automaton, supervisor: Supervisor, seconds: float) -> NeverTogether | None:
-    """What is never together; nothing when that is not found within so many seconds of work, as it would not be another
-    time. None when the process has ended early. It can be cancelled.
+    """Return what is never together; nothing when that is not found within so many seconds of work, as it would not be
+    another time. None when the process has ended early. It can be cancelled.
     """
     ours, theirs = Pipe()
     with ours:

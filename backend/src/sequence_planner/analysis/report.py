@@ -1,4 +1,4 @@
-"""What was found of a model, as one JSON document: what programs and pages are given, and what is kept."""
+"""The findings about a model, as one JSON document: what programs and pages are given, and what is kept."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class AnalysisDocument(Document):
 
 
 def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
-    """What was found of `automaton`."""
+    """Return what was found of `automaton`."""
     warnings = analysis.warnings
     return AnalysisDocument(
         pending=analysis.pending,

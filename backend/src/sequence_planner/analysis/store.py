@@ -1,4 +1,4 @@
-"""What was found of a model, kept in the user's cache by the content of the model and of the program itself.
+"""A store of what was found of a model, kept in the user's cache by the content of the model and of the program itself.
 
 It serves commands that are given one after the other. What a running station keeps lies beside it, see `cache`.
 """
@@ -24,20 +24,20 @@ MOST_KEPT = 100  # files; the oldest are removed
 
 
 class Kept(Document):
-    """What is kept of a model; no `supervisor` if there is none."""
+    """The part of the findings about a model that is kept; no `supervisor` if there is none."""
 
     analysis: AnalysisDocument
     supervisor: SupervisorDocument | None
 
 
 def folder() -> Path:
-    """Where it is kept: in `XDG_CACHE_HOME`, or else in `~/.cache`."""
+    """Return where it is kept: in `XDG_CACHE_HOME`, or else in `~/.cache`."""
     base = os.environ.get("XDG_CACHE_HOME", "")
     return (Path(base) if Path(base).is_absolute() else Path.home() / ".cache") / "sequence-planner"
 
 
 def key(automaton: Automaton) -> str:
-    """What a model and the program have in common with others only if the same is found of them.
+    """Return what a model and the program have in common with others only if the same is found of them.
 
     Places count, as what is found names them. In which order a job has its operations does not.
     """
@@ -49,7 +49,7 @@ def key(automaton: Automaton) -> str:
 
 
 def kept(automaton: Automaton) -> Kept | None:
-    """What was found of the model; None if that is not known, or can no longer be read."""
+    """Return what was found of the model; None if that is not known, or can no longer be read."""
     try:
         content = json.loads(_file(automaton).read_bytes())
         text = content["text"]

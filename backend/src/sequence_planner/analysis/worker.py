@@ -1,4 +1,4 @@
-"""What is found of a model in a process of its own that can be killed at any time, and whatever it has found by then.
+"""The analysis of a model in a process of its own that can be killed at any time, and whatever it has found by then.
 
 An executor's process could not be: whoever leaves it waits until it is done, and one whose owner is killed lives on.
 """
@@ -53,7 +53,7 @@ class _Last:
 
 
 def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator[Analysis]]:
-    """What synthesis finds of `automaton`, each time more of it, see `telling`. Raises `MemoryLimitError`."""
+    """Give what synthesis finds of `automaton`, each time more of it, see `telling`. Raises `MemoryLimitError`."""
     from sequence_planner.analysis.finding import analyses  # noqa: PLC0415
 
     return telling(memory_limit(), analyses, automaton)
@@ -63,7 +63,8 @@ def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator
 async def telling(
     gigabytes: float, work: Callable[..., Iterator[Word]], *arguments: object
 ) -> AsyncIterator[AsyncIterator[Word]]:
-    """What `work`, a function of a module, tells of its arguments until the block is left: then its process is killed.
+    """Give what `work`, a function of a module, tells of its arguments until the block is left: then its process is
+    killed.
 
     Iterating raises `SynthesisEndedError` when the process ends before it is done, or has more than so much memory.
     """
@@ -116,7 +117,7 @@ def told(
 
 
 def _next(connection: Connection, limit: MemoryLimit) -> Word | _Last:
-    """What the process at the other end says next."""
+    """Return what the process at the other end says next."""
     try:
         word: Word | _Last = connection.recv()
     except (EOFError, OSError):
@@ -127,7 +128,7 @@ def _next(connection: Connection, limit: MemoryLimit) -> Word | _Last:
 
 
 class _Words(Generic[Word]):
-    """What the process says, heard by a thread so that nobody else waits."""
+    """The words that the process says, heard by a thread so that nobody else waits."""
 
     def __init__(self, connection: Connection, limit: MemoryLimit) -> None:
         self._connection = connection

@@ -47,7 +47,7 @@ class Key(BaseModel):
         return Actor(kind=ActorKind.KEY, id=self.id, name=self.name, address=short(address))
 
     def due(self, now: float) -> bool:
-        """Whether `used` would write."""
+        """Return whether `used` would write."""
         return self.last_used is None or self.last_used <= now - NOTED_EVERY
 
 

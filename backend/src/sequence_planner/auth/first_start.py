@@ -30,7 +30,7 @@ def new_link_token(connection: Connection, now: float) -> str:
 
 
 def link_usable(connection: Connection, token: str, now: float) -> bool:
-    """Whether `use_link` would take the token: to be asked before a password is hashed for it."""
+    """Return whether `use_link` would take the token: to be asked before a password is hashed for it."""
     live = select(FIRST_START_LINKS.c.token_hash).where(FIRST_START_LINKS.c.expires > now)
     hashed = connection.execute(live).scalar()
     return hashed is not None and same(hashed, hash_of(token)) and not administrator_exists(connection)
@@ -52,7 +52,7 @@ def use_link(connection: Connection, token: str, name: str, password_hash: str, 
 
 
 def unusable() -> IdentityRefused:
-    """What to say of a link that does not work, whatever the reason."""
+    """Return what to say of a link that does not work, whatever the reason."""
     detail = (
         "This link does not work, or no longer: it works once, for 15 minutes, while there is no administrator. "
         "On the station's computer, sequence-planner people link prints a new one."

@@ -67,7 +67,7 @@ class _Attempt:
         return (rate_limit.of_address(AttemptKind.ADDRESS, self.address), rate_limit.of_name(self.name))
 
     def refused(self, because: str, tried: Person | None) -> Entry:
-        """What to record where the name is that of `tried`.
+        """Return what to record where the name is that of `tried`.
 
         A name that nobody has may be a password that was typed in the wrong place: nothing of it is told.
         """
@@ -79,7 +79,7 @@ class _Attempt:
 
 @dataclass(frozen=True)
 class _Known:
-    """Whose password is tried."""
+    """The person whose password is tried."""
 
     person: Person
     password_hash: str

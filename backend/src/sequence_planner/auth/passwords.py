@@ -85,7 +85,7 @@ class Passwords:
             return await self.hash_in_place(password)
 
     async def verify(self, hashed: str | None, password: str) -> bool:
-        """Whether it is the password that was hashed; without a hash never, which takes as long.
+        """Return whether it is the password that was hashed; without a hash never, which takes as long.
 
         Raises `IdentityRefused` (`busy`, 503).
         """
@@ -93,15 +93,15 @@ class Passwords:
             return await self.verify_in_place(hashed, password)
 
     async def hash_in_place(self, password: str) -> str:
-        """What `hash` does, for who has a `place`."""
+        """Do what `hash` does, for who has a `place`."""
         return await self._aside(lambda: self._hasher.hash(_bytes(password)))
 
     async def verify_in_place(self, hashed: str | None, password: str) -> bool:
-        """What `verify` does, for who has a `place`."""
+        """Do what `verify` does, for who has a `place`."""
         return await self._aside(lambda: self._verify(hashed, password))
 
     def outdated(self, hashed: str) -> bool:
-        """Whether it was hashed with other parameters than those of today."""
+        """Return whether it was hashed with other parameters than those of today."""
         return self._hasher.check_needs_rehash(hashed)
 
     def close(self) -> None:

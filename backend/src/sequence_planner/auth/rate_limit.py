@@ -30,7 +30,7 @@ CLOCK_PUT_BACK = 60.0  # seconds; attempts that are further in the future are of
 
 
 class AttemptKind(StrEnum):
-    """What attempts are counted for."""
+    """A kind of thing that attempts are counted for."""
 
     NAME = "name"
     ADDRESS = "address"
@@ -49,7 +49,7 @@ MOST_IN_WINDOW = {
 
 @dataclass(frozen=True)
 class Counter:
-    """What attempts are counted under: those at one name in a row, others in windows of a minute."""
+    """A key that attempts are counted under: those at one name in a row, others in windows of a minute."""
 
     kind: AttemptKind
     subject: str
@@ -77,13 +77,13 @@ EVERYBODY = Counter(AttemptKind.PAIRING, hash_of("everybody"))
 
 @dataclass(frozen=True)
 class Waiting:
-    """Who has to wait, and for how many seconds."""
+    """The one who has to wait, and for how many seconds."""
 
     counter: Counter
     seconds: float
 
     def refusal(self) -> IdentityRefused:
-        """What to say; the same whoever has to wait."""
+        """Return what to say; the same whoever has to wait."""
         seconds = math.ceil(self.seconds)
         detail = f"There were too many wrong attempts. Try again in {seconds} s."
         return IdentityRefused("too-many-attempts", "Too many attempts", detail, 429, retry_after=seconds)
@@ -181,7 +181,7 @@ class RefusalLog:
             self._gathered[counter] = _Gathered(entry, number + 1, told)
 
     def due(self, now: float) -> bool:
-        """Whether there is something to tell."""
+        """Return whether there is something to tell."""
         with self._lock:
             return any(_due(each, now) for each in self._gathered.values())
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class IdentityRefused(Exception):
-    """What was asked for is not done, and nothing has changed.
+    """The error that what was asked for is not done, and nothing has changed.
 
     `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
     `status` is the HTTP status that says the same, `retry_after` the seconds after which to try again makes sense.
@@ -37,7 +37,7 @@ class Role(StrEnum):
     ADMINISTRATOR = "administrator"
 
     def includes(self, other: Role) -> bool:
-        """Whether who has this role may do what `other` may."""
+        """Return whether who has this role may do what `other` may."""
         order = list(Role)
         return order.index(self) >= order.index(other)
 

@@ -38,12 +38,12 @@ class SignedIn(BaseModel):
     agent: str
 
     def actor(self, address: str) -> Actor:
-        """Who acts in this session, from where the request comes now."""
+        """Return who acts in this session, from where the request comes now."""
         person = self.person
         return Actor(kind=self.kind, id=person.id, name=person.name, session=self.session, address=short(address))
 
     def due(self, now: float) -> bool:
-        """Whether `seen` would write."""
+        """Return whether `seen` would write."""
         return self.last_seen <= now - NOTED_EVERY
 
 
@@ -146,7 +146,7 @@ def live_sessions(connection: Connection, person_id: str, now: float) -> list[Si
 
 
 def live_counts(connection: Connection, now: float) -> dict[str, int]:
-    """How many live sessions people have, by the id of the person; who has none is not among them."""
+    """Return how many live sessions people have, by the id of the person; who has none is not among them."""
     counted = select(SESSIONS.c.person, func.count()).where(live(now), SESSIONS.c.person.is_not(None))
     return {row[0]: row[1] for row in connection.execute(counted.group_by(SESSIONS.c.person))}
 

@@ -55,13 +55,15 @@ def clean_name(text: str) -> str:
 
 
 def name_key(text: str) -> str:
-    """What a name is found by: regardless of case and of surrounding and repeated blanks. Any text has one."""
+    """Return what a name is found by: regardless of case and of surrounding and repeated blanks. Any text has one."""
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", text).casefold())
     return " ".join(folded.split())
 
 
 def name_shape(name: str) -> str:
-    """What a name looks like at a glance: letters that look alike are one, and marks and punctuation do not count."""
+    """Return what a name looks like at a glance: letters that look alike are one, and marks and punctuation do not
+    count.
+    """
     bare = "".join(each for each in unicodedata.normalize("NFKD", name) if unicodedata.category(each)[0] != "M")
     return "".join(each for each in bare.translate(_ALIKE).casefold().translate(_ALIKE) if each.isalnum())
 
@@ -103,7 +105,7 @@ def new_id() -> str:
 
 
 def is_id(text: str) -> bool:
-    """Whether `text` could be an id at all; what could not is not asked of a database."""
+    """Return whether `text` could be an id at all; what could not is not asked of a database."""
     return _ID.fullmatch(text) is not None
 
 
@@ -123,5 +125,5 @@ def hash_of(secret: str) -> str:
 
 
 def same(one: str, other: str) -> bool:
-    """Whether two hashes are the same, found out in a time that does not tell where they differ."""
+    """Return whether two hashes are the same, found out in a time that does not tell where they differ."""
     return secrets.compare_digest(one, other)

@@ -69,7 +69,7 @@ def create(
 
 
 def add(connection: Connection, name: str, role: Role, password_hash: str, now: float, *, temporary: bool) -> Person:
-    """What `create` does, without an entry in the journal: that is for the caller, who knows what it means."""
+    """Do what `create` does, without an entry in the journal: that is for the caller, who knows what it means."""
     name = clean_name(name)
     shape = name_shape(name)
     same = (PEOPLE.c.name_key == name_key(name)) | (PEOPLE.c.name_shape == shape)
@@ -198,7 +198,7 @@ def renew_hash(connection: Connection, person: Person, password_hash: str) -> No
 
 
 def administrator_exists(connection: Connection, *, but: str | None = None) -> bool:
-    """Whether there is an administrator who is not disabled, other than the person `but`."""
+    """Return whether there is an administrator who is not disabled, other than the person `but`."""
     administers = (PEOPLE.c.role == Role.ADMINISTRATOR.value) & PEOPLE.c.disabled.is_(False)
     counted = select(func.count()).select_from(PEOPLE).where(administers)
     if but is not None:

@@ -72,7 +72,7 @@ class Watch(BaseModel):
         return Actor(kind=ActorKind.WATCH, id=self.id, name=self.name, address=short(address))
 
     def due(self, now: float) -> bool:
-        """Whether `seen` would write."""
+        """Return whether `seen` would write."""
         return self.last_seen <= now - NOTED_EVERY
 
 
@@ -124,7 +124,7 @@ def given_up(now: float) -> ColumnElement[bool]:
 
 
 def watch_of(row: Row[tuple[object, ...]], now: float) -> Watch:
-    """What a row of the table means at a time."""
+    """Return what a row of the table means at a time."""
     parts = {name: getattr(row, name) for name in Watch.model_fields if name != "state"}
     return Watch(**parts, state=_state(row, now))
 

@@ -52,7 +52,7 @@ class Effect(Immutable):
 
 
 class HumanTask(Immutable):
-    """What a person is asked to do, and the measured variable that says it is done."""
+    """A task that a person is asked to do, and the measured variable that says it is done."""
 
     text: str
     acknowledgement: str
@@ -136,7 +136,7 @@ class Specification(Immutable):
 
 
 class WorkMaster(Immutable):
-    """What a job consists of: its operations, each with those that must be completed before it.
+    """The operations that a job consists of, each with those that must be completed before it.
 
     `brings` are the estimated values that a new product has.
     """

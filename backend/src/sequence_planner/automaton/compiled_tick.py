@@ -162,7 +162,9 @@ class CompiledRun:
         return self._possible
 
     def effect(self, name: str) -> Writes | None:
-        """What the effect writes if it is enabled; None if it is not, or is a fault. An unknown variable stays so."""
+        """Return what the effect writes if it is enabled; None if it is not, or is a fault. An unknown variable stays
+        so.
+        """
         compiled, values = self._compiled, self._values
         if name not in compiled.effect_guards or not compiled.effect_guards[name](values):
             return None
@@ -170,7 +172,7 @@ class CompiledRun:
         return None if writes is None else {n: v for n, v in writes.items() if values[n] is not None}
 
     def may_start(self, name: str) -> bool:
-        """Whether `name` is among those that are startable, without looking at the others."""
+        """Return whether `name` is among those that are startable, without looking at the others."""
         return bool(self._compiled.start_guards[name](self._values))
 
     def start(self, name: str) -> bool:
@@ -205,7 +207,7 @@ class CompiledRun:
             noted.update(flags)
 
     def _settle_finishes(self) -> None:
-        """Who finishes, now that others are due; of two that would write different values, neither."""
+        """Settle who finishes, now that others are due; of two that would write different values, neither."""
         due = sorted(self._due, key=self._compiled.position.__getitem__)
         conflicts = _conflicts({name: self._due[name] for name in due})
         refused = {ability for one, other, _ in conflicts for ability in (one, other)}

@@ -326,7 +326,7 @@ F = TypeVar("F")
 
 
 class Dependants(NamedTuple):
-    """What must be looked at again when a variable or a flag has changed.
+    """The things that must be looked at again when a variable or a flag has changed.
 
     `flags` come by their level: a flag reads flags of lower levels only, and waits until these are known.
     """
@@ -345,7 +345,7 @@ class Actions(Immutable):
     each: tuple[tuple[str, Truth, Evaluation], ...]
 
     def writes(self, state: State) -> Writes | None:
-        """What they write in `state`, not to be changed; None when an unknown value leaves it undetermined."""
+        """Return what they write in `state`, not to be changed; None when an unknown value leaves it undetermined."""
         if self.always is not None:
             return self.always
         written: Writes = {}
@@ -394,7 +394,7 @@ class CompiledTick:
 
 
 def _start_guard(automaton: Automaton, ability: Ability) -> Expression:
-    """What must hold for a start, the supervisor apart: the flag `enabled`, its predicate and the written guard."""
+    """Return what must hold for a start, the supervisor apart: the flag `enabled`, its predicate and the written guard."""
     enabled = ability.flag("enabled")
     flags = (Variable(enabled, BOOLEAN),) if enabled in automaton.flag_predicates else ()
     return conjunction(*flags, ability.enabled, ability.start_guard)
@@ -417,7 +417,7 @@ def _actions(compiler: Compiler | Closures, actions: Mapping[str, Sequence[Assig
 
 
 def _constants(actions: Sequence[Assignment]) -> Writes | None:
-    """What `actions` write, if it is the same in every state."""
+    """Return what `actions` write, if it is the same in every state."""
     written: Writes = {}
     for action in actions:
         if action.condition is not None or not isinstance(action.value, Constant):

@@ -1,4 +1,4 @@
-"""What there is in a station: its enumerations, variables, flags and operations, each under one name."""
+"""The declarations of a station: its enumerations, variables, flags and operations, each under one name."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ class Declarations:
                 self._findings.add(Place(file, 1, 1), message)
 
     def _declare(self, name: str, key: SourceText) -> bool:
-        """Whether `name` is new; a second declaration is a finding."""
+        """Return whether `name` is new; a second declaration is a finding."""
         if name in self.places:
             message = f"duplicate name `{name}`, first declared at {self.places[name]}: rename one of them"
             self._findings.add(key, message)

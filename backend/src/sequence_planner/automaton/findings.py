@@ -1,4 +1,4 @@
-"""What is wrong with a model, gathered while it is grounded, and the parameters that grounding replaces by values."""
+"""The faults of a model, gathered while it is grounded, and the parameters that grounding replaces by values."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Binding = Mapping[str, tuple[str, EnumerationType]]
 
 
 class Findings:
-    """What has been found so far."""
+    """The findings so far."""
 
     def __init__(self) -> None:
         self.all: list[Finding] = []

@@ -78,7 +78,7 @@ def _not_a_variable(name: str) -> str:
 
 
 class Writing(NamedTuple):
-    """What writes, in words, and the kinds of variables that it may write."""
+    """A writer, in words, and the kinds of variables that it may write."""
 
     what: str
     kinds: tuple[Kind, ...]
@@ -93,7 +93,7 @@ class Meaning:
         self._activities: dict[str, None] = {}  # in order
 
     def scope(self, binding: Binding, *prefixes: str) -> NameScope:
-        """What names mean for a part with these parameters, in these surroundings."""
+        """Return what names mean for a part with these parameters, in these surroundings."""
         return NameScope(self.declarations.types, prefixes, binding)
 
     def predicate(self, text: Predicate, scope: NameScope) -> Expression:
@@ -210,7 +210,7 @@ class GroundAbility(NamedTuple):
 
 
 class GroundBefore:
-    """What the abilities of one station meant when they were ground before.
+    """The meaning that the abilities of one station had when they were ground before.
 
     An ability means the same for as long as its document is the same object and what is declared is the same.
     """
@@ -366,7 +366,7 @@ def observable_condition(meaning: Meaning, text: Predicate, scope: NameScope) ->
 
 
 def _places(ability: str, name: SourceText, document: AbilityDocument) -> dict[str, Place]:
-    """Where the ability and its parts were written; a part that is left out stands where the ability does."""
+    """Return where the ability and its parts were written; a part that is left out stands where the ability does."""
     finish = document.finish
     parts = {
         **{flag: getattr(document, flag) for flag in FLAGS},
@@ -462,7 +462,7 @@ def check_steps(meaning: Meaning, steps: Steps, operations: Collection[str]) -> 
 
 
 def brought_by(meaning: Meaning, texts: Iterable[SourceText]) -> tuple[Assignment, ...]:
-    """What a new product brings: it is known beforehand, so the values are constants."""
+    """Return what a new product brings: it is known beforehand, so the values are constants."""
     brought: dict[str, Assignment] = {}
     for text in texts:
         for action in meaning.actions([text], meaning.scope({}), TRUE, BROUGHT):

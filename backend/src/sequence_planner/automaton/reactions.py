@@ -1,4 +1,4 @@
-"""Whether a change of a measured variable is one that the model's effects can bring about.
+"""The question whether a change of a measured variable is one that the model's effects can bring about.
 
 What is seen of a device lags behind and has gaps: between two messages it can have done several things, and on the way
 from one named value to another it is between them. So what a few effects can do one after the other is explained, in
@@ -49,7 +49,7 @@ class Reactions:
         return self._cone(name).names
 
     def explain(self, states: Iterable[State], name: str, value: Value) -> bool:
-        """Whether in a run of effects from one of the states the variable gets the value."""
+        """Return whether in a run of effects from one of the states the variable gets the value."""
         cone = self._cone(name)
         looked = 0
         seen: set[tuple[Value | None, ...]] = set()

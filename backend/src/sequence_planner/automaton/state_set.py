@@ -33,7 +33,7 @@ class StateSet(Immutable):
     root: int = EVERYTHING
 
     def includes(self, state: State) -> bool:
-        """Whether the set holds `state` for every value that its unknown variables could have."""
+        """Return whether the set holds `state` for every value that its unknown variables could have."""
         pending = [self.root]
         seen: set[int] = set()
         while pending:
@@ -129,7 +129,7 @@ class StateSet(Immutable):
 
     @property
     def count(self) -> int:
-        """How many states it has, over its own variables."""
+        """The number of states it has, over its own variables."""
         size = [1]  # of the domains from each variable on
         for domain in reversed(self.domains):
             size.append(size[-1] * len(domain))
@@ -142,7 +142,7 @@ class StateSet(Immutable):
 
     @property
     def everything(self) -> bool:
-        """Whether it is the set of all states."""
+        """True if it is the set of all states."""
         return self.root == EVERYTHING
 
     def _branch(self, reference: int, axis: int, position: int) -> int:
@@ -194,7 +194,7 @@ class Builder:
 
 
 class Supervisor(Immutable):
-    """Which starts are safe: a start must lead from a safe state into one.
+    """The starts that are safe: a start must lead from a safe state into one.
 
     `guards` says the same per ability, over few variables and for safe states only; an ability without an entry may
     always start. The safe set itself is what is enforced.
@@ -204,5 +204,5 @@ class Supervisor(Immutable):
     guards: Mapping[str, StateSet]
 
     def allows(self, before: State, after: State) -> bool:
-        """Whether the start that leads from `before` to `after` is allowed."""
+        """Return whether the start that leads from `before` to `after` is allowed."""
         return self.safe.includes(before) and self.safe.includes(after)

@@ -34,7 +34,7 @@ def initial_state(automaton: Automaton) -> State:
 
 
 def writes(actions: Iterable[Assignment], state: State) -> Writes | None:
-    """What `actions` write when taken at once in `state`; None when an unknown value leaves it undetermined."""
+    """Return what `actions` write when taken at once in `state`; None when an unknown value leaves it undetermined."""
     written: Writes = {}
     for action in actions:
         if action.condition is not None:
@@ -56,7 +56,7 @@ def sense(state: State, measured: Mapping[str, Value | None]) -> State:
 
 
 def effect_writes(effect: Effect, state: State) -> Writes | None:
-    """What `effect` writes if it is enabled in `state`, else None. An unknown variable stays unknown."""
+    """Return what `effect` writes if it is enabled in `state`, else None. An unknown variable stays unknown."""
     if not holds(effect.guard, state):
         return None
     written = writes(effect.actions, state)
@@ -141,7 +141,7 @@ def record_activity(automaton: Automaton, state: State, active: frozenset[str]) 
 
 
 def start_guard_holds(ability: Ability, state: State) -> bool:
-    """Whether `enabled` and the written start guard hold. The supervisor has its say elsewhere."""
+    """Return whether `enabled` and the written start guard hold. The supervisor has its say elsewhere."""
     return state[ability.flag("enabled")] is True and holds(conjunction(ability.enabled, ability.start_guard), state)
 
 

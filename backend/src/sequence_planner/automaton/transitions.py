@@ -30,7 +30,7 @@ class Transition(Immutable):
 
     @property
     def controllable(self) -> bool:
-        """Whether we decide when it is taken."""
+        """True if we decide when it is taken."""
         return self.phase is Phase.START
 
     @cached_property

@@ -56,7 +56,7 @@ class How(StrEnum):
 
 
 class Maker(BaseModel):
-    """Who has made a backup; `name` is what people read."""
+    """The one who has made a backup; `name` is what people read."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     how: How
@@ -64,7 +64,7 @@ class Maker(BaseModel):
 
 
 class Manifest(BaseModel):
-    """What is in a backup. `time` is in seconds since the epoch; `files` has the SHA-256 of all other members."""
+    """The contents of a backup. `time` is in seconds since the epoch; `files` has the SHA-256 of all other members."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     format: Literal[1]
@@ -103,7 +103,8 @@ def write(folder: Path, manifest: Manifest, file: Path) -> None:
 
 @contextmanager
 def opened(file: Path, beside: Path, scratch: str = ".restoring-") -> Iterator[tuple[Manifest, Path]]:
-    """What a backup holds, unpacked to a folder in `beside` as long as the block lasts, each member as it was written.
+    """Give what a backup holds, unpacked to a folder in `beside` as long as the block lasts, each member as it was
+    written.
 
     The folder's name begins with `scratch`. Raises `StorageError` for what is no backup, or was changed.
     """
@@ -125,7 +126,7 @@ def opened(file: Path, beside: Path, scratch: str = ".restoring-") -> Iterator[t
 
 
 def manifest_of(file: Path) -> Manifest:
-    """What a backup says that is in it, by its beginning alone. Raises `StorageError`."""
+    """Return what a backup says that is in it, by its beginning alone. Raises `StorageError`."""
     try:
         with tarfile.open(file, mode="r:") as tar:
             return _manifest(tar, file)
@@ -256,7 +257,7 @@ _OTHERS: Final = text(
 
 
 def kind_of(url: str) -> Kind:
-    """Which of the two a URL names. Raises `StorageError`."""
+    """Return which of the two a URL names. Raises `StorageError`."""
     return "sqlite" if isinstance(address(url), SqliteFile) else "postgresql"
 
 
@@ -380,7 +381,7 @@ def verify_backup(file: Path, scratch: str) -> Manifest:
 
 
 def not_as_told(verified: Verified, manifest: Manifest) -> Iterator[str]:
-    """What is wrong with the journal of a copy, or other than the manifest says."""
+    """Yield what is wrong with the journal of a copy, or other than the manifest says."""
     yield from verified.wrong
     for name, end, then in (("audit", verified.audit, manifest.audit), ("run", verified.run, manifest.run)):
         if not _is(end, then):

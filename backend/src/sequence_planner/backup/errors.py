@@ -1,4 +1,4 @@
-"""What keeps a backup from being made or from being whole: of which kind it is, and in words what to do."""
+"""The things that keep a backup from being made or from being whole: of which kind each is, and in words what to do."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NOT_WRITABLE: Final = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
 def trouble_of(error: OSError, folder: Path) -> BackupError:
-    """What the system says while a backup is written to or unpacked in `folder`, in words."""
+    """Put in words what the system says while a backup is written to or unpacked in `folder`."""
     said = f"{error.strerror or error}: {error.filename}" if error.filename else str(error.strerror or error)
     if error.errno in _NO_SPACE:
         return no_space(folder, said)

@@ -92,7 +92,9 @@ def instructions(file: Path, url: str, model: Path) -> RestoreInstructions:
 
 
 def _moved(files: list[Path]) -> str:
-    """What is there of these gets other names. The keys that no backup has stay where they are."""
+    """Return a command that gives other names to what is there of these. The keys that no backup has stay where they
+    are.
+    """
     each = " ".join(quote(str(file)) for file in files)
     return (
         f'now=$(date +%Y%m%d_%H%M%S); for each in {each}; do [ ! -e "$each" ] || mv "$each" "$each.before_$now"; done'
@@ -169,7 +171,7 @@ class Shelf:
 
     @property
     def scratch(self) -> str:
-        """How the folders begin in which the station puts a backup together, or takes one apart."""
+        """The beginning of the names of folders in which the station puts a backup together, or takes one apart."""
         return f".{self._mark}-"
 
     def require_usable(self) -> int:
@@ -247,7 +249,7 @@ class Shelf:
 
 
 def what_is_in(manifest: Manifest) -> tuple[int, bool]:
-    """How many files of the model a backup has, and whether it has revisions."""
+    """Return how many files of the model a backup has, and whether it has revisions."""
     files = sum(1 for name in manifest.files if name.startswith(f"{MODEL}/"))
     return files, any(name.startswith(f"{REVISIONS}/") for name in manifest.files)
 
@@ -328,7 +330,7 @@ def _end(position: ChainPosition) -> ChainEnd:
 
 
 def _copy_revisions(repository: Path, to: Path) -> None:
-    """What is told first is copied first: what it names is there by then, whatever is saved meanwhile."""
+    """Copy first what is told first: what it names is there by then, whatever is saved meanwhile."""
     if not (repository / "HEAD").exists():
         return
     for file in (*_finished(repository, objects=False), *_finished(repository, objects=True)):
@@ -351,7 +353,7 @@ LONGEST: Final = 12 * 3600.0  # seconds after which it is given up
 
 @dataclass(frozen=True)
 class BackupTask:
-    """What to do with `file`: check it, or make it where there is a `maker`."""
+    """A task to do with `file`: check it, or make it where there is a `maker`."""
 
     url: str
     model: Path
@@ -398,7 +400,7 @@ class Doing(StrEnum):
 
 @dataclass(frozen=True)
 class BackupAttempt:
-    """How something with a backup ended, or `REQUESTED` where that was not told; and why it failed."""
+    """The end of something with a backup, or `REQUESTED` where that was not told; and why it failed."""
 
     doing: Doing
     file: str
@@ -411,7 +413,7 @@ class BackupAttempt:
 
 @dataclass(frozen=True)
 class Recorded:
-    """What was done last, what was made last, and how each file was found when it was last read as a whole, by name."""
+    """The last thing done, the last one made, and how each file was found when it was last read as a whole, by name."""
 
     last: BackupAttempt | None
     made: BackupAttempt | None
@@ -441,7 +443,7 @@ def ended(
 
 
 def recorded(connection: Connection) -> Recorded:
-    """What the journal tells of the latest."""
+    """Return what the journal tells of the latest."""
     records = [each for doing in Doing for each in audit.read(connection, limit=_LOOKED_AT, action=doing)]
     attempts = [_attempt(each) for each in sorted(records, key=lambda record: record.number)]
     # What was made was read again then; what could not be read for another reason says nothing of the file.

@@ -1,4 +1,4 @@
-"""What `run` is told of backups."""
+"""The settings of backups that `run` is told."""
 
 from __future__ import annotations
 
@@ -33,5 +33,5 @@ class Keeping:
         return [*folder, f"--backups-kept={self.kept}", *every]
 
     def is_due(self, times: list[float], now: float) -> bool:
-        """Whether the next is to be made without anybody asking. Those of the future a wrong clock has made."""
+        """Return whether the next is to be made without anybody asking. Those of the future a wrong clock has made."""
         return self.every is not None and not any(now - self.every * _HOUR < time <= now for time in times)

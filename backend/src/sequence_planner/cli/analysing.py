@@ -58,7 +58,7 @@ _QUIET = 1.0  # seconds before anything is said about what is being done
 
 @dataclass(frozen=True)
 class Limits:
-    """How many seconds it may take, from the moment these are made, and how many GB of memory."""
+    """The number of seconds it may take, from the moment these are made, and of GB of memory."""
 
     deadline: float = USUAL_DEADLINE
     memory: float = USUAL
@@ -72,8 +72,8 @@ class Limits:
 
 @dataclass(frozen=True)
 class Found:
-    """What was found. `unfinished` says why that is not all; `suspicious` is what checks that need no synthesis found,
-    where they were asked for.
+    """The findings of an analysis. `unfinished` says why that is not all; `suspicious` is what checks that need no
+    synthesis found, where they were asked for.
     """
 
     document: AnalysisDocument
@@ -83,7 +83,8 @@ class Found:
 
 
 def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Found:
-    """What synthesis finds of `automaton` within `limits`, with numbers of states only if `counts` asks for them.
+    """Return what synthesis finds of `automaton` within `limits`, with numbers of states only if `counts` asks for
+    them.
 
     A terminal's standard error is told what goes on.
     """
@@ -115,7 +116,7 @@ def guarded(automaton: Automaton, names: frozenset[str], limits: Limits) -> Foun
 
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
-    """What synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
+    """Return what synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
     from sequence_planner.analysis.checks.rules import CONFLICTS  # noqa: PLC0415
     from sequence_planner.analysis.finding import everything  # noqa: PLC0415
 
@@ -128,7 +129,7 @@ def checked(automaton: Automaton, connections: Connections | None, limits: Limit
 
 
 def _kept(automaton: Automaton, unwanted: Collection[str]) -> Found | None:
-    """What is kept of an earlier command, if nothing is missing but what is `unwanted`."""
+    """Return what is kept of an earlier command, if nothing is missing but what is `unwanted`."""
     known = kept(automaton)
     if known is None or known.analysis.pending not in (None, *unwanted):
         return None
@@ -137,7 +138,7 @@ def _kept(automaton: Automaton, unwanted: Collection[str]) -> Found | None:
 
 
 def _found(automaton: Automaton, limits: Limits, hearing: _Hearing, *, far: bool = True) -> Found:
-    """What is heard, and kept: but not what is unknown only as nobody looked `far`."""
+    """Return what is heard, and keep it: but not what is unknown only as nobody looked `far`."""
     unfinished = hearing.hear(limits)
     analysis = hearing.analysis
     document = document_of(automaton, analysis)
@@ -206,7 +207,7 @@ Work = tuple[Callable[..., "Iterator[CheckProgress | Analysis]"], *tuple[object,
 
 @dataclass
 class _Hearing:
-    """What a process that does `work` has told by now; `after` is what it looks for at last, and nobody waits for what
+    """The words of a process that does `work`, by now; `after` is what it looks for at last, and nobody waits for what
     is `unwanted`.
     """
 
@@ -240,7 +241,7 @@ class _Hearing:
         self._pending = word.pending
 
     def _left(self) -> str:
-        """What has not been found."""
+        """Say what has not been found."""
         pending = self.analysis.pending
         left = [self._pending or pending, pending, GUARDS if pending == FINDINGS else None, self.after]
         return " and ".join(dict.fromkeys(each for each in left if each is not None and each not in self.unwanted))
@@ -270,7 +271,7 @@ def finding_lines(finding: FindingDocument, runs: bool = False) -> list[str]:
 
 
 def counts_line(findings: Collection[FindingDocument]) -> str:
-    """How many findings there are, of which kinds."""
+    """Say how many findings there are, of which kinds."""
     kinds = Counter(finding.kind for finding in findings)
     return f"{counted(len(findings), 'finding')}: {', '.join(f'{number} {kind}' for kind, number in kinds.items())}"
 

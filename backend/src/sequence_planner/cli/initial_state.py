@@ -32,14 +32,14 @@ class StartingPoint:
 
 
 def named(known: Mapping[str, T], name: str, what: str) -> T:
-    """What of `known` bears the name; ends the command if nothing does."""
+    """Return what of `known` bears the name; end the command if nothing does."""
     if name not in known:
         refuse(f"there is no {what} `{name}`{suggestion(name, known)}")
     return known[name]
 
 
 def moment(automaton: Automaton, file: str | None) -> StartingPoint:
-    """What `file` holds, as `tick --json` writes it.
+    """Return what `file` holds, as `tick --json` writes it.
 
     Variables that are left out have their initial value, which must be one alone, and flags equal their predicates.
     """

@@ -26,7 +26,7 @@ class LoadedModel:
 
     @property
     def connections(self) -> Connections | None:
-        """What topics, services and actions feed and carry."""
+        """The connections that topics, services and actions feed and carry."""
         return None if self.station is None else self.station.connections
 
 

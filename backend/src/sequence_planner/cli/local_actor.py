@@ -1,4 +1,4 @@
-"""Who acts over the command line: the program, in the name of whoever runs it."""
+"""The one who acts over the command line: the program, in the name of whoever runs it."""
 
 from __future__ import annotations
 

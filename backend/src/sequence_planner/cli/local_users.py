@@ -1,4 +1,4 @@
-"""What `users` does in the database, in the name of the program: who may run it has the database in hand anyway."""
+"""The work of `users` in the database, in the name of the program: who may run it has the database in hand anyway."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands share: their arguments, where the database is, and how they refuse."""
+"""The parts that the commands share: their arguments, where the database is, and how they refuse."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ def refuse(message: str, code: int = UNUSABLE) -> NoReturn:
 
 
 def is_typed(context: typer.Context, name: str) -> bool:
-    """Whether an option stands on the command line itself."""
+    """Return whether an option stands on the command line itself."""
     source = context.get_parameter_source(name)
     return source is not None and source.name == "COMMANDLINE"
 
 
 def database_url(model: Path, given: str | None) -> str:
-    """Where the database of the station in the folder `model` is."""
+    """Return where the database of the station in the folder `model` is."""
     try:
         return default_url(model) if given is None else given
     except StorageError as error:

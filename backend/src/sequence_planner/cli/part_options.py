@@ -1,4 +1,5 @@
-"""What the commands that run a station's parts have in common. What keeps one from running is said on standard error.
+"""The things that the commands that run a station's parts have in common. What keeps one from running is said on
+standard error.
 
 The exit code is 2 then.
 """
@@ -64,7 +65,7 @@ def prepare(folder: Path, code: int = UNUSABLE) -> ReadyStation:
 
 @dataclass(frozen=True)
 class Network:
-    """How a station's processes join its network."""
+    """The way in which a station's processes join its network."""
 
     station: ReadyStation
     choice: TransportChoice

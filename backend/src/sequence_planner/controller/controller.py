@@ -198,7 +198,7 @@ class Controller:
 
     @property
     def commands(self) -> bool:
-        """Whether it is the one that commands the station's devices."""
+        """True if it is the one that commands the station's devices."""
         return self.devices.network.commands
 
     def take_command(self) -> None:
@@ -218,7 +218,7 @@ class Controller:
         self._tick_again()
 
     def view(self) -> StationView:
-        """What there is to show now."""
+        """Return what there is to show now."""
         moment = Timestamp.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
         self._viewing.who_can = self._alarms.who_can.found
@@ -233,7 +233,7 @@ class Controller:
         return self._viewing.view(self.desk, self.devices.commander, overrides, alarms, control, doubts, jobs, moment)
 
     async def answer(self, ask: Ask) -> View:
-        """What is told only when somebody asks for it. Raises `CommandRefused`."""
+        """Return what is told only when somebody asks for it. Raises `CommandRefused`."""
         return await self._asking.answer(ask)
 
     @property
@@ -242,16 +242,16 @@ class Controller:
         return self._writer.end.number
 
     async def until_recorded(self, number: int, patience: float) -> bool:
-        """Whether what has happened up to a record is durable, or becomes so within so many seconds."""
+        """Return whether what has happened up to a record is durable, or becomes so within so many seconds."""
         return await self._writer.until_durable(number, patience)
 
     def note_kept(self, number: int, what: str) -> None:
-        """What was asked for is kept beside the journal until that has the record of this number."""
+        """Note that what was asked for is kept beside the journal until that has the record of this number."""
         self._kept = number, what
 
     @property
     def is_recorded(self) -> bool | None:
-        """Whether all that has happened is durable; None where not even that this life has begun."""
+        """True if all that has happened is durable; None where not even that this life has begun."""
         return self._writer.waiting == 0 if self._writer.durable >= self.begun.number else None
 
     @property
@@ -298,7 +298,7 @@ class Controller:
         self._recorder.note(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
 
     def _unjournalled(self) -> str | None:
-        """Why what happens cannot be journalled; None when it can."""
+        """Return why what happens cannot be journalled; None when it can."""
         if self._writer.trouble is not None:
             return self._writer.trouble
         if self._release.longest > PATIENCE:
@@ -377,7 +377,7 @@ class Controller:
             self._standing.look(self._viewing.packml, waits, moment)
 
     def _obstacles(self) -> tuple[str, ...]:
-        """What keeps every ability from starting."""
+        """Return what keeps every ability from starting."""
         self._is_unjournalled = self._unjournalled() is not None
         unwritten = ["what has happened to be journalled"] if self._is_unjournalled else []
         began = self.execution.production is Production.STARTED and self._release.released is None

@@ -24,9 +24,8 @@ _NOTE, _BEFORE, _RUNS, _WAITS = "note.json", "before", "runs", "waits"
 
 
 class DeploymentNote(BaseModel):
-    """Which revision was deployed, by whom and when, and who was in control; `reset` says that the emulated devices
-    and the station begin as the model says. `undone` is why it could not be started, once the files are as before;
-    `kept` names these.
+    """The revision that was deployed, by whom, when, who was in control; with `reset`, emulated devices and the station
+    begin as the model says. `undone` is why it could not be started, once the files are as before; `kept` names these.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -48,11 +47,11 @@ class DeploymentFolder:
 
     @property
     def exists(self) -> bool:
-        """Whether a deployment is under way, or was undone."""
+        """True if a deployment is under way, or was undone."""
         return self._folder.is_dir()
 
     def note(self) -> DeploymentNote | None:
-        """What is deployed; None where nothing is."""
+        """Return what is deployed; None where nothing is."""
         try:
             return DeploymentNote.model_validate_json((self._folder / _NOTE).read_bytes())
         except (OSError, ValidationError):
@@ -72,7 +71,7 @@ class DeploymentFolder:
         self._write(note)
 
     def has_changed(self, model: Path) -> bool:
-        """Whether the files in the folder `model` are others than those that were kept. Raises `OSError`."""
+        """Return whether the files in the folder `model` are others than those that were kept. Raises `OSError`."""
         return read_contents(model) != read_contents(self._folder / _BEFORE)
 
     def tell_that_it_runs(self) -> None:
@@ -81,7 +80,7 @@ class DeploymentFolder:
 
     @property
     def runs(self) -> bool:
-        """Whether it does."""
+        """True if the station runs the new model."""
         return (self._folder / _RUNS).exists()
 
     def tell_that_it_waits(self, *, waits: bool) -> None:
@@ -93,7 +92,7 @@ class DeploymentFolder:
 
     @property
     def waits(self) -> bool:
-        """Whether somebody else commands the devices, which says nothing of the new model."""
+        """True if somebody else commands the devices, which says nothing of the new model."""
         return (self._folder / _WAITS).exists()
 
     def bring_back(self, model: Path, why: str) -> None:

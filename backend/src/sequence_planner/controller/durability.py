@@ -43,7 +43,7 @@ class Lasting:
     async def settle(
         self, command: Command, controller: Controller, before: int, audited: asyncio.Task[None] | None
     ) -> bool:
-        """Whether the journal has all that a command did, which it can be told of as carried out in any case.
+        """Return whether the journal has all that a command did, which it can be told of as carried out in any case.
 
         `before` is the last record before the command, `audited` ends when it is recorded who gave it. Raises
         `CommandRefused` when the command stops devices and it is nowhere written down that it did.
@@ -67,7 +67,7 @@ class Lasting:
         return False
 
     async def _keep(self, word: Word) -> bool:
-        """Whether a word is written down beside the journal."""
+        """Return whether a word is written down beside the journal."""
         return await self._written(partial(self._last_word.say, word))
 
     async def _written(self, write: Callable[[], None]) -> bool:

@@ -114,7 +114,7 @@ class NetworkMessage(LinkMessage):
 
 
 class AnswerMessage(LinkMessage):
-    """What answers an ask: a document of its `answer_type`, to who asked for it."""
+    """The answer to an ask: a document of its `answer_type`, to who asked for it."""
 
     kind: Literal["answer"] = "answer"
     id: int
@@ -122,7 +122,7 @@ class AnswerMessage(LinkMessage):
 
 
 class Reply(LinkMessage):
-    """What became of a command, or that an ask is refused; `problem` is there when `ok` is false.
+    """A message about what became of a command, or that an ask is refused; `problem` is there when `ok` is false.
 
     `recorded` is false as long as the journal does not have what was carried out.
     """
@@ -178,7 +178,7 @@ MOST_ASKS = 16  # of one peer, waiting for their answers at the same time
 
 
 def read(line: bytes | None) -> FromServer | Reply:
-    """What the server says, or the reply to what cannot be read."""
+    """Return what the server says, or the reply to what cannot be read."""
     if line is None:
         return refusal(None, malformed(f"The line is longer than {LONGEST_COMMAND} bytes."))
     try:
@@ -207,7 +207,7 @@ def failed(title: str) -> CommandRefused:
 
 
 def malformed(detail: str) -> CommandRefused:
-    """What came is no message."""
+    """Return the refusal of something that came and is no message."""
     return CommandRefused("malformed-command", "The command cannot be read", detail, 422)
 
 
@@ -435,7 +435,7 @@ class ControllerLink:
 
 
 def _named(request: str | None) -> dict[str, str]:
-    """What all that is logged meanwhile is to be found by."""
+    """Return what all that is logged meanwhile is to be found by."""
     return {} if request is None else {"request": request}
 
 
@@ -462,7 +462,7 @@ ON_THE_WAY = 0.5  # seconds that an answer may need back to us, beyond the patie
 
 
 class ControllerClient:
-    """What is known of the controller, and the way to command it; `run` keeps it connected."""
+    """A client with what is known of the controller, and the way to command it; `run` keeps it connected."""
 
     def __init__(self, path: Path, *, reply_deadline: float = REPLY_DEADLINE) -> None:
         self.path = path
@@ -480,18 +480,18 @@ class ControllerClient:
 
     @property
     def connected(self) -> bool:
-        """Whether there is a connection; a controller that hangs keeps its own."""
+        """True if there is a connection; a controller that hangs keeps its own."""
         return self._writer is not None
 
     @property
     def stands_by(self) -> bool:
-        """Whether another station commands, with which this one shares its database."""
+        """True if another station commands, with which this one shares its database."""
         standby = None if self.view is None else self.view.standby
         return standby is not None and not standby.active
 
     @property
     def heard(self) -> bool:
-        """Whether a view came within the last two seconds."""
+        """True if a view came within the last two seconds."""
         return self.last_heard is not None and time.monotonic() - self.last_heard <= SILENCE
 
     def listen(self, listener: Callable[[StationView], None]) -> None:
@@ -541,7 +541,7 @@ class ControllerClient:
         return not isinstance(reply, Reply) or reply.recorded
 
     async def ask(self, ask: Query[Told]) -> Told:
-        """What answers `ask`. Raises `CommandRefused` as `send` does; asking has changed nothing then."""
+        """Return what answers `ask`. Raises `CommandRefused` as `send` does; asking has changed nothing then."""
         patience = self._reply_deadline if ask.patience is None else ask.patience
         expires = time.monotonic() + patience
         answer = await self._exchange(

@@ -23,7 +23,7 @@ LOG = structlog.get_logger(__name__)
 async def held_lease(
     database: str, name: str, model: Path, ended: LastEnding, preparation: Preparation
 ) -> AsyncIterator[LeaseKeeper]:
-    """What keeps the lease for the station `name`; it is let go of at the end.
+    """Yield what keeps the lease for the station `name`; it is let go of at the end.
 
     `ended` is how the last life has ended as far as this station knows: others may take over from it by themselves
     where that is certain.
@@ -57,7 +57,7 @@ def _tell(lease: Lease, ended: LastEnding) -> None:
 
 
 def standby_view(keeper: LeaseKeeper) -> StandbyView:
-    """What is shown of it."""
+    """Return what is shown of it."""
     standing = keeper.standing
     return StandbyView(
         name=standing.name,
@@ -69,7 +69,7 @@ def standby_view(keeper: LeaseKeeper) -> StandbyView:
 
 
 def stands_by(keeper: LeaseKeeper) -> CommandRefused:
-    """Why a station that does not hold the lease carries nothing out."""
+    """Return why a station that does not hold the lease carries nothing out."""
     holder = keeper.standing.holder
     if keeper.standing.active:
         why = keeper.standing.trouble or "the database is slow"

@@ -1,4 +1,4 @@
-"""What a controller counts and times of itself: noting it costs a microsecond, and nobody waits for a reader."""
+"""Counts and times that a controller notes of itself: noting one costs a microsecond, and nobody waits for a reader."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Figures:
 
 
 class Answers:
-    """How long the planner took, by what it was asked and what came of that."""
+    """The times that the planner took, by what it was asked and what came of that."""
 
     def __init__(self) -> None:
         self._took: dict[tuple[str, str], Distribution] = {}

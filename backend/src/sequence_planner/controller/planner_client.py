@@ -50,7 +50,7 @@ class AdvisorClient:
 
     @property
     def replaced(self) -> int:
-        """How often the process was replaced."""
+        """The number of times that the process was replaced."""
         return self._process.replaced
 
     def expect(self) -> None:
@@ -71,7 +71,7 @@ class AdvisorClient:
     async def answer(self, request: DiagnosisRequest, deadline: float) -> Diagnosis: ...
 
     async def answer(self, request: AdvisorRequest, deadline: float) -> AdvisorAnswer:
-        """What the adviser answers within `deadline` seconds, of which it may have to wait for its turn.
+        """Return what the adviser answers within `deadline` seconds, of which it may have to wait for its turn.
 
         Raises `CommandRefused`: `adviser-late` (504), `adviser-away` (503).
         """
@@ -119,7 +119,7 @@ EXPLAINED_WITHIN = 5.0  # seconds, where nothing was found
 
 @dataclass(frozen=True)
 class GoalPlan:
-    """What there is to offer; or that there is nothing, which may be `proven`, and why, as far as that was found."""
+    """An offer, if there is any; or that there is nothing, which may be `proven`, and why, as far as that was found."""
 
     offer: RecoveryProposal | None
     proven: bool = False
@@ -204,12 +204,12 @@ class PlannerQuestions:
 
     @property
     def trouble(self) -> str | None:
-        """What is wrong with the planner, in words."""
+        """The trouble with the planner, in words."""
         return self._planner.trouble
 
     @property
     def replaced(self) -> int:
-        """How often the planner's process was replaced."""
+        """The number of times that the planner's process was replaced."""
         return self._planner.replaced
 
     def close(self) -> None:

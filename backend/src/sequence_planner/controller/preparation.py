@@ -76,7 +76,7 @@ class Deploying:
             raise CommandRefused("not-emulated", "There are real devices", detail)
 
     def refusal(self) -> CommandRefused | None:
-        """Why nothing but a stop is carried out any more, once a deployment was accepted; None else.
+        """Return why nothing but a stop is carried out any more, once a deployment was accepted; None else.
 
         What was done now would be of the model before, and whoever asks for it means one or the other.
         """
@@ -123,7 +123,7 @@ class Deploying:
 
 
 def under_way(name: str, by: str) -> CommandRefused:
-    """Why nothing is commanded while a deployment is under way."""
+    """Return why nothing is commanded while a deployment is under way."""
     detail = (
         f"{by} has deployed {name}, and the station begins anew with it. Nothing is published until it runs and "
         "somebody starts production. Try again then."
@@ -148,12 +148,12 @@ class LastDeployment:
 
     @property
     def starting(self) -> bool:
-        """Whether it is still to be seen that the station runs the new model."""
+        """True if it is still to be seen that the station runs the new model."""
         self._starting = self._starting and self._folder.exists
         return self._starting
 
     def view(self) -> DeploymentView | None:
-        """What is shown of it."""
+        """Return what is shown of it."""
         if (note := self._note) is None:
             return None
         state = DeploymentState.STARTING if self.starting else DeploymentState.RUNS
@@ -164,11 +164,11 @@ class LastDeployment:
 
     @property
     def control(self) -> ControlView | None:
-        """Who is in control as this controller begins."""
+        """The one who is in control as this controller begins."""
         return None if self._note is None or self._stood_by else self._note.control
 
     def known(self, known: RestoredState) -> RestoredState:
-        """What is known as a controller begins after it."""
+        """Return what is known as a controller begins after it."""
         if (note := self._note) is None:
             return known
         known = replace(known, deployment=self.view())
@@ -189,12 +189,12 @@ class LastDeployment:
             await asyncio.sleep(LOOK_EVERY)
 
     def refusal(self) -> CommandRefused | None:
-        """Why nothing can be commanded yet; None where that is not because of a deployment."""
+        """Return why nothing can be commanded yet; None where that is not because of a deployment."""
         note = self._note
         return under_way(note.name, note.by) if note is not None and self.starting else None
 
     def tell_that_it_waits(self, *, waits: bool) -> None:
-        """Whether somebody else commands the devices, so that the start takes as long as that. Raises `OSError`."""
+        """Tell whether somebody else commands the devices, so that the start takes as long as that. Raises `OSError`."""
         if self.starting:
             self._folder.tell_that_it_waits(waits=waits)
 
@@ -223,7 +223,9 @@ class LastDeployment:
         )
 
     def forget(self) -> None:
-        """What became of it is recorded. A later deployment, which may have begun meanwhile, is not forgotten."""
+        """Forget it, since what became of it is recorded. A later deployment, which may have begun meanwhile, is not
+        forgotten.
+        """
         if self._note is not None and self._note.undone is not None and self._folder.note() == self._note:
             self._folder.remove()
 
@@ -258,8 +260,8 @@ _UNSUPERVISED = AnalysisDocument(
 
 
 class Preparation:
-    """What has been found of the station so far; `trouble` if it cannot be run, in particular since its model is
-    `unusable`, or `too_large` to find out what is safe.
+    """Findings on the station so far; `trouble` if it cannot be run, in particular since its model is `unusable`, or
+    `too_large` to find out what is safe.
     """
 
     def __init__(self, unusable: UnusableModel | None = None) -> None:
@@ -328,7 +330,7 @@ class Preparation:
                 self.controller.know(self.analysis, self._guards)
 
     def refusal(self) -> CommandRefused:
-        """Why nothing can be commanded yet."""
+        """Return why nothing can be commanded yet."""
         if self.unusable:
             return CommandRefused("model-unusable", "The model cannot be used", f"{self.trouble}.")
         if self.too_large:
@@ -354,7 +356,8 @@ def preparing_view(
     unusable: bool = False,
     too_large: bool = False,
 ) -> StationView:
-    """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run.
+    """Return what is shown while the safe set is being computed; with `trouble`, there is none and the station is not
+    run.
 
     `mode` and `control` are those with which it begins, as far as they are known. It is `unusable` where the model
     means nothing at all, and `too_large` where that set cannot be computed.

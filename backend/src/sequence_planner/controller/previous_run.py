@@ -1,4 +1,4 @@
-"""What is known of the station as its controller begins, and whether that is the last that anybody asked of it."""
+"""Knowledge of the station as its controller begins, and whether that is the last that anybody asked of it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _FURTHEST: Final = 2 * SNAPSHOT_EVERY  # records of beliefs between two that hav
 
 
 def what_is_known(database: Database, automaton: Automaton) -> RestoredState:
-    """What the journal knows of the station from before. Raises `StorageError`."""
+    """Return what the journal knows of the station from before. Raises `StorageError`."""
     with database.reading() as connection:
         restored = beginning(connection, automaton, Timestamp.now())
         aside = run_journal.last(connection, ASIDE)
@@ -64,7 +64,7 @@ def _beliefs(connection: Connection, automaton: Automaton) -> dict[str, BeliefVi
 
 
 def _produced(connection: Connection) -> bool:
-    """Whether production had been started in the last life, of whose records the first may have been cut off."""
+    """Return whether production had been started in the last life, of whose records the first may have been cut off."""
     whole = next(iter(run_journal.before(connection, None, 1, {BEGUN, SNAPSHOT})), None)
     if whole is None:
         return False
@@ -76,7 +76,7 @@ def _produced(connection: Connection) -> bool:
 
 
 def how_it_ended(database: Database, last_word: LastWord) -> LastEnding:
-    """What the journal and the last word say together. Raises `StorageError`."""
+    """Return what the journal and the last word say together. Raises `StorageError`."""
     with database.reading() as connection:
         return ending(connection, last_word.lives, BEGUN)
 

@@ -34,7 +34,8 @@ from sequence_planner.language.types import Value, contains
 
 @dataclass(frozen=True)
 class RestoredState:
-    """What came back from the journal: estimates and why they were believed, outputs, service, and alarms put aside.
+    """The state that came back from the journal: estimates and why they were believed, outputs, service, and alarms put
+    aside.
 
     `left_out` says what did not come back, and why; `produced` that production had been started. `control` is who is
     in control, and `deployment` the last one, where the controller begins because of one. `halted` says why the station
@@ -52,7 +53,7 @@ class RestoredState:
 
     @property
     def was_at_work(self) -> bool:
-        """Whether operations were executed, and nobody had told the station otherwise since."""
+        """True if operations were executed, and nobody had told the station otherwise since."""
         return self.produced and self.beginning is not None and self.beginning.mode is Mode.AUTOMATIC
 
 
@@ -87,7 +88,7 @@ def restored_jobs(
 
 
 def _trouble(automaton: Automaton, before: Jobs, job: Job) -> str:
-    """Why a job cannot go on; empty where it can."""
+    """Say why a job cannot go on; empty where it can."""
     master = automaton.work_masters.get(job.work_master)
     if master is None:
         return f"its work master {job.work_master} is not there any more"
@@ -128,14 +129,14 @@ _CONFIRMED: Final = kind_of(Confirmed)
 
 @dataclass(frozen=True)
 class Restored:
-    """How an execution begins. `left_out` says what came back and does not fit the model any more."""
+    """The beginning of an execution. `left_out` says what came back and does not fit the model any more."""
 
     beginning: InitialState
     left_out: tuple[str, ...]
 
 
 def beginning(connection: Connection, automaton: Automaton, now: Timestamp) -> Restored | None:
-    """What the journal knows of the last life; None if there was none.
+    """Return what the journal knows of the last life; None if there was none.
 
     Raises `StorageError` where a record cannot be read. One that is not as it was written is said, and believed.
     """
@@ -170,7 +171,7 @@ def _last_whole(connection: Connection) -> RunRecord | None:
 
 @contextmanager
 def _readable(whole: RunRecord) -> Iterator[None]:
-    """What is wrong with records from `whole` on is raised as `StorageError`."""
+    """Raise what is wrong with records from `whole` on as `StorageError`."""
     try:
         yield
     except (ValueError, LookupError, TypeError, AttributeError) as error:
@@ -181,7 +182,7 @@ def _readable(whole: RunRecord) -> Iterator[None]:
 
 
 def _read(connection: Connection, whole: RunRecord) -> tuple[_Known, list[int]]:
-    """What is known after the last record, and which records are not as they were written."""
+    """Return what is known after the last record, and which records are not as they were written."""
     number = whole.number
     last = run_journal.get(connection, number - 1)
     changed = [] if whole.is_whole((last or run_journal.begin(connection)).hash) else [number]
@@ -196,7 +197,7 @@ def _read(connection: Connection, whole: RunRecord) -> tuple[_Known, list[int]]:
 
 
 class _Known:
-    """What is known after each of the records."""
+    """The knowledge that there is after each of the records."""
 
     def __init__(self, record: RunRecord) -> None:
         self.record = record  # the last one
@@ -246,7 +247,7 @@ class _Known:
         return restored_jobs(automaton, by_order, self._jobs, waits, left_out, now)
 
     def _answers(self, automaton: Automaton) -> dict[str, Value]:
-        """What was said of estimates that are there still, and as it was said."""
+        """Return what was said of estimates that are there still, and as it was said."""
         values, estimates = self._found["values"], automaton.names(Kind.ESTIMATED)
         said = {name: value for name, value in self._found.get("answers", {}).items() if name in estimates}
         fitting = {name: value for name, value in said.items() if contains(automaton.variables[name].type, value)}

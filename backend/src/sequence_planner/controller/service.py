@@ -100,7 +100,7 @@ NODE = "sequence_planner"
 
 @dataclass(frozen=True)
 class Running:
-    """What shall run, and how.
+    """The station that shall run, and how.
 
     `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
     there to be commanded. These have just begun, so nothing is believed of them from before. `database` is the URL of
@@ -164,7 +164,7 @@ async def _live(life: _Life) -> None:
 
 
 class NotStartedError(Exception):
-    """What was deployed just now cannot be run."""
+    """The error that what was deployed just now cannot be run."""
 
 
 class _Life:
@@ -283,7 +283,7 @@ class _Life:
             await controller.run()
 
     async def _known(self, station: ReadyStation) -> RestoredState:
-        """What is known from before, at rest where it is not certain that nobody has stopped the station since."""
+        """Return what is known from before, at rest where it is not certain that nobody has stopped the station since."""
         known = await asyncio.to_thread(what_is_known, self._database, station.automaton)
         ended, keeper = await asyncio.to_thread(how_it_ended, self._database, self._last_word), self.keeper
         if keeper is not None and ended.word is None and not (ended.is_certain and _follows(ended, keeper)):
@@ -350,7 +350,7 @@ class _Life:
         return await self._lasting.settle(command, controller, before, audited)
 
     async def _answer(self, ask: Ask) -> View:
-        """What is told only when somebody asks for it. Raises `CommandRefused`."""
+        """Return what is told only when somebody asks for it. Raises `CommandRefused`."""
         if self._preparation.controller is None:
             raise self._refusal()
         return await self._preparation.controller.answer(ask)
@@ -369,7 +369,7 @@ class _Life:
         return CommandRefused(refusal.slug, refusal.title, detail, refusal.status)
 
     def _refusal(self) -> CommandRefused:
-        """Why nothing can be commanded or asked yet."""
+        """Return why nothing can be commanded or asked yet."""
         refusal = self._preparation.refusal()
         return self._deployment.refusal() or refusal if refusal.slug == PREPARING else refusal
 
@@ -472,7 +472,7 @@ async def _in_steps(steps: Generator[None, None, NetworkView]) -> NetworkView:
 
 
 def _follows(ended: LastEnding, keeper: LeaseKeeper) -> bool:
-    """Whether nobody has had the lease between the last life of this station and this one: a journal that is held up
+    """Return whether nobody has had the lease between this station's last life and this one: a journal that is held up
     does not tell who had. Where nothing was ever recorded there was none.
     """
     life = ended.life

@@ -1,4 +1,4 @@
-"""Who acts: a person in a session, a watch, a system with a key, or the program itself."""
+"""Actors: a person in a session, a watch, a system with a key, or the program itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How often something took how long."""
+"""Counts of how often something took how long."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is on the disk, whatever becomes of the machine."""
+"""Means to have things on the disk, whatever becomes of the machine."""
 
 from __future__ import annotations
 

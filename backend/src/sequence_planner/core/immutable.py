@@ -24,7 +24,7 @@ def uncompared(*, default: T) -> T:
 
 
 class _DataclassFields:
-    """What the functions of `dataclasses` ask a class for, made when one of them does."""
+    """The attributes that the functions of `dataclasses` ask a class for, made when one of them does."""
 
     def __get__(self, value: object, cls: type[Immutable]) -> dict[str, Any]:
         from dataclasses import make_dataclass  # noqa: PLC0415

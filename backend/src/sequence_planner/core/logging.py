@@ -32,7 +32,7 @@ LAST_LINES = 1.0  # seconds in which the lines that wait at the end are still wr
 
 
 class LogFormat(StrEnum):
-    """How events are written."""
+    """The way in which events are written."""
 
     TEXT = "text"
     JSON = "json"
@@ -44,7 +44,7 @@ def log_format() -> LogFormat:
 
 
 class LineQueue:
-    """What a logger needs of a file, and its calls never block; a thread writes to the file descriptor `out`."""
+    """The part of a file that a logger needs, and its calls never block; a thread writes to the file descriptor `out`."""
 
     def __init__(self, out: int, most: int = MOST_WAITING) -> None:
         self._out = out
@@ -82,7 +82,7 @@ class LineQueue:
 
 
 def _escape_values(logger: object, method: str, event: EventDict) -> EventDict:
-    """What somebody typed steers no terminal and begins no line of its own."""
+    """Keep what somebody typed from steering a terminal or beginning a line of its own."""
     return {name: _escaped(value) if isinstance(value, str) else value for name, value in event.items()}
 
 
@@ -137,7 +137,7 @@ def _written() -> list[Processor]:
 
 
 def _end_with_an_event(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """What ends the process is an event too."""
+    """Log what ends the process as an event too."""
     structlog.get_logger().critical("the process failed", exc_info=(kind, error, trace))
 
 

@@ -1,4 +1,4 @@
-"""What pydantic has found wrong with a value, as people are told it."""
+"""Messages on what pydantic has found wrong with a value, as people are told it."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Database:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there are no tables yet."""
+        """True if there are no tables yet."""
         with self._told(everything=True), self.reading() as connection:
             return upgrade.is_empty(connection)
 

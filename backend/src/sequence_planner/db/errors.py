@@ -23,8 +23,8 @@ _MOST_NAMED: Final = 3
 
 
 def left_of(place: SqliteFile | PostgresqlServer) -> list[Path]:
-    """What a station with this database has left beside it: keys, last word, archive, backups, revisions of
-    its model.
+    """Return what a station with this database has left beside it: keys, last word, archive, backups, revisions of its
+    model.
     """
     if isinstance(place, PostgresqlServer):
         mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
@@ -85,7 +85,7 @@ _POSTGRESQL = {
 
 
 def file_trouble(error: OSError, path: Path) -> str:
-    """Why the file or folder at `path` cannot be used, and what to do."""
+    """Say why the file or folder at `path` cannot be used, and what to do."""
     if error.errno == errno.EROFS or (error.errno in (errno.EACCES, errno.EPERM) and _only_reads(path)):
         return "its disk can only be read: have it mounted so that it can be written to, or name a place elsewhere"
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
@@ -101,7 +101,7 @@ def _only_reads(path: Path) -> bool:
 
 
 def _nearest(path: Path) -> Path | None:
-    """What there is of a path, as far as this user may know."""
+    """Return what there is of a path, as far as this user may know."""
     for each in (path, *path.parents):
         with contextlib.suppress(OSError):
             each.stat()
@@ -139,7 +139,7 @@ def storage_error(place: SqliteFile | PostgresqlServer, error: SQLAlchemyError) 
 
 
 def _of_disk(cause: sqlite3.Error, path: Path) -> str | None:
-    """What SQLite does not know: that nobody can write there."""
+    """Say what SQLite does not know: that nobody can write there."""
     name = getattr(cause, "sqlite_errorname", "")
     if name.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_IOERR", "SQLITE_PERM")) and _only_reads(path):
         return f"cannot be written to: {file_trouble(OSError(errno.EROFS, ''), path)}"

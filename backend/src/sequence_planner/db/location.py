@@ -46,7 +46,7 @@ class PostgresqlServer:
 
 
 def address(url: str) -> SqliteFile | PostgresqlServer:
-    """What a URL names. Raises `StorageError`, which never quotes the URL, as it may hold a password."""
+    """Return what a URL names. Raises `StorageError`, which never quotes the URL, as it may hold a password."""
     from sqlalchemy.exc import ArgumentError  # noqa: PLC0415
 
     try:
@@ -87,7 +87,7 @@ def _sqlite_file(url: URL) -> SqliteFile:
 
 
 def revisions_folder(url: str, model: Path) -> Path:
-    """Where the revisions of the model are kept: beside the file of SQLite, or else where that would be.
+    """Return where the revisions of the model are kept: beside the file of SQLite, or else where that would be.
 
     Raises `StorageError` for a URL that names no database.
     """
@@ -99,20 +99,22 @@ def revisions_folder(url: str, model: Path) -> Path:
 
 
 def backups_folder(url: str, model: Path) -> Path:
-    """Where backups are kept unless somebody says so: beside the revisions. Raises `StorageError` as they do."""
+    """Return where backups are kept unless somebody says so: beside the revisions. Raises `StorageError` as they do."""
     revisions = revisions_folder(url, model)
     return revisions.with_name(revisions.name.replace(".revisions.git", ".backups"))
 
 
 def archive_folder(url: str, model: Path) -> Path:
-    """Where what was cut is kept unless somebody says so: beside the revisions. Raises `StorageError` as they do."""
+    """Return where what was cut is kept unless somebody says so: beside the revisions. Raises `StorageError` as they
+    do.
+    """
     revisions = revisions_folder(url, model)
     return revisions.with_name(revisions.name.replace(".revisions.git", ".archive"))
 
 
 def mark_of(model: Path) -> str:
-    """What tells the station in the folder `model` from others of this machine: the folder's name, and 8 hexadecimal
-    digits of the SHA-256 of its path.
+    """Return what tells the station in folder `model` from others of this machine: the folder's name and 8 hexadecimal
+    digits of its path's SHA-256.
     """
     resolved = model.resolve()
     name = re.sub(r"[^\w.-]", "_", resolved.name)

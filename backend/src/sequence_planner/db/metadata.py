@@ -1,4 +1,4 @@
-"""Where all tables are declared, so that migrations know of each."""
+"""The place where all tables are declared, so that migrations know of each."""
 
 from __future__ import annotations
 

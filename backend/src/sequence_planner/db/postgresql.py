@@ -1,4 +1,4 @@
-"""How PostgreSQL is used: as SQLite is, one writer at a time."""
+"""The way PostgreSQL is used: as SQLite is, one writer at a time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How SQLite is used: durable, several processes at once, and files for this user alone."""
+"""The way SQLite is used: durable, several processes at once, and files for this user alone."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def engine(file: SqliteFile, create: bool, new: bool) -> Engine:
 
 
 def _is_empty(file: SqliteFile) -> bool:
-    """Whether it is not there, or too short for what a database begins with: SQLite takes a byte for nothing."""
+    """Check whether it is not there, or too short for what a database begins with: SQLite takes a byte for nothing."""
     try:
         return file.path.stat().st_size < _HEADER and not file.path.is_dir()
     except FileNotFoundError:
@@ -131,7 +131,7 @@ def _write_ahead(connection: sqlite3.Connection, file: SqliteFile) -> None:
 
 
 def _identity(file: SqliteFile) -> tuple[int, int] | None:
-    """What tells the file from another one of its name; None if there is none."""
+    """Return what tells the file from another one of its name; None if there is none."""
     try:
         found = file.path.stat()
     except OSError:

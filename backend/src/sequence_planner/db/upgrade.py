@@ -27,7 +27,7 @@ def check(connection: Connection, place: str) -> None:
 
 
 def is_empty(connection: Connection) -> bool:
-    """Whether there are no tables at all."""
+    """Return whether there are no tables at all."""
     return not inspect(connection).get_table_names()
 
 

@@ -248,14 +248,14 @@ class StageProposal:
 
 
 def is_variable(field: RecordFieldType) -> bool:
-    """Whether a field becomes a variable of its name by itself."""
+    """Return whether a field becomes a variable of its name by itself."""
     return isinstance(field, BooleanType) or (
         isinstance(field, IntegerRange) and field.maximum - field.minimum < MOST_VALUES
     )
 
 
 def proposals(fields: RecordType, direction: InOut) -> list[StageProposal]:
-    """What could be made of the fields that are no variables by themselves, in their order."""
+    """Return what could be made of the fields that are no variables by themselves, in their order."""
     make = _incoming if direction == "in" else _outgoing
     found = (each for path, field in _leaves(fields) if (each := make(path, field)) is not None)
     return [each for each, _ in zip(found, range(MOST), strict=False)]

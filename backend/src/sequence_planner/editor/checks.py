@@ -125,13 +125,13 @@ class UnusableModelError(Exception):
 
 
 def told(name: str, *arguments: object) -> Iterator[str]:
-    """What the task `name` finds, as JSON."""
+    """Yield what the task `name` finds, as JSON."""
     for each in _TOLD[name](*arguments):
         yield each.model_dump_json()
 
 
 def compared(old: Files, new: Files, stages: Path | None, folder: Path) -> Iterator[ComparisonView]:
-    """How two models differ; `folder` is empty."""
+    """Tell how two models differ; `folder` is empty."""
     text = text_differences(old, new)
     try:
         before = _meant("the older one", old, stages, folder / "old")
@@ -157,8 +157,8 @@ def fitted(
     reset: bool,
     folder: Path,
 ) -> Iterator[TransferView]:
-    """Whether a station in its `present` state, with abilities `running`, can take `new`, or if all of it is `reset`;
-    `folder` is empty.
+    """Tell whether a station in its `present` state, with abilities `running`, can take `new`, or if all of it is
+    `reset`; `folder` is empty.
     """
     try:
         after = _meant("the model", new, stages, folder / "new")
@@ -180,7 +180,7 @@ def simulated(
     deadline: float,
     folder: Path,
 ) -> Iterator[WhatIfView]:
-    """How a station would go on with a model from a state; `folder` is empty."""
+    """Tell how a station would go on with a model from a state; `folder` is empty."""
     try:
         meant = _meant("the model", files, stages, folder / "new")
     except UnusableModelError as error:
@@ -202,7 +202,7 @@ def simulated(
 def drawn(
     files: Files, stages: Path | None, ability: str, trace: TraceDocument, folder: Path
 ) -> Iterator[list[AutomatonView] | str]:
-    """How an ability goes through a run, or why nobody can say; `folder` is empty."""
+    """Tell how an ability goes through a run, or why nobody can say; `folder` is empty."""
     try:
         automaton = _station(files, stages, folder / "new").automaton
     except ModelError as error:
@@ -220,7 +220,7 @@ _TOLD: Mapping[str, Callable[..., Iterator[View]]] = {
 
 
 def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
-    """What a model means. Raises `UnusableModelError`."""
+    """Return what a model means. Raises `UnusableModelError`."""
     try:
         station = _station(files, stages, folder)
     except ModelError as error:

@@ -1,4 +1,4 @@
-"""What differs between two models in what they do: what there is in each, guards, and the plans of operations."""
+"""The differences between two models in what they do: what there is in each, guards, and the plans of operations."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Meant:
         return _starts(self._plan(Goal("there", predicate)))
 
     def may_start(self, ability: Ability) -> Expression:
-        """When it may start, as far as guards for people say that."""
+        """Say when it may start, as far as guards for people say that."""
         guard = self.guards.get(ability.name)
         added = TRUE if guard is None or guard.expression is None else guard.expression
         return conjunction(ability.enabled, ability.start_guard, added)

@@ -52,7 +52,7 @@ Text = Annotated[str, Field(max_length=1_000_000)]
 
 
 class PartChangedError(EditError):
-    """What is to be edited is not what the edit was made from; `path` is empty for a file as a whole."""
+    """A mismatch of what is to be edited and what the edit was made from; `path` is empty for a file as a whole."""
 
     def __init__(self, file: str, path: EntryPath, message: str) -> None:
         super().__init__(message)
@@ -60,7 +60,7 @@ class PartChangedError(EditError):
         self.path = path
 
     def __reduce__(self) -> tuple[type[PartChangedError], tuple[str, EntryPath, str]]:
-        """How it comes from the process in which the edit was made."""
+        """Say how it comes from the process in which the edit was made."""
         return PartChangedError, (self.file, self.path, str(self))
 
 
@@ -312,8 +312,8 @@ def read(connection: Connection) -> Draft:
 
 
 def taking_up(draft: Draft, files: Files) -> DraftProposal:
-    """What was edited, brought together with what has happened to the files of the station since. A file of which both
-    changed the same lines stays as it is in the draft; the title says so.
+    """Return what was edited, brought together with what has happened to the files of the station since. A file of
+    which both changed the same lines stays as it is in the draft; the title says so.
     """
     after, conflicts = dict(draft.files), list[str]()
     for path in sorted(draft.base.keys() | files.keys()):
@@ -352,7 +352,7 @@ def rebase(connection: Connection, files: Files) -> None:
 
 @dataclass(frozen=True)
 class DraftProposal:
-    """What shall become of the files of a draft, of those that are others then (none is no file), and what it is.
+    """A proposal for the files of a draft, for those that are others then (none is no file), and what it is.
 
     Without any it is a change only if it is to be one `always`.
     """
@@ -389,7 +389,7 @@ def write(connection: Connection, draft: Draft, proposal: DraftProposal, by: Act
 
 
 def differences_of(connection: Connection, change: DraftChange) -> Differences:
-    """What a change did."""
+    """Return what a change did."""
     written = connection.execute(select(DRAFT_CHANGES.c.files).where(DRAFT_CHANGES.c.number == change.number))
     found: dict[str, list[str | None]] = json.loads(written.scalar_one())
     return {path: (before, after) for path, (before, after) in found.items()}

@@ -1,4 +1,4 @@
-"""What engineers do to the draft and its revisions, by a process that keeps what it has read of the draft's files.
+"""The work of engineers on the draft and its revisions, by a process that keeps what it has read of the draft's files.
 
 Whoever stops the station does not wait for any of it. What is shown is told as JSON, ready to be sent.
 """
@@ -32,7 +32,7 @@ class EditingBench:
         self._reader = FileReader()
 
     def answer(self, question: EditingQuestion) -> object:
-        """What is answered. Raises as what is asked for does."""
+        """Return what is answered. Raises as what is asked for does."""
         changed, name, asked = question
         for path, text in changed.items():
             if text is None:
@@ -42,24 +42,24 @@ class EditingBench:
         return _ANSWERS[name](self, *asked)
 
     def requested(self, body: bytes) -> DraftProposal:
-        """What becomes of it by a request of an engineer."""
+        """Return what becomes of it by a request of an engineer."""
         asked = read_body(ChangeBody, body)
         return self.edited(asked.edits, asked.title)
 
     def edited(self, edits: Sequence[Edit], title: str) -> DraftProposal:
-        """What becomes of it by edits."""
+        """Return what becomes of it by edits."""
         return drafts.editing(self._draft, edits, title)
 
     def undone(self, of: DraftChange, differences: Differences) -> DraftProposal:
-        """What becomes of it without a change."""
+        """Return what becomes of it without a change."""
         return drafts.undoing(self._draft, of, differences)
 
     def redone(self, of: DraftChange, differences: Differences) -> DraftProposal:
-        """What becomes of it with a change that was taken back."""
+        """Return what becomes of it with a change that was taken back."""
         return drafts.redoing(self._draft, of, differences)
 
     def taken_up(self, number: int, base: Files, files: Files) -> DraftProposal:
-        """What becomes of it when what it began from is others' files by now."""
+        """Return what becomes of it when what it began from is others' files by now."""
         return drafts.taking_up(Draft(number, self._files, base), files)
 
     def shown(self, number: int, paths: Sequence[str] | None) -> str:

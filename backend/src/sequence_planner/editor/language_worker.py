@@ -81,13 +81,13 @@ class LanguageDraft:
 
     @property
     def lexicon(self) -> Lexicon:
-        """What names mean now."""
+        """The meaning of names now."""
         if self._lexicon is None:
             self._lexicon = self._made()
         return self._lexicon
 
     def errors(self) -> list[Finding]:
-        """What makes it unusable, all that a check of it finds before it builds pipelines."""
+        """Return what makes it unusable, all that a check of it finds before it builds pipelines."""
         with self._folder_of(self._files):
             try:
                 read_station(Path(), self._before)
@@ -138,7 +138,7 @@ class LanguageDraft:
 
 
 def answer(draft: LanguageDraft, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
-    """What is answered; what is no text that names stand in has nothing to be said of."""
+    """Return what is answered; what is no text that names stand in has nothing to be said of."""
     lexicon = draft.lexicon
     field = lexicon.field(asked.file, tuple(asked.path), asked.parameters)
     offset = min(asked.offset, len(asked.text)) if isinstance(asked, PlaceInText) else 0
@@ -164,7 +164,7 @@ def answer(draft: LanguageDraft, kind: LanguageQuestionKind, asked: TextAt) -> L
 
 
 def errors(draft: LanguageDraft) -> list[FindingDocument]:
-    """What makes the draft unusable, as far as it shows before pipelines are built."""
+    """Return what makes the draft unusable, as far as it shows before pipelines are built."""
     return listed([error_document(finding) for finding in draft.errors()])
 
 
@@ -174,7 +174,7 @@ def renamed_files(draft: LanguageDraft, part: str, name: str) -> dict[str, str |
 
 
 def used(draft: LanguageDraft, part: str) -> UsagesView:
-    """Where a part is named. Raises `EditError`."""
+    """Return where a part is named. Raises `EditError`."""
     wanted, messages = parse_part(part), draft.messages()
     found, without = usages(draft.files, wanted, messages), dependants(draft.files, wanted, messages)
     return UsagesView(
@@ -187,7 +187,7 @@ def used(draft: LanguageDraft, part: str) -> UsagesView:
 
 
 def tied(draft: LanguageDraft, number: int) -> str:
-    """What is tied to what in the draft after change `number`, as JSON of a `GraphView`."""
+    """Return what is tied to what in the draft after change `number`, as JSON of a `GraphView`."""
     found = graph(draft.files, draft.messages())
     return graph_view(number, found, *station_of(draft.files)).model_dump_json()
 

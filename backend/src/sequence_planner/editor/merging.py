@@ -37,7 +37,7 @@ def merged(old: str | None, mine: str | None, theirs: str | None) -> str | None:
 
 
 def _changes(old: Sequence[str], new: Sequence[str]) -> list[_Change]:
-    """What leads from one text to the other."""
+    """Return what leads from one text to the other."""
     return [
         _Change(start, end, new[begin:until])
         for tag, start, end, begin, until in SequenceMatcher(None, old, new).get_opcodes()
@@ -67,7 +67,7 @@ def _both(old: Sequence[str], one: Iterable[_Change], other: Iterable[_Change]) 
 
 
 def _after(old: Sequence[str], begin: int, end: int, changes: Sequence[_Change]) -> list[str]:
-    """What has become of the lines from `begin` up to `end`."""
+    """Return what has become of the lines from `begin` up to `end`."""
     found, done = list[str](), begin
     for change in changes:
         found += [*old[done : change.start], *change.lines]

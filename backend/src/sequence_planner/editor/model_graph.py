@@ -203,7 +203,7 @@ class _Things:
         return any(each.kind == "message" and each.name.partition("/")[0] == package for each in self._declared.parts)
 
     def _is_passing(self, part: ModelPart) -> bool:
-        """Whether it is only a step on the way through a pipeline."""
+        """Return whether it is only a step on the way through a pipeline."""
         first = self._first.get(part)
         return part.full not in self._declared.variables and first is not None and first.manner is Manner.FEEDS
 

@@ -37,7 +37,7 @@ class BodyError(Exception):
 
 
 def read_body(model: type[Asked], body: bytes) -> Asked:
-    """What a body asks for. Raises `BodyError`."""
+    """Return what a body asks for. Raises `BodyError`."""
     if not body:
         raise BodyError([{"type": "missing", "loc": ("body",), "msg": "Field required"}])
     try:
@@ -67,7 +67,7 @@ Changed = Mapping[str, str | None]
 
 
 class Knowing:
-    """What such a process has been told of some files; only what is another text is told again."""
+    """The things that such a process has been told of some files; only what is another text is told again."""
 
     def __init__(self) -> None:
         self._told: dict[str, str] = {}
@@ -77,7 +77,7 @@ class Knowing:
         self._told = {}
 
     def news(self, files: Files) -> Changed:
-        """What is to be told so that all is known; none is a file that is gone."""
+        """Return what is to be told so that all is known; none is a file that is gone."""
         changed: dict[str, str | None] = {path: text for path, text in files.items() if self._told.get(path) != text}
         changed |= dict.fromkeys(self._told.keys() - files.keys())
         self._told = dict(files)
@@ -85,7 +85,7 @@ class Knowing:
 
 
 def answered(work: Callable[[], object]) -> object:
-    """What such a process answers: what `work` gives, views of it as JSON, or why there is nothing."""
+    """Return what such a process answers: what `work` gives, views of it as JSON, or why there is nothing."""
     try:
         found = work()
     except (EditError, BodyError) as error:
@@ -136,7 +136,8 @@ class DraftProcess:
         await self._process.close()
 
     async def ask(self, files: Files, name: str, *asked: object, patience: float = PATIENCE) -> object:
-        """What `name` of the answers there are says about these files, within so many seconds once its turn has come.
+        """Return what `name` of the answers there are says about these files, within so many seconds once its turn has
+        come.
 
         Views are told as JSON. Raises `EditError` and `WorkEndedError`.
         """
@@ -147,7 +148,9 @@ class DraftProcess:
         return await self._process.ask(question, files, patience=patience)
 
     async def errors(self, files: Files) -> list[FindingDocument]:
-        """What makes these files unusable, as far as it shows before pipelines are built. Raises `WorkEndedError`."""
+        """Return what makes these files unusable, as far as it shows before pipelines are built. Raises
+        `WorkEndedError`.
+        """
         found = await self.ask(files, "errors")
         assert isinstance(found, list)
         return found
@@ -243,7 +246,7 @@ class EditingProcess:
         await self._process.close()
 
     async def ask(self, files: Files, name: str, *asked: object) -> object:
-        """What `name` of the answers there are says about these files.
+        """Return what `name` of the answers there are says about these files.
 
         Raises `EditError`, `BodyError` and `WorkEndedError`.
         """
@@ -260,7 +263,7 @@ LONGEST_TEXT = 20_000  # characters
 
 
 class LanguageQuestionKind(StrEnum):
-    """What can be asked about a text."""
+    """A kind of question that can be asked about a text."""
 
     CHECK = "check"
     COMPLETION = "completion"

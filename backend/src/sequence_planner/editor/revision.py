@@ -1,4 +1,4 @@
-"""What is told of a revision of a model: whoever only shows it has no use for git."""
+"""The part of a revision of a model that is told: whoever only shows it has no use for git."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a station would do with another model, from a state on: simulated, without touching the station.
+"""The conduct of a station with another model, from a state on: simulated, without touching the station.
 
 The execution and the planner are the real ones. Devices stand where they were measured, and do what the model expects
 of them; people do each task that they are given.
@@ -37,7 +37,7 @@ class Diary:
         execution.listeners.append(self._hear)
 
     def end(self) -> None:
-        """What is under way has no end."""
+        """Note what is under way as having no end."""
         for name, started in self._under_way.items():
             self._note(name, started, None)
         self.runs.sort(key=lambda run: run.started)

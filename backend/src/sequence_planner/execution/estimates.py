@@ -1,4 +1,4 @@
-"""What people have said of estimates while the station stands: confirmed, corrected, answered to a question.
+"""The things that people have said of estimates while the station stands: confirmed, corrected, answered to a question.
 
 It counts within that stop: from when it was said until an ability is started in automatic mode that reads or writes
 the estimate, or the estimate has got another value. What is proposed meanwhile contradicts none of it.

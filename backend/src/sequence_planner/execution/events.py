@@ -69,7 +69,7 @@ class ModeChanged(Immutable):
 
 
 class CalledOff(Immutable):
-    """What runs was called off by its cancel actions, and the errand with it; the mode is as before."""
+    """The calling off of what ran, by its cancel actions, and of the errand with it; the mode is as before."""
 
     by: str
     now: Timestamp
@@ -223,7 +223,7 @@ Event = (
 
 @dataclass(frozen=True)
 class TickOutcome:
-    """What a tick did. `outputs` are the output variables to be published now.
+    """The things that a tick did. `outputs` are the output variables to be published now.
 
     `finished` are the abilities that took their finish actions, which one may do again and again while its finish guard
     holds; `ended` are those of them that had been running. `called_off` took their cancel actions because they were

@@ -128,29 +128,29 @@ class ExecutorBase:
 
     @property
     def production(self) -> Production:
-        """Whether outputs are published."""
+        """The state of production: whether outputs are published."""
         return self.conduct.production
 
     @property
     def errand(self) -> OperatorPlan | None:
-        """What is carried out beside the operations, which wait for it."""
+        """The errand that is carried out beside the operations, which wait for it."""
         return self.conduct.errand
 
     @property
     def pursued(self) -> ActiveGoals:
-        """What plans are made for: the goals of active operations, or that of an errand."""
+        """The goals that plans are made for: those of active operations, or that of an errand."""
         if self.errand is not None:
             return ActiveGoals() if self.errand.ability else ActiveGoals({ERRAND: self.errand.pursued})
         return self._operations
 
     @property
     def safe(self) -> bool:
-        """Whether the state is in the safe set for every value its unknown variables could have."""
+        """True if the state is in the safe set for every value its unknown variables could have."""
         return self.supervisor.safe.includes(self.state)
 
     @property
     def blind(self) -> bool:
-        """Whether some measured variable has no value."""
+        """True if some measured variable has no value."""
         return any(self.state[name] is None for name in self.automaton.names(Kind.MEASURED))
 
     def corrected(self, values: Mapping[str, Value]) -> State:
@@ -168,7 +168,9 @@ class ExecutorBase:
         return frozenset(started | executing)
 
     def is_due(self, now: Timestamp) -> bool:
-        """Whether time alone makes a difference in the next tick: a force ends, or what runs is to be called off."""
+        """Return whether time alone makes a difference in the next tick: a force ends, or what runs is to be called
+        off.
+        """
         if any(force.until.monotonic <= now.monotonic for force in self.conduct.forces.values()):
             return True
         return bool(self._overdue(now)) or self._trial_overdue(now) is not None
@@ -187,7 +189,7 @@ class ExecutorBase:
         return after if self._allows(after.values) else None
 
     def keeps_from_beginning(self, job: Job) -> tuple[str, ...]:
-        """What has to be otherwise before what the product of this job brings can be so, in words."""
+        """Return what has to be otherwise before what the product of this job brings can be so, in words."""
         master = self.automaton.work_masters[job.work_master]
         found = list(still_written(self.automaton, master, self.running()))
         if brought := lacking(master, self.state):
@@ -197,7 +199,7 @@ class ExecutorBase:
         return tuple(found)
 
     def may_go_on(self, name: str) -> bool:
-        """Whether the order still reaches the goals once its first ability, `name`, has been started now."""
+        """Return whether the order still reaches the goals once its first ability, `name`, has been started now."""
         after = self.startable(name)
         if after is None:
             return False
@@ -205,7 +207,9 @@ class ExecutorBase:
         return self.plan.may_go_on(self._present, after, curious)
 
     def _allows(self, after: State) -> bool:
-        """Whether a start may lead to `after`. From outside the safe states only one that a person confirmed may."""
+        """Return whether a start may lead to `after`. From outside the safe states only one that a person confirmed
+        may.
+        """
         before = self._run.values
         if self.supervisor.allows(before, after):
             return True
@@ -218,7 +222,7 @@ class ExecutorBase:
 
     @property
     def _is_free(self) -> bool:
-        """Whether what is carried out has still to come into the safe states, outside which no supervisor speaks."""
+        """True if what is carried out has still to come into the safe states, outside which no supervisor speaks."""
         return self.errand is not None and (self.errand.unsupervised or self.errand.into_safe)
 
     # How a tick is taken.
@@ -262,7 +266,9 @@ class ExecutorBase:
         )
 
     def _begin_jobs(self, now: Timestamp) -> None:
-        """What the products of new jobs bring is so from now on, where nothing is in the way: as after a correction."""
+        """Let what the products of new jobs bring be so from now on, where nothing is in the way: as after a
+        correction.
+        """
         for job in self.conduct.jobs.under_way:
             if job.may_begin and not self.keeps_from_beginning(job):
                 master = self.automaton.work_masters[job.work_master]
@@ -327,7 +333,7 @@ class ExecutorBase:
         return activated, completed
 
     def _advance_jobs(self, active: frozenset[str], now: Timestamp) -> frozenset[str]:
-        """What was eligible for a job in step 4 has begun, or is completed where its goal holds: the latter."""
+        """Let what was eligible for a job in step 4 begin, or be completed where its goal holds; return the latter."""
         before, operations, values = self.conduct.jobs, self.automaton.operations, self._run.values
         after = before.advanced(self.automaton, active, lambda name: holds(operations[name].goal, values), now)
         if after is before:
@@ -359,7 +365,7 @@ class ExecutorBase:
             self._change(errand=replace(self.errand, unsupervised=False, into_safe=False))
 
     def _heed_answers(self, started: Iterable[str]) -> None:
-        """What a person has said counts until it is another by now, or operations go on with what they rely on."""
+        """Let what a person has said count until it is another by now, or operations go on with what they rely on."""
         answers = self.conduct.answers
         if not answers:
             return
@@ -391,7 +397,7 @@ class ExecutorBase:
             self._end_errand(f"{title} {what}", now)
 
     def _trial_overdue(self, now: Timestamp) -> str | None:
-        """What has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
+        """Say what has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
         tried = None if self.errand is None else self.errand.ability
         late = (
             overdue(step, self.automaton.abilities[step.ability], now.monotonic)
@@ -673,12 +679,14 @@ class Executor(ExecutorBase):
     # Its plan.
 
     def request(self, deadline: float) -> PlanRequest | None:
-        """What to ask the planner now, or None when there is nothing to ask or it would answer the same again."""
+        """Return what to ask the planner now, or None when there is nothing to ask or it would answer the same again."""
         request = self.plan.request(self._present, deadline) if self.conduct.executes_operations else None
         return self._note_asked(request, Contract.FAST)
 
     def better(self, deadline: float) -> PlanRequest | None:
-        """What to ask a planner that has nothing else to do; None when there is nothing that could become better."""
+        """Return what to ask a planner that has nothing else to do; None when there is nothing that could become
+        better.
+        """
         request = self.plan.better(self._present, deadline) if self.conduct.executes_operations else None
         return self._note_asked(request, Contract.MINIMAL)
 

@@ -1,4 +1,5 @@
-"""When the steps of a plan are expected to start and to end, from what the model says and how long runs have taken.
+"""The times at which the steps of a plan are expected to start and to end, from what the model says and how long runs
+have taken.
 
 The plan says in which tick each ability starts; a simulation of it says in which it ends. A step waits for what ends
 before it in the plan, as far as its guards read of that; a tick in which nothing ends comes when its effects have had
@@ -29,14 +30,14 @@ REMEMBERED_RUNS = 5
 
 
 class Expected(Immutable):
-    """When a step is expected to start and to end, in seconds since the epoch."""
+    """The times at which a step is expected to start and to end, in seconds since the epoch."""
 
     start: float
     end: float
 
 
 class Outlook(Immutable):
-    """What a plan says of time, counted in its ticks after `tick`, the one under way when it was looked through.
+    """The things a plan says of time, counted in its ticks after `tick`, the one under way when it was looked through.
 
     `first` is the number of its first step; `waits` is how long each tick is waited for, in seconds, and `ends` the
     tick in which each step, by its number, is over.
@@ -93,7 +94,7 @@ class Forecast:
             self._runs[step.ability].append(seconds)
 
     def expected(self, guards: Mapping[str, SupervisorGuard] | None = None) -> dict[int, Expected]:
-        """What runs and what is ahead, by the number of the step; `guards` are those that the supervisor adds."""
+        """Return what runs and what is ahead, by the number of the step; `guards` are those that the supervisor adds."""
         order, outlook = self._execution.plan.order, self._outlook
         ending: dict[int, list[tuple[str, float]]] = defaultdict(list)  # which abilities end in a tick, and when
         table: dict[int, Expected] = {}
@@ -151,7 +152,7 @@ class Forecast:
         return self._written[name]
 
     def _seconds(self, step: PlannedStart, tick: int) -> float:
-        """How long a run takes: as the last ones have, or as the model says, or as long as its effects take."""
+        """Return how long a run takes: as the last ones have, or as the model says, or as long as its effects take."""
         if runs := self._runs.get(step.ability):
             return median(runs)
         if duration := self._execution.automaton.abilities[step.ability].duration:

@@ -19,7 +19,7 @@ Waits = Mapping[Step, frozenset[Step]]
 
 
 class JobAct(StrEnum):
-    """What can be asked of a job under way."""
+    """A request that can be made of a job under way."""
 
     PAUSE = "pause"
     RESUME = "resume"
@@ -46,12 +46,12 @@ class Job(Immutable):
 
     @property
     def under_way(self) -> bool:
-        """Whether it has not ended."""
+        """True if it has not ended."""
         return not self.state.is_over
 
     @property
     def may_begin(self) -> bool:
-        """Whether it waits for what its product brings, and for nothing else."""
+        """True if it waits for what its product brings, and for nothing else."""
         return self.state is JobState.WAITING and self.finishing is None
 
     def after(self, operation: str, automaton: Automaton) -> frozenset[str]:
@@ -148,7 +148,7 @@ class Jobs(Immutable):
         return replace(self, taken=tuple(each for each in self.taken if each.id != job), waits=waits)
 
     def having_begun(self, job: str, now: Timestamp) -> Jobs:
-        """What the product of this job brings is there."""
+        """Return the jobs with this one having begun: what its product brings is there."""
         return self._each(lambda each: replace(each, state=JobState.RUNNING, begun=now) if each.id == job else each)
 
     def told(self, job: str, act: JobAct, active: frozenset[str], automaton: Automaton, now: Timestamp) -> Jobs:
@@ -190,7 +190,7 @@ class Jobs(Immutable):
         return self._each(lambda each: again if each is owner else each)
 
     def _lacks(self, job: str, operation: str) -> bool:
-        """Whether an operation of a job under way is not completed."""
+        """Return whether an operation of a job under way is not completed."""
         found = self.get(job)
         return found is not None and found.under_way and operation not in found.completed
 

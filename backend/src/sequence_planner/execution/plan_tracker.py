@@ -34,7 +34,7 @@ from sequence_planner.planning.validation.lookahead import Lookahead
 def why_new(
     automaton: Automaton, status: PlanStatus, wanted: frozenset[str], requested: frozenset[str], replacing: bool
 ) -> str:
-    """Why a new plan is followed; `status` is that of the one before, which `requested` had been asked for."""
+    """Say why a new plan is followed; `status` is that of the one before, which `requested` had been asked for."""
     new = wanted - requested
     if status is PlanStatus.BROKEN:
         return "re-planned: the station departed from the plan, which no longer reached its goals"
@@ -46,7 +46,7 @@ def why_new(
 
 
 def why_none(answer: PlanAnswer, blind: bool) -> str:
-    """Why there is no plan. `blind`: there were measured values that nobody knew."""
+    """Say why there is no plan. `blind`: there were measured values that nobody knew."""
     if answer.verdict is Verdict.NONE_AT_ALL:
         unknown = " while measured values are unknown" if blind else ""
         return f"no plan at all{unknown}, proven: nothing the station can do from here reaches any of the goals"
@@ -97,7 +97,7 @@ class PlannedStart:
 
 @dataclass
 class PlanCursor:
-    """What is left of a plan, and the steps taken so far, of this plan and of those before."""
+    """The rest of a plan, and the steps taken so far, of this plan and of those before."""
 
     plan: Plan | None = None
     goals: frozenset[str] = frozenset()  # what it was made for and is not reached yet
@@ -118,7 +118,7 @@ class PlanCursor:
         return replace(self, past=[replace(step) for step in self.past], ahead=[replace(step) for step in self.ahead])
 
     def drop(self) -> None:
-        """What is left of the plan has become needless."""
+        """Drop what is left of the plan, which has become needless."""
         self.ahead.clear()
 
     def start(self, now: Timestamp) -> PlannedStart:
@@ -186,7 +186,9 @@ class PlanCursor:
 
 @dataclass(frozen=True)
 class ExecutionSnapshot:
-    """What a plan is made for: the run as it stands, the outputs as last published, and what is pursued, in what."""
+    """The situation a plan is made for: the run as it stands, the outputs as last published, and what is pursued, in
+    what circumstances.
+    """
 
     run: CompiledRun
     published: State
@@ -206,7 +208,7 @@ class Replacement:
 
 @dataclass(frozen=True)
 class PlanQuestion:
-    """What an answer is about: it would be the same again."""
+    """The question that an answer is about: the answer would be the same again."""
 
     goals: frozenset[str]
     state: State
@@ -350,7 +352,7 @@ class PlanTracker:
         self._none_while_blind = self._undecided = False
 
     def looks(self, lookahead: Lookahead) -> bool:
-        """Whether it is `lookahead` that says where the rest of the plan leads."""
+        """Return whether it is `lookahead` that says where the rest of the plan leads."""
         return self._lookahead is lookahead
 
     def look_with(self, lookahead: Lookahead) -> None:
@@ -367,7 +369,8 @@ class PlanTracker:
             self.order.drop()  # goals already met need no plan
 
     def next_may_start(self, present: ExecutionSnapshot, after_start: Callable[[str], CompiledRun | None]) -> bool:
-        """Whether the first ability of the order starts now, or else it waits. `after_start` is None while it may not.
+        """Return whether the first ability of the order starts now, or else it waits. `after_start` is None while it
+        may not.
 
         While it waits, the order is as good as any other in which the rest still reaches the goals: the first ability
         behind it for which that holds is pulled to the front. So a robot does not wait for a person whose task has
@@ -396,7 +399,7 @@ class PlanTracker:
         return False
 
     def may_go_on(self, present: ExecutionSnapshot, after: CompiledRun, lookahead: Lookahead | None = None) -> bool:
-        """Whether the order after its first start, which leads to `after`, still reaches the goals.
+        """Return whether the order after its first start, which leads to `after`, still reaches the goals.
 
         With a `lookahead` of one's own, nothing is changed by asking.
         """
@@ -407,7 +410,8 @@ class PlanTracker:
         return goals is not None and lookahead.may_go_on(present.run, after, present.published, goals, starts, ticks)
 
     def _its_turn(self, present: ExecutionSnapshot, after: CompiledRun, goals: Goals, lookahead: Lookahead) -> bool:
-        """Whether a start that a person has seen comes now: as it was written, or else as soon as it still helps.
+        """Return whether a start that a person has seen comes now: as it was written, or else as soon as it still
+        helps.
 
         It does not wait for what may happen by itself beside it: a person may not come, a device do nothing more.
         """
@@ -449,7 +453,7 @@ class PlanTracker:
             self.status = PlanStatus.BROKEN
 
     def still_leads(self, present: ExecutionSnapshot) -> bool:
-        """Whether what is left of the plan reaches its goals from here."""
+        """Return whether what is left of the plan reaches its goals from here."""
         if self._left(present) is not None:
             return True
         goals = present.pursued.of(self.order.goals)
@@ -471,7 +475,8 @@ class PlanTracker:
         return self._lookahead.remaining(present.run, present.published, goals, *self.order.rest())
 
     def _is_better(self, present: ExecutionSnapshot, goals: frozenset[str], ticks: int, plan: Plan) -> bool:
-        """Whether `plan` has more goals than the one that is followed, or fewer ticks, or fewer starts, or more proof.
+        """Return whether `plan` has more goals than the one that is followed, or fewer ticks, or fewer starts, or more
+        proof.
 
         Only what is better takes a plan's place: were it enough to be as good, plans would take turns.
         """
@@ -482,7 +487,7 @@ class PlanTracker:
         return (-len(goals), ticks, len(plan.starts), not _is_proven(plan)) < mine
 
     def _carry_on(self, request: PlanRequest) -> bool:
-        """Whether the plan at hand still leads to its goals; others that were asked for are left out for now."""
+        """Return whether the plan at hand still leads to its goals; others that were asked for are left out for now."""
         if self.status is not PlanStatus.FOLLOWED or not self.order.goals or self.answer is None:
             return False
         asked = frozenset(goal.name for goal in request.goals)
@@ -512,7 +517,7 @@ class PlanTracker:
 
 
 def _replacement(why: str, before: tuple[str, ...], order: PlanCursor) -> Replacement:
-    """What is different of what is ahead; a start that both plans have is the same, whenever it comes."""
+    """Return what is different of what is ahead; a start that both plans have is the same, whenever it comes."""
     dropped = Counter(before)
     new: set[int] = set()
     for step in order.ahead:

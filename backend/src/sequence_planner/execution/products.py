@@ -1,4 +1,6 @@
-"""What a new product brings: estimated values that are so from when it is there, and what has to be over before."""
+"""The values that a new product brings: estimated ones that are so from when it is there, and what has to be over
+before.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ def lacking(master: WorkMaster, state: State) -> dict[str, Value]:
 
 
 def kept_back(conduct: ExecutionState) -> Iterator[str]:
-    """What has to be otherwise before values may be brought that are not so yet, in words."""
+    """Yield what has to be otherwise before values may be brought that are not so yet, in words."""
     if conduct.production is not Production.STARTED:
         yield "production to be started"
     if conduct.mode is not Mode.AUTOMATIC:
@@ -32,7 +34,7 @@ def kept_back(conduct: ExecutionState) -> Iterator[str]:
 
 
 def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[str]) -> Iterator[str]:
-    """What runs and decides on the values that its product brings, in words: that belongs to the product before."""
+    """Yield what runs and decides on the values that its product brings, in words: that belongs to the product before."""
     brought = frozenset(map(target, master.brings))
     for name in sorted(running):
         ability = automaton.abilities[name]

@@ -26,7 +26,7 @@ from sequence_planner.planning.problem import Circumstances, Goal, Plan, goal_of
 
 
 class ErrandKind(StrEnum):
-    """What an errand is for."""
+    """The purpose of an errand."""
 
     WAY_BACK = "way-back"  # into the safe states, or to where operations can go on
     RESET = "reset"  # to the precondition of an operation
@@ -82,7 +82,7 @@ class Force(Immutable):
 
 
 class OutOfService(Immutable):
-    """What is out of service; `by` is None where the station has given an ability up itself."""
+    """A thing that is out of service; `by` is None where the station has given an ability up itself."""
 
     of: ServiceKind
     name: str
@@ -92,7 +92,7 @@ class OutOfService(Immutable):
 
 
 class LastErrand(Immutable):
-    """How the last errand has ended, or the trial of an `ability`; `by` names who ended it, None for the station."""
+    """The end of the last errand, or of the trial of an `ability`; `by` names who ended it, None for the station."""
 
     title: str
     done: bool
@@ -108,7 +108,7 @@ NOTHING: Final[Mapping[Any, Any]] = MappingProxyType({})
 
 
 class InitialState(Immutable):
-    """What is known as an execution begins: estimates and outputs that came back, as `values`.
+    """The things that are known as an execution begins: estimates and outputs that came back, as `values`.
 
     Nobody has seen since `unconfirmed_since` whether the estimates are still true; None where nothing came back. `done`
     are the operations that do not repeat and have been completed. It goes on in the same mode, with the same jobs, and
@@ -157,12 +157,12 @@ class ExecutionState(Immutable):
 
     @property
     def executes_operations(self) -> bool:
-        """Whether operations are planned for and executed, or would be if it were not paused."""
+        """True if operations are planned for and executed, or would be if it were not paused."""
         return self.errand is None and self.mode is not Mode.RESTART
 
     @property
     def may_start(self) -> bool:
-        """Whether it allows any start."""
+        """True if it allows any start."""
         if self.production is not Production.STARTED or (self.stepping and not self.steps):
             return False
         if self.errand is None:
@@ -194,7 +194,7 @@ class ExecutionState(Immutable):
     def keeping(
         self, values: Mapping[str, Value | None], outputs: Iterable[str]
     ) -> tuple[Mapping[str, Value | None], ExecutionState]:
-        """What forced outputs are again after abilities wrote to them; the conduct keeps what they would be."""
+        """Return what forced outputs are again after abilities wrote to them; the conduct keeps what they would be."""
         forced = [name for name in self.forces if name in outputs and values[name] != self.forces[name].value]
         held = {name: self.forces[name].value for name in forced}
         return held, self._with_real({name: values[name] for name in forced})
@@ -235,7 +235,7 @@ def writing(automaton: Automaton, outputs: Iterable[str]) -> frozenset[str]:
 
 @dataclass(frozen=True)
 class ActiveGoals:
-    """What is pursued. Each step gives a new one.
+    """The state of what is pursued. Each step gives a new one.
 
     `violated` says when the formula of an operation was violated, from then until the operation is activated again.
     """

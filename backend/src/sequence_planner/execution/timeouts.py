@@ -16,7 +16,7 @@ from sequence_planner.execution.vocabulary import ServiceKind
 
 
 def cancelled(automaton: Automaton, state: State, names: Iterable[str]) -> tuple[tuple[str, ...], Writes]:
-    """Which of the abilities can be called off, and what that writes; all at once, on the state before.
+    """Return which of the abilities can be called off, and what that writes; all at once, on the state before.
 
     Those that declare no cancel actions cannot. Of two that would write different values the one declared first is.
     """
@@ -39,7 +39,7 @@ def cancelled(automaton: Automaton, state: State, names: Iterable[str]) -> tuple
 
 
 def overdue(step: PlannedStart, ability: Ability, monotonic: float) -> str | None:
-    """What has not come in time of a run under way, as in `has not begun within 2 s`; None while it is in time."""
+    """Say what has not come in time of a run under way, as in `has not begun within 2 s`; None while it is in time."""
     if step.started is None or step.ended is not None:
         return None
     seconds = monotonic - step.started.monotonic

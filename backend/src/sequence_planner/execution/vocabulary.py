@@ -44,7 +44,7 @@ class JobState(StrEnum):
 
     @property
     def is_over(self) -> bool:
-        """Whether it never changes any more."""
+        """True if it never changes any more."""
         return self in (JobState.ENDED, JobState.STOPPED, JobState.ABORTED)
 
 

@@ -25,7 +25,7 @@ from sequence_planner.language.syntax import (
 
 
 def condition_of(action: Assignment, seen: Replacements) -> Expression:
-    """Where an action applies."""
+    """Return where an action applies."""
     return TRUE if action.condition is None else replaced(action.condition, seen)
 
 

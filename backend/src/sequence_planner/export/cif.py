@@ -58,7 +58,7 @@ _TRUE, _FALSE = Text("true", _ATOM), Text("false", _ATOM)
 
 
 def offset(type_: Type) -> int:
-    """What is added to the values of an integer range so that none is negative."""
+    """Return what is added to the values of an integer range so that none is negative."""
     return max(0, -type_.minimum) if isinstance(type_, IntegerRange) else 0
 
 
@@ -98,7 +98,7 @@ class Writer:
         return str(value + offset(type_)) if isinstance(value, int) else self.literals[_enumeration(type_)][value]
 
     def value(self, expression: Expression, type_: Type) -> str:
-        """What is written to a variable of that type: a variable of another enumeration cannot be."""
+        """Return what is written to a variable of that type: a variable of another enumeration cannot be."""
         if isinstance(type_, BooleanType):
             return self.predicate(expression).text
         if isinstance(expression, Constant):
@@ -129,7 +129,7 @@ class Writer:
         return equal if relation == "==" else self._not(equal)
 
     def _alike(self, relation: str, left: Expression, right: Expression) -> Text:
-        """Whether two variables of enumerations, or one and a value, have the same value."""
+        """Write whether two variables of enumerations, or one and a value, have the same value."""
         if isinstance(left, Constant):
             left, right = right, left
         if isinstance(left, Constant) and isinstance(right, Constant):
@@ -190,7 +190,7 @@ def _joined(operator: str, parts: Iterable[Text], empty: Text) -> Text:
 
 
 def _is_named(expression: Expression) -> bool:
-    """Whether it is of an enumeration."""
+    """Return whether it is of an enumeration."""
     match expression:
         case Constant(value):
             return isinstance(value, str)
@@ -211,7 +211,7 @@ def _is_integer(expression: Expression) -> bool:
 
 
 def _sum(expression: Expression) -> tuple[Counter[str], int]:
-    """How often each variable, as it is written in CIF, is added, and the constant that is."""
+    """Return how often each variable, as it is written in CIF, is added, and the constant that is."""
     match expression:
         case Constant(value):
             return Counter(), int(value)

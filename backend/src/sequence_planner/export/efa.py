@@ -88,7 +88,9 @@ def different(names: Iterable[T], form: Callable[[T], str], taken: Collection[st
 
 
 def names_in_document(automaton: Automaton) -> Mapping[str, str]:
-    """How each variable is called in the document: as it is, if expressions can read that and mean no value by it."""
+    """Return how each variable is called in the document: as it is, if expressions can read that and mean no value by
+    it.
+    """
     types = {name: variable.type for name, variable in automaton.variables.items()}
     ambiguous = {n for n, type_ in types.items() if isinstance(type_, EnumerationType) and n in type_.values}
     return different(types, dotted, ambiguous)
@@ -201,7 +203,7 @@ class ReactionOrder:
 
 
 def reaction_order(effects: Sequence[Transition], flags: Replacements) -> ReactionOrder:
-    """What `effects` need, whose `flags` are replaced by their predicates."""
+    """Return what `effects` need, whose `flags` are replaced by their predicates."""
     read = {e.name: _read(e, flags) for e in effects}
     allowed = {e.name: allowed_values(replaced(e.guard, flags)) for e in effects}
     writers: dict[str, list[Transition]] = {}
@@ -240,7 +242,7 @@ def allowed_values(guard: Expression) -> dict[str, Set[Value]]:
 
 
 def writes_outside(transition: Transition, name: str, allowed: Allowed) -> bool:
-    """Whether it always writes a constant to the variable that is none of the `allowed` values."""
+    """Return whether it always writes a constant to the variable that is none of the `allowed` values."""
     return name in allowed and any(
         target(action) == name
         and action.condition is None
@@ -255,14 +257,14 @@ def _may_enable(transition: Transition, name: str, allowed: Allowed) -> bool:
 
 
 def _exclude(one: Allowed, other: Allowed) -> bool:
-    """Whether no state satisfies both guards, as far as their parts over single variables tell."""
+    """Return whether no state satisfies both guards, as far as their parts over single variables tell."""
     return any(values.isdisjoint(other[name]) for name, values in one.items() if name in other)
 
 
 def _reaction_copies(
     later: Mapping[str, Set[str]], read: Mapping[str, Set[str]], written: Mapping[str, Set[str]]
 ) -> frozenset[str]:
-    """What is read and written within circles of effects, each of which would have to come before the next."""
+    """Return what is read and written within circles of effects, each of which would have to come before the next."""
     above = {name: _reached(name, later) for name in later}
     return frozenset(
         variable
@@ -306,7 +308,7 @@ _MOST_VALUATIONS = 5000
 
 
 def can_dispute(one: Transition, other: Transition) -> bool:
-    """Whether both may be enabled and write different values to one variable."""
+    """Return whether both may be enabled and write different values to one variable."""
     shared = one.writes & other.writes
     if not shared or all(_constant(one, name) == _constant(other, name) is not None for name in shared):
         return False
@@ -315,7 +317,7 @@ def can_dispute(one: Transition, other: Transition) -> bool:
 
 
 def one_suffices(one: Transition, other: Transition) -> bool:
-    """Whether what both do together, where they can, one of them does alone."""
+    """Return whether what both do together, where they can, one of them does alone."""
     if one.writes == other.writes and len(one.writes) == 1:
         return True
     pairs = _pairs(one, other)
@@ -338,7 +340,7 @@ def _constant(transition: Transition, name: str) -> Constant | None:
 
 
 def _pairs(one: Transition, other: Transition) -> Iterator[tuple[Writes, Writes]] | None:
-    """What each writes, wherever both are enabled; None if there are too many valuations. Flags can be anything."""
+    """Return what each writes, wherever both are enabled; None if there are too many valuations. Flags can be anything."""
     domains = {
         variable.name: variable.type.domain
         for transition in (one, other)
@@ -390,7 +392,7 @@ class ExportedStep:
 
     @property
     def finishes(self) -> bool:
-        """Whether it is a finish."""
+        """True if it is a finish."""
         return self.members[0].phase is Phase.FINISH
 
     @cached_property
@@ -479,7 +481,7 @@ def _ordered(automaton: Automaton, steps: Sequence[ExportedStep]) -> list[Export
 
 
 def _read_by(automaton: Automaton, steps: Sequence[ExportedStep]) -> frozenset[str]:
-    """What steps read of the state before the tick, apart from the flags that finishes do."""
+    """Return what steps read of the state before the tick, apart from the flags that finishes do."""
     found = set[str]()
     for step in steps:
         found |= step.reads & automaton.variables.keys() if step.finishes else _inlined(automaton, step)
@@ -545,7 +547,7 @@ def plain_of_station(automaton: Automaton) -> Automaton:
 
 
 def remarks(automaton: Automaton) -> tuple[str, ...]:
-    """What the plain automaton of a station does not say, if that makes a difference here."""
+    """Return what the plain automaton of a station does not say, if that makes a difference here."""
     faults = [effect.name for effect in automaton.effects if effect.fault]
     restart = [ability.name for ability in automaton.abilities.values() if ability.restart]
     local = [operation.name for operation in automaton.operations.values() if operation.local is not None]

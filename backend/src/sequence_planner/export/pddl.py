@@ -183,7 +183,7 @@ class PddlWriter:
         return facts[0] if len(facts) == 1 else f"(or {' '.join(facts)})"
 
     def _combinations(self, predicate: Expression) -> str:
-        """What no fact says directly, by the values of its variables that satisfy it."""
+        """Write what no fact says directly, by the values of its variables that satisfy it."""
         concerned = {variable.name: variable.type.domain for variable in occurrences(predicate)}
         if prod(map(len, concerned.values())) > MOST_COMBINATIONS:
             raise ExportError(
@@ -253,7 +253,7 @@ class PddlText:
 
     @cached_property
     def timed(self) -> bool:
-        """Whether it goes by ticks; else each start could have one of its own."""
+        """True if it goes by ticks; else each start could have one of its own."""
         return any(move is Move.SETTLED for move, _ in self.moves.values())
 
     def _move(self, action: str) -> tuple[Move, str]:

@@ -47,11 +47,11 @@ MOST_PATHS = 256
 
 
 class ExportError(Exception):
-    """What is asked has no counterpart there; says why, and what to do."""
+    """A request that has no counterpart there; says why, and what to do."""
 
 
 class Move(StrEnum):
-    """What an action is in a run of ticks."""
+    """The role of an action in a run of ticks."""
 
     BEGIN = "begin"
     EFFECT = "effect"
@@ -64,7 +64,7 @@ class Move(StrEnum):
 
 @dataclass(frozen=True)
 class ConditionalUpdate:
-    """Where `condition` holds before the action, `variable` gets `value`."""
+    """An update by which, where `condition` holds before the action, `variable` gets `value`."""
 
     variable: str
     value: Value
@@ -111,7 +111,7 @@ def has(variable: Variable, value: Value) -> Expression:
 
 
 def updates_of(automaton: Automaton, transition: Transition, seen: Replacements) -> Iterator[ConditionalUpdate]:
-    """What a transition writes, each value on its own; `seen` is what its actions read in place of variables."""
+    """Yield what a transition writes, each value on its own; `seen` is what its actions read in place of variables."""
     for action in transition.actions:
         name = target(action)
         type_ = automaton.variables[name].type
@@ -385,7 +385,7 @@ class _Ticks:
         return Action(Move.START, name, simplify(conjunction(*guard)), tuple(updates))
 
     def _disables_itself(self, start: Transition) -> bool:
-        """Whether no other start of the same tick could make it possible again."""
+        """Return whether no other start of the same tick could make it possible again."""
         allowed = allowed_values(replaced(start.guard, self._flags))
         others = frozenset[str]().union(*(other.writes for other in self._starts if other is not start))
         return any(writes_outside(start, name, allowed) for name in start.writes - others)

@@ -77,7 +77,7 @@ class _Writer:
         yield f"INVARSPEC !{self._expression(question.goal)};"
 
     def _next(self, name: str, written: list[tuple[str, ConditionalUpdate]]) -> Iterator[str]:
-        """What the actions make of a variable; what becomes true wins over what becomes false."""
+        """Yield what the actions make of a variable; what becomes true wins over what becomes false."""
         yield f"  next({self._variables[name]}) := case"
         for action, update in sorted(written, key=lambda each: each[1].value is False):
             where = "" if update.condition == TRUE else f" & {self._expression(update.condition)}"

@@ -25,7 +25,7 @@ _SERVED_BY_TOOLS: Final = "/*/get_type_description"  # they have the number of t
 
 @dataclass
 class Rights:
-    """What a node may do, each a set of names. Whatever is not named it may not."""
+    """The things that a node may do, each a set of names. Whatever is not named it may not."""
 
     publish: set[str] = field(default_factory=set)
     subscribe: set[str] = field(default_factory=set)
@@ -35,7 +35,7 @@ class Rights:
     execute: set[str] = field(default_factory=set)  # actions that it serves
 
     def mirrored(self) -> Rights:
-        """What somebody may do who is all that these rights need to meet."""
+        """Return what somebody may do who is all that these rights need to meet."""
         return Rights(
             publish=set(self.subscribe),
             subscribe=set(self.publish),
@@ -47,7 +47,7 @@ class Rights:
 
 
 def rights_by_resource(pipelines: StationPipelines, ros_1: Collection[str] = ()) -> dict[str, Rights]:
-    """What the controller may do with the devices of each resource; topics of ROS 1 are none of ROS 2's."""
+    """Return what the controller may do with the devices of each resource; topics of ROS 1 are none of ROS 2's."""
     found: dict[str, Rights] = {}
     for incoming in pipelines.incoming.values():
         if incoming.topic.name not in ros_1:
@@ -99,7 +99,7 @@ def policy(pipelines: StationPipelines, ros_1: Collection[str] = ()) -> str:
 
 
 def _rules(rights: Rights) -> Iterator[tuple[str, str, str, set[str]]]:
-    """What is allowed: the element and its members, the qualifier, and the names; only where there are any."""
+    """Yield what is allowed: the element and its members, the qualifier, and the names; only where there are any."""
     rules = (
         ("topics", "topic", "publish", rights.publish | {_OF_EVERY_NODE}),
         ("topics", "topic", "subscribe", rights.subscribe),

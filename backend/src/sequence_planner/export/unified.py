@@ -32,7 +32,7 @@ class UnifiedPlanningError(Exception):
 
 
 def installed() -> bool:
-    """Whether the library and Fast Downward are there."""
+    """Return whether the library and Fast Downward are there."""
     return all(find_spec(name) is not None for name in ("unified_planning", "up_fast_downward"))
 
 
@@ -101,7 +101,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def _descendants(pid: int) -> list[int]:
-    """What the process, and what it has started, has started; where the system lists processes in files."""
+    """Return what the process, and what it has started, has started; where the system lists processes in files."""
     children: dict[int, list[int]] = {}
     for status in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):

@@ -50,14 +50,14 @@ class Child:
 
     @property
     def has_begun(self) -> bool:
-        """Whether there is, or was, such a process, or never will be."""
+        """True if there is, or was, such a process, or never will be."""
         if self._pid is None and self.returncode is None and self._ready(0):
             self._hear()
         return self._pid is not None or self.returncode is not None
 
     @property
     def was_withdrawn(self) -> bool:
-        """Whether it was ended before it had begun."""
+        """True if it was ended before it had begun."""
         return self._pid is None and self.returncode is not None
 
     def poll(self) -> int | None:
@@ -137,7 +137,7 @@ class Child:
             self._end(LOST)
 
     def _seen(self) -> int:
-        """How it has ended, of one without a server: whoever is the reaper of this process's orphans can see it."""
+        """Tell how it has ended, of one without a server: whoever is the reaper of this process's orphans can see it."""
         if self._pid is None:
             return LOST
         _poll(None, self._handle)  # it has let go of the connection, and ends
@@ -148,7 +148,7 @@ class Child:
         return LOST
 
     def _ready(self, seconds: float, *others: int) -> bool:
-        """Whether something is said within so many seconds, or one of the `others` is ready."""
+        """Return whether something is said within so many seconds, or one of the `others` is ready."""
         with contextlib.suppress(ValueError, OSError):  # it was closed meanwhile
             return _poll(seconds, self._connection.fileno(), *(each for each in others if each >= 0))
         return False

@@ -22,7 +22,9 @@ _SIGNAL_AT_END: Final = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 def can_be_copied() -> bool:
-    """Whether this process has a single thread: in a copy the others would be gone, and what they hold would not."""
+    """Return whether this process has a single thread: in a copy the others would be gone, and what they hold would
+    not.
+    """
     return threading.active_count() == 1
 
 

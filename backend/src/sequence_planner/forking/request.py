@@ -1,4 +1,4 @@
-"""What a fork server is asked for, and what it says of a process that it has forked.
+"""The requests to a fork server, and what it says of a process that it has forked.
 
 A request is one connection: the length of a pickle, the pickle and the descriptors that come with it go in. What comes
 out is the number of the process and a descriptor that means it, said by the process itself as it begins, and its exit
@@ -87,7 +87,7 @@ def send_code(to: socket.socket, code: int) -> None:
 
 
 def read_code(of: socket.socket) -> int:
-    """How the process has ended. Raises EOFError when nobody knows."""
+    """Tell how the process has ended. Raises EOFError when nobody knows."""
     return int(_NUMBER.unpack(_read(of, BYTES_OF_NUMBER))[0])
 
 

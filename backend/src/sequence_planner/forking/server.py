@@ -94,7 +94,7 @@ class ForkServer:
                     self._hang_up(key.data)
 
     def _patience(self) -> float | None:
-        """How long it is waited for whoever wants something; None where there is nothing else to do."""
+        """Return how long it is waited for whoever wants something; None where there is nothing else to do."""
         if self._now:
             return 0
         if self._unwanted:
@@ -140,7 +140,7 @@ class ForkServer:
         return None
 
     def _hang_up(self, pid: int) -> None:
-        """Whoever has asked for the process is gone, or wants it to end."""
+        """Hang up, as whoever has asked for the process is gone, or wants it to end."""
         forked = self._forked.get(pid)
         if forked is None:  # it was waited for in the same turn
             return
@@ -248,7 +248,7 @@ def _fork() -> int:
 
 
 def _is_closed(connection: socket.socket) -> bool:
-    """Whether the other end wants nothing any more."""
+    """Return whether the other end wants nothing any more."""
     connection.setblocking(False)
     try:
         return not connection.recv(1, socket.MSG_PEEK)

@@ -55,7 +55,7 @@ class OwnServer:
 
     @property
     def lives(self) -> bool:
-        """Whether it runs."""
+        """True if it runs."""
         return self._process is not None and self._process.poll() is None
 
     def prepare(self, now: Sequence[str], later: Sequence[str] = ()) -> None:
@@ -65,7 +65,7 @@ class OwnServer:
             self._see_to_it()
 
     def path(self) -> Path:
-        """Where it is asked; it is started if need be. Raises OSError."""
+        """Return where it is asked; it is started if need be. Raises OSError."""
         with self._lock:
             self._asked = True
             return self._see_to_it()
@@ -197,7 +197,7 @@ def start(
 
 
 def working_folder() -> str | None:
-    """Where this process is; None where that is gone."""
+    """Return where this process is; None where that is gone."""
     try:
         return str(Path.cwd())
     except OSError:

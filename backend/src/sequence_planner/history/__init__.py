@@ -1,1 +1,1 @@
-"""What has happened to the running station, from the journal: looked back on, replayed, and branched from."""
+"""The past of the running station, from the journal: looked back on, replayed, and branched from."""

@@ -132,13 +132,15 @@ class BranchView(View):
 
 
 class LookBack(Immutable):
-    """How was the station at this record?"""
+    """The question how the station was at this record."""
 
     number: int
 
 
 class TakeBranch(Immutable):
-    """How would it have gone on from there, with these corrections? `deadline` seconds are there to find out."""
+    """The question how it would have gone on from there, with these corrections; `deadline` seconds are there to find
+    out.
+    """
 
     number: int
     seconds: float
@@ -147,7 +149,7 @@ class TakeBranch(Immutable):
 
 
 class Refused(Immutable):
-    """Why there is no answer: a slug, and what a person is told."""
+    """The reason why there is no answer: a slug, and what a person is told."""
 
     slug: str
     detail: str
@@ -181,7 +183,7 @@ _PAGE: Final = 1000
 
 
 def line(run: WholeRun, since: float, until: float) -> LineView | None:
-    """What happened after `since` and up to `until`; None while the journal is empty."""
+    """Return what happened after `since` and up to `until`; None while the journal is empty."""
     bounds = run.bounds()
     if bounds is None:
         return None
@@ -240,7 +242,7 @@ def _mark(record: RunRecord) -> MarkView:
 
 
 def _running(run: WholeRun, number: int) -> list[str]:
-    """What had been started up to a record and had not ended."""
+    """Return what had been started up to a record and had not ended."""
     whole = next(iter(run.before(number + 1, 1, (BEGUN, SNAPSHOT))), None)
     if whole is None:
         return []
@@ -267,7 +269,7 @@ def _mode(run: WholeRun, number: int) -> str | None:
 
 
 def _bins(run: WholeRun, since: float, until: float) -> list[int]:
-    """How many records there are in each of as many equal parts of the time."""
+    """Count the records that there are in each of as many equal parts of the time."""
     length = (until - since) / BINS
     edges = [since + each * length for each in range(BINS + 1)]
     numbers = [run.at(edge) for edge in edges]

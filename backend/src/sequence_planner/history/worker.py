@@ -57,7 +57,7 @@ class _Room:
         return supervisor_of(self._station.automaton)
 
     def answer(self, question: Question) -> Answer:
-        """What is asked. Raises `HistoryError`, and what else keeps it from being answered."""
+        """Answer what is asked. Raises `HistoryError`, and what else keeps it from being answered."""
         station, supervisor = self._station, self._supervisor
         with closing(Database.open(self._database, create=False)) as database, database.reading() as connection:
             run = WholeRun(connection, self._archive)

@@ -178,7 +178,7 @@ class Segment:
 
     @classmethod
     def of(cls, details: dict[str, Any]) -> Segment | None:
-        """What the record of a cut tells; None of one that was made without an archive."""
+        """Return what the record of a cut tells; None of one that was made without an archive."""
         if "file" not in details:
             return None
         return cls(**{name: details[name] for name in cls.__dataclass_fields__})
@@ -201,7 +201,7 @@ class Index:
 
     @property
     def whole(self) -> bool:
-        """Whether nothing is missing before the first."""
+        """True if nothing is missing before the first."""
         return self.begin == START
 
 
@@ -214,7 +214,7 @@ class Archive:
         self._read: OrderedDict[str, list[str]] = OrderedDict()
 
     def index(self, connection: Connection) -> Index:
-        """Which files there are to be. It does not look whether they are there."""
+        """Tell which files there are to be. It does not look whether they are there."""
         chosen = select(AUDIT.c.number, AUDIT.c.action, AUDIT.c.entry).where(AUDIT.c.action.in_((TRIMMED, REMOVED)))
         newest = select(AUDIT.c.number).where(AUDIT.c.action.in_((TRIMMED, REMOVED))).order_by(AUDIT.c.number.desc())
         begin = run_journal.begin(connection)
@@ -226,7 +226,7 @@ class Archive:
         return known[1]
 
     def path(self, segment: Segment) -> Path:
-        """Where the file is: in the folder that is named, or else where it was put."""
+        """Return where the file is: in the folder that is named, or else where it was put."""
         if self.folder is not None and (named := self.folder / segment.file).exists():
             return named
         return Path(segment.folder) / segment.file
@@ -255,7 +255,9 @@ def header(segment_of: tuple[ChainPosition, ChainPosition], since: float, until:
 
 
 def verified(archive: Archive, index: Index) -> Iterator[str]:
-    """What is wrong with the files, in words; nothing where all are as they were written, and follow on one another."""
+    """Yield what is wrong with the files, in words; nothing where all are as they were written, and follow on one
+    another.
+    """
     for before, segment in pairwise((None, *index.segments)):
         assert segment is not None
         if before is not None and (before.last, before.hash) != (segment.first - 1, segment.before):

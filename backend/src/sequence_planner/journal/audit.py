@@ -50,14 +50,14 @@ class Stored(ChainLink):
         return f'{{"number":{self.number},"time":{self.time!r},"entry":{self.entry}'
 
     def is_whole(self, before: str) -> bool:
-        """Whether it is what was written, also to search by."""
+        """Return whether it is what was written, also to search by."""
         if not super().is_whole(before):
             return False
         entry = json.loads(self.entry)
         return (self.action, self.actor) == (entry["action"], entry["actor"]["id"])
 
     def record(self) -> Record:
-        """What it says. Raises `StorageError` if it says nothing that could have been written."""
+        """Return what it says. Raises `StorageError` if it says nothing that could have been written."""
         try:
             entry = Entry.model_validate_json(self.entry)
             return Record(number=self.number, time=self.time, entry=entry, hash=self.hash)
@@ -89,7 +89,7 @@ def append(connection: Connection, entry: Entry, now: float) -> Record:
 
 
 def end(connection: Connection) -> ChainPosition | None:
-    """Where the record ends; None if somebody has taken that out."""
+    """Return where the record ends; None if somebody has taken that out."""
     return hash_chain.position(connection, AUDIT_END)
 
 

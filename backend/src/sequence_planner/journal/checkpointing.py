@@ -1,4 +1,4 @@
-"""When a checkpoint is due: after so many records, or so much time with something new."""
+"""The time when a checkpoint is due: after so many records, or so much time with something new."""
 
 from __future__ import annotations
 

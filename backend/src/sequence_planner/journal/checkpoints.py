@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def key_file(place: SqliteFile | PostgresqlServer) -> Path:
-    """Where the key is: beside the file of SQLite; for PostgreSQL in this user's state folder."""
+    """Return where the key is: beside the file of SQLite; for PostgreSQL in this user's state folder."""
     if isinstance(place, SqliteFile):
         return place.path.with_name(f"{place.path.name}-checkpoint-key.pem")
     mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
@@ -115,7 +115,7 @@ class Place(BaseModel):
 
 
 class Statement(BaseModel):
-    """What is signed: at this time both chains ended so. `checkpoint` counts from 1."""
+    """The statement that is signed: at this time both chains ended so. `checkpoint` counts from 1."""
 
     model_config = _STRICT
     checkpoint: int
@@ -133,14 +133,14 @@ class Checkpoint(BaseModel):
     signature: str = Field(pattern="^[0-9a-f]{128}$")
 
     def statement(self) -> Statement:
-        """What it says. Raises `StorageError` if it says nothing that could have been signed."""
+        """Return what it says. Raises `StorageError` if it says nothing that could have been signed."""
         try:
             return Statement.model_validate_json(self.content)
         except ValidationError as error:
             raise StorageError("a checkpoint cannot be read: it was changed") from error
 
     def is_signed(self) -> bool:
-        """Whether the signature is that of its key."""
+        """Return whether the signature is that of its key."""
         from cryptography.exceptions import InvalidSignature  # noqa: PLC0415
         from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey  # noqa: PLC0415
 

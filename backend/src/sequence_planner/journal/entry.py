@@ -1,4 +1,4 @@
-"""What the record of who did what is made of."""
+"""The parts that the record of who did what is made of."""
 
 from __future__ import annotations
 
@@ -53,6 +53,6 @@ class Record(BaseModel):
 
 
 def described(entry: Entry) -> str:
-    """What somebody did, in a few words."""
+    """Describe what somebody did, in a few words."""
     mode = entry.details.get("mode")
     return f"{entry.action} ({mode})" if isinstance(mode, str) else entry.action

@@ -58,7 +58,7 @@ class ChainLink(ABC):
         return f'{self.text()},"hash":"{self.hash}"}}'
 
     def is_whole(self, before: str) -> bool:
-        """Whether it is what was written behind a record with the hash `before`."""
+        """Return whether it is what was written behind a record with the hash `before`."""
         return self.hash == digest(before, self.text())
 
 

@@ -65,7 +65,9 @@ class Life(BaseModel):
 
 
 def last_word_file(place: SqliteFile | PostgresqlServer, standby: str | None = None) -> Path:
-    """Where it is: beside the file of SQLite; for PostgreSQL in this user's state folder, one for each `standby`."""
+    """Return where it is: beside the file of SQLite; for PostgreSQL in this user's state folder, one for each
+    `standby`.
+    """
     if isinstance(place, SqliteFile):
         return place.path.with_name(f"{place.path.name}-last-word")
     mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
@@ -158,7 +160,7 @@ class LastWord:
         os.fsync(self._descriptor)
 
     def _read(self, place: int) -> Life | None:
-        """What is whole at a place."""
+        """Return what is whole at a place."""
         head, _, _ = os.pread(self._descriptor, _PLACE, place * _PLACE).partition(b"\n")
         checksum, text = head[:_HEAD], head[_HEAD:]
         if checksum != b"%08x" % zlib.crc32(text):
@@ -184,8 +186,8 @@ class LastEnding:
 
 
 def ending(connection: Connection, lives: Sequence[Life], begun_kind: str) -> LastEnding:
-    """What the journal and the last words of this station say together; `begun_kind` is that of records that begin a
-    life.
+    """Return what the journal and the last words of this station say together; `begun_kind` is that of records that
+    begin a life.
 
     A word counts as long as the journal does not reach as far as it, and no other life has begun since: that began
     paused where it was not certain of this. So a word of records that a restored backup does not have counts once.
@@ -204,12 +206,12 @@ def ending(connection: Connection, lives: Sequence[Life], begun_kind: str) -> La
 
 
 def _is_over(life: Life, begun: RunRecord | None) -> bool:
-    """Whether another life has begun since."""
+    """Return whether another life has begun since."""
     return begun is not None and (begun.number > life.number or (begun.number == life.number and not _is(life, begun)))
 
 
 def _has_begun(connection: Connection, life: Life, end: int) -> bool:
-    """Whether the journal has its first record, or had it before that was cut off."""
+    """Return whether the journal has its first record, or had it before that was cut off."""
     if life.number > end:
         return False
     found = run_journal.get(connection, life.number)

@@ -36,7 +36,7 @@ _BREATH: Final = 0.01  # seconds for others to write, at least; and as long as i
 
 @dataclass(frozen=True)
 class Trimmed:
-    """What is left: the run begins behind the record `begin`, and `removed` records before were taken out now."""
+    """The rest that is left: the run begins behind the record `begin`, and `removed` records before were taken out now."""
 
     begin: int
     removed: int
@@ -135,7 +135,9 @@ def clear(database: Database, folder: Path) -> None:
 
 
 def _is_double(run: WholeRun, file: Path) -> bool:
-    """Whether all that a file has is in the database, or in files that count: the last hash is over all before it."""
+    """Check whether all that a file has is in the database, or in files that count: the last hash is over all before
+    it.
+    """
     try:
         said = json.loads(next(archive.lines(file)))
         last = run.get(said["last"])

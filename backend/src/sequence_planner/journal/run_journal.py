@@ -80,7 +80,7 @@ _PAGE: Final = 1000  # records read at once
 
 @dataclass(frozen=True)
 class RunRecord(ChainLink):
-    """What has happened: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
+    """An event that has happened: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
 
     `content` is JSON text on one line; what it says depends on the `kind`. `hash` chains it to the record before.
     """
@@ -106,7 +106,7 @@ class RunRecord(ChainLink):
 
 @dataclass(frozen=True)
 class RecordQuery:
-    """Which records are sought: those that name `who`, one of `names` (or what begins with it), and one of `texts`.
+    """The records that are sought: those that name `who`, one of `names` (or what begins with it), and one of `texts`.
 
     What is left empty is not asked for. Texts are found whatever their case. Beside those of the kinds that are asked
     for there are those with one of `parts`, as in `started`.
@@ -134,11 +134,11 @@ class RecordQuery:
         return and_(*asked) if asked else None
 
     def has_part(self, record: RunRecord) -> bool:
-        """Whether a record has one of the parts, as `of_parts` says it to the database."""
+        """Return whether a record has one of the parts, as `of_parts` says it to the database."""
         return any(f'"{part}":{_BEGINNINGS.get(part, "[")}' in record.content for part in self.parts)
 
     def fits(self, record: RunRecord) -> bool:
-        """Whether a record is sought, as `condition` says it to the database."""
+        """Return whether a record is sought, as `condition` says it to the database."""
         content = record.content
         if self.who and f'"by":{json.dumps(self.who)}' not in content:
             return False
@@ -249,7 +249,7 @@ def begin(connection: Connection) -> ChainPosition:
 
 
 def end(connection: Connection) -> ChainPosition | None:
-    """Where the run ends; None if somebody has taken that out."""
+    """Return where the run ends; None if somebody has taken that out."""
     return hash_chain.position(connection, RUN_END)
 
 

@@ -1,4 +1,6 @@
-"""Whether the journal is as it was written: both chains, what signed checkpoints say of them, and what was cut off."""
+"""A check whether the journal is as it was written: both chains, what signed checkpoints say of them, and what was cut
+off.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ from sequence_planner.journal.run_journal import RUN
 
 @dataclass(frozen=True)
 class Verified:
-    """What was found: `wrong` in words, empty where all is whole; how far the chains go, and who signed them last."""
+    """The findings: `wrong` in words, empty where all is whole; how far the chains go, and who signed them last."""
 
     wrong: tuple[str, ...]
     audit: ChainPosition
@@ -48,7 +50,7 @@ def verify(connection: Connection, key: str | None = None, kept: Checkpoint | No
 
 
 def _broken(connection: Connection, begin: ChainPosition) -> Iterator[str]:
-    """What the chains themselves tell."""
+    """Yield what the chains themselves tell."""
     if (number := audit.broken_at(connection)) is not None:
         yield f"record {number} of who did what is missing, or is not as it was written"
     if (number := run_journal.broken_at(connection)) is not None:
@@ -70,7 +72,7 @@ def _wrongly_signed(connection: Connection, begin: ChainPosition) -> Iterator[st
 
 
 def _another_key(newest: Checkpoint | None, key: str | None, kept: Checkpoint | None) -> Iterator[str]:
-    """Whoever changes the database can put checkpoints in, but has not got the key."""
+    """Check whose key it is: whoever changes the database can put checkpoints in, but has not got the key."""
     if newest is None:
         return
     if key is not None and newest.public_key != key:
@@ -80,7 +82,7 @@ def _another_key(newest: Checkpoint | None, key: str | None, kept: Checkpoint | 
 
 
 def _why_not(connection: Connection, begin: ChainPosition, checkpoint: Checkpoint) -> str | None:
-    """Why a checkpoint does not hold; None when it does, as far as the records that it is about are still there."""
+    """Say why a checkpoint does not hold; None when it does, as far as the records that it is about are still there."""
     if not checkpoint.is_signed():
         return "is not as it was signed"
     said = checkpoint.statement()

@@ -100,7 +100,7 @@ class GroupCommit:
             self._tell(self._end.number, TAKEN_OVER)
 
     def _next_group(self) -> list[RunRecord]:
-        """What waits, as soon as something does; nothing at the end. A checkpoint that is due is made meanwhile."""
+        """Return what waits, as soon as something does; nothing at the end. A checkpoint that is due is made meanwhile."""
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._queue or self._until is not None, self._checkpointing.due_in())
@@ -223,7 +223,7 @@ class RunWriter:
 
     @property
     def waiting(self) -> int:
-        """How many records are not durable yet."""
+        """The number of records that are not durable yet."""
         return self._end.number - self.durable
 
     def write(self, kind: str, time: float, content: str) -> int:
@@ -244,7 +244,7 @@ class RunWriter:
         return number
 
     async def until_durable(self, number: int, patience: float) -> bool:
-        """Whether a record is durable by now, or within so many seconds. It is not waited for in `trouble`."""
+        """Return whether a record is durable by now, or within so many seconds. It is not waited for in `trouble`."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(patience):
                 while self.durable < number and self.trouble is None:

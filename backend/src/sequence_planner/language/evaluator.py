@@ -96,7 +96,7 @@ def _less_frequent(expression: Expression, valuation: Valuation) -> Value | None
 
 
 def holds(expression: Expression, valuation: Valuation) -> bool:
-    """Whether a predicate is true for certain: what is undetermined does not hold."""
+    """Return whether a predicate is true for certain: what is undetermined does not hold."""
     return evaluate(expression, valuation) is True
 
 

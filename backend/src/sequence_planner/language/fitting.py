@@ -1,4 +1,4 @@
-"""Whether what an action writes is a value of its target.
+"""The check whether what an action writes is a value of its target.
 
 `count := count + 1` leaves the range 0..3 of `count` unless a guard or a condition says `count < 3`. Where an action
 must fit for certain, `misfit` finds a state in which it does not; where an update out of range disables its transition,

@@ -28,7 +28,8 @@ from sequence_planner.language.syntax import (
 
 
 def progress(formula: Expression, valuation: Valuation, last: bool, doubt: bool = False) -> Expression:
-    """What the rest of a trace must satisfy so that the whole, which begins with `valuation`, satisfies `formula`.
+    """Return what the rest of a trace must satisfy so that the whole, which begins with `valuation`, satisfies
+    `formula`.
 
     `TRUE` or `FALSE` when that is decided, as it always is at the `last` position. A predicate that unknown values
     leave open counts as `doubt`: with False the whole is satisfied for certain just when the rest is, with True the
@@ -98,7 +99,8 @@ def _any(parts: Iterable[Expression]) -> Expression:
 
 
 def satisfies(formula: Expression, trace: Sequence[Valuation], position: int = 0) -> bool | None:
-    """Whether a resolved `formula` is satisfied at `position` of `trace`, or None where unknown values leave it open.
+    """Return whether a resolved `formula` is satisfied at `position` of `trace`, or None where unknown values leave it
+    open.
 
     Raises ValueError for a position that the trace does not have; an empty trace has none.
     """

@@ -82,7 +82,7 @@ def parse_formula(text: str) -> Expression:
 
 
 def can_go_on(text: str, action: bool = False, temporal: bool = False) -> bool:
-    """Whether a predicate, an `action` or a `temporal` formula can begin with `text`, or be it."""
+    """Return whether a predicate, an `action` or a `temporal` formula can begin with `text`, or be it."""
     try:
         _Parser(text, temporal).whole(_Parser.assignment if action else _Parser.expression)
     except ExpressionError as error:
@@ -266,7 +266,7 @@ class _Parser:
         return self.relation()
 
     def _is_prefix(self) -> bool:
-        """Whether the letter at hand is an operator: an operand follows, and not the arguments of `F(x).done`."""
+        """Return whether the letter at hand is an operator: an operand follows, and not the arguments of `F(x).done`."""
         following = iter(self._tokens[self._next + 1 :])
         first = next(following)
         if first.kind != "(":

@@ -82,7 +82,7 @@ def _under_letter(operand: Expression) -> str:
 
 
 def _ends_in_letter(expression: Expression) -> bool:
-    """Whether an infix letter behind `expression` would be read as the operand of a letter that is a name."""
+    """Return whether an infix letter behind `expression` would be read as the operand of a letter that is a name."""
     match expression:
         case Not(operand) | UnaryTemporal(_, operand):
             return _ends_in_letter(operand)

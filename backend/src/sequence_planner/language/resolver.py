@@ -45,7 +45,7 @@ from sequence_planner.language.types import (
 
 
 class NameScope(Immutable):
-    """What names mean at one place of a model.
+    """The meaning of names at one place of a model.
 
     `variables` maps full names to types; `prefixes` are tried in order before the bare name (such as
     `nutrunner.run_nut.` and `nutrunner.`); `parameters` maps a parameter to its value and the enumeration it is of.
@@ -83,7 +83,7 @@ class NameScope(Immutable):
         return tuple(self.variables)
 
     def short(self, beginning: str = "") -> list[str]:
-        """What names that begin so are here without a prefix."""
+        """Return what names that begin so are here without a prefix."""
         found = ((prefix, beginning_with(prefix + beginning, self.names)) for prefix in self.prefixes)
         return [name.removeprefix(prefix) for prefix, names in found for name in names]
 
@@ -172,14 +172,14 @@ def _expected(expected: Type, found: Type, expression: Expression) -> Expression
 
 
 def _truth_value(expected: Type, found: Type) -> str:
-    """What to write for 0 and 1 where a truth value is meant."""
+    """Say what to write for 0 and 1 where a truth value is meant."""
     if expected != BOOLEAN or found not in (IntegerRange(0, 0), IntegerRange(1, 1)):
         return ""
     return "; write true" if found == IntegerRange(1, 1) else "; write false"
 
 
 def _overlap(one: Type, other: Type) -> bool:
-    """Whether the two have a value in common."""
+    """Return whether the two have a value in common."""
     if isinstance(one, IntegerRange) and isinstance(other, IntegerRange):
         return one.minimum <= other.maximum and other.minimum <= one.maximum
     if isinstance(one, EnumerationType) and isinstance(other, EnumerationType):
@@ -257,7 +257,7 @@ def _unknown(name: Name, scope: NameScope, values: Iterable[str]) -> ExpressionE
 
 
 def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
-    """What to write in place of an unknown name, as far as that can be guessed."""
+    """Say what to write in place of an unknown name, as far as that can be guessed."""
     word = str(name)
     if word.lower() in KEYWORDS:
         return f"; write {word.lower()}"
@@ -299,7 +299,7 @@ def _comparison(operator: str, left: Expression, right: Expression, span: Span, 
 
 
 def _needs_enumeration(word: Expression, scope: NameScope, other: Expression) -> bool:
-    """Whether `word`, left of a comparison, is to be read as a value of what stands on the `other` side."""
+    """Return whether `word`, left of a comparison, is to be read as a value of what stands on the `other` side."""
     if not isinstance(word, Name) or str(word) in scope.parameters:
         return False
     if scope.find(word) is None:

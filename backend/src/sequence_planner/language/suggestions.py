@@ -33,7 +33,7 @@ def nearest(word: str, candidates: Iterable[str], cutoff: float) -> tuple[float,
 
 
 def _parts(word: str, name: str) -> list[str]:
-    """What the name is without the parameters, and without the owner, that the word does not have either."""
+    """Return what the name is without the parameters, and without the owner, that the word does not have either."""
     head = name if any(each in word for each in _PARAMETERS) else name[: _first(name, _PARAMETERS)]
     bare = head if any(each in word for each in _OWNERS) else head[_last(head, _OWNERS) + 1 :]
     return [part for part in (head, bare) if part and part != name]

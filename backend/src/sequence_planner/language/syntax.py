@@ -68,7 +68,7 @@ class Name(Immutable):
 
     @property
     def is_word(self) -> bool:
-        """Whether the name is a single word, without dots and arguments."""
+        """True if the name is a single word, without dots and arguments."""
         return len(self.path) == 1 and not self.path[0].arguments
 
 

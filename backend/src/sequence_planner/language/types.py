@@ -10,7 +10,7 @@ from sequence_planner.core.immutable import Immutable
 
 
 class Place(NamedTuple):
-    """Where something stands; line and column count from 1."""
+    """The place where something stands; line and column count from 1."""
 
     file: str
     line: int
@@ -72,7 +72,7 @@ BOOLEAN = BooleanType()
 
 
 def contains(domain: Type, value: object) -> bool:
-    """Whether `value` belongs to the type; `True` is not the integer 1 here."""
+    """Return whether `value` belongs to the type; `True` is not the integer 1 here."""
     if isinstance(domain, BooleanType):
         return isinstance(value, bool)
     if isinstance(domain, IntegerRange):

@@ -1,4 +1,4 @@
-"""What has happened to orders and to the station, numbered without gaps: whoever reads on from a number misses nothing.
+"""The events of orders and of the station, numbered without gaps: whoever reads on from a number misses nothing.
 
 An event is written in the transaction of the change that it tells of.
 """

@@ -29,13 +29,13 @@ class KeptAnswer:
 
 
 def digest(path: str, body: BaseModel) -> str:
-    """What tells one request from another: where it was sent to, and what it says in whatever order."""
+    """Return what tells one request from another: where it was sent to, and what it says in whatever order."""
     said = json.dumps([path, body.model_dump(mode="json")], sort_keys=True)
     return hashlib.sha256(said.encode()).hexdigest()
 
 
 def recall(connection: Connection, bearer: str, key: str, digest: str) -> KeptAnswer | None:
-    """What was answered before to the bearer's request with this key; None if there was none.
+    """Return what was answered before to the bearer's request with this key; None if there was none.
 
     Raises `OrderRefused` (`idempotency-key-reused`, 422) when that was another request.
     """

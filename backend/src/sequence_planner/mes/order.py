@@ -44,7 +44,7 @@ class OrderCommand(StrEnum):
 
 
 class Wish(StrEnum):
-    """What is asked of an order that is worked, in the words of the controller."""
+    """The wish that is asked of an order that is worked, in the words of the controller."""
 
     PAUSE = "pause"
     RESUME = "resume"
@@ -157,17 +157,17 @@ class JobOrder(OrderContent):
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing more will be made of it."""
+        """True if nothing more will be made of it."""
         return self.state in OVER
 
     @property
     def is_at_station(self) -> bool:
-        """Whether the station works on it, or may do so by now."""
+        """True if the station works on it, or may do so by now."""
         return self.handed_over is not None and not self.is_over
 
     @property
     def title(self) -> str:
-        """What people at the station call it."""
+        """The name that people at the station call it by."""
         return (self.description.strip() or self.id)[:LONGEST_TITLE]
 
 
@@ -175,7 +175,7 @@ class JobOrder(OrderContent):
 
 
 class OrderRefused(Exception):
-    """What was asked of an order is not done, and nothing has changed.
+    """A refusal: what was asked of an order is not done, and nothing has changed.
 
     `slug`, `title`, `detail` and `status` are as in `controller.commands.production.CommandRefused`; `allowed` are
     the commands that the order does allow, where another one was given.

@@ -253,7 +253,7 @@ def those_over(connection: Connection, ids: Collection[str]) -> set[str]:
 
 
 def count_open(connection: Connection) -> int:
-    """How many orders are not over."""
+    """Count the orders that are not over."""
     found: int = connection.execute(select(func.count()).select_from(JOB_ORDERS).where(_OPEN)).scalar_one()
     return found
 
@@ -265,7 +265,7 @@ def find(connection: Connection, id: str) -> JobOrder | None:
 
 
 def _gone(connection: Connection, id: str) -> float | None:
-    """When an order was over that is kept no more; None where there is none of this id."""
+    """Return when an order was over that is kept no more; None where there is none of this id."""
     return connection.execute(select(JOB_ORDERS_GONE.c.ended).where(JOB_ORDERS_GONE.c.id == id)).scalar_one_or_none()
 
 

@@ -47,7 +47,7 @@ class Queue:
     revisions: dict[str, int] = field(default_factory=dict)
 
     def knows(self, order: JobOrder) -> bool:
-        """Whether it was looked at as it is."""
+        """Return whether it was looked at as it is."""
         return self.revisions.get(order.id) == order.revision
 
 
@@ -58,7 +58,7 @@ def queue(
     now: float,
     sequence: OrderOfWork = order_of_work,
 ) -> Queue:
-    """What comes of the orders that are not over. Without a `view` the station is not heard."""
+    """Return what comes of the orders that are not over. Without a `view` the station is not heard."""
     found, hindered = Queue(), _station_waits(view)
     worked = _worked(orders, view)
     first: dict[str, str] = {}  # by work master, the title of the first that is not worked yet
@@ -85,7 +85,7 @@ def queue(
 def _in_front(
     masters: WorkMastersView, master: str, worked: Sequence[tuple[str, str]], first: Mapping[str, str]
 ) -> list[str]:
-    """What an order of this work master waits for, of those that are worked or that come first."""
+    """Return what an order of this work master waits for, of those that are worked or that come first."""
     return [f"{title} is being worked" for title, other in worked if in_the_way(masters, master, other)] or [
         f"{title} comes first" for other, title in first.items() if in_the_way(masters, master, other)
     ]
@@ -102,7 +102,7 @@ def _worked(orders: Sequence[JobOrder], view: StationView | None) -> list[tuple[
 
 
 def in_the_way(masters: WorkMastersView, one: str, other: str) -> bool:
-    """Whether jobs of these work masters cannot be worked at the same time."""
+    """Return whether jobs of these work masters cannot be worked at the same time."""
     first, second = masters.work_masters.get(one), masters.work_masters.get(other)
     if first is None or second is None:
         return one == other

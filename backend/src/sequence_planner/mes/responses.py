@@ -1,4 +1,5 @@
-"""What was made of an order: operations and abilities with their times, values, deviations and corrections.
+"""The record of what was made of an order: operations and abilities with their times, values, deviations and
+corrections.
 
 A response is written once, when its order is over, and never changes. `record` is always the number of the record of
 the run's journal that says so, so that responses can be held against the journal.
@@ -77,7 +78,7 @@ class CorrectionMade(BaseModel):
 
 
 class JobResponse(BaseModel):
-    """What was made of an order. Times are in seconds since the epoch.
+    """The account of what was made of an order. Times are in seconds since the epoch.
 
     Of very many `deviations` the first are told, and how many were left out.
     """

@@ -55,7 +55,7 @@ class OrderFile:
     sha256: str
 
     def path(self, folder: Path | None = None) -> Path:
-        """Where it is: in `folder`, or else where it was put."""
+        """Return where it is: in `folder`, or else where it was put."""
         if folder is not None and (named := folder / self.file).exists():
             return named
         return Path(self.folder) / self.file
@@ -93,7 +93,7 @@ def order_files(connection: Connection) -> tuple[OrderFile, ...]:
 
 
 def wrong_files(files: Sequence[OrderFile], folder: Path | None = None) -> Iterator[str]:
-    """What is wrong with the files, in words."""
+    """Yield what is wrong with the files, in words."""
     for each in files:
         try:
             archive.check(each.path(folder), each.sha256)

@@ -86,7 +86,7 @@ class ReadRecord:
 
 
 def read(record: RunRecord) -> ReadRecord:
-    """What a record says."""
+    """Return what a record says."""
     content = json.loads(record.content)
     whole = record.kind in (BEGUN, SNAPSHOT)
     told = content if record.kind == TICKED else {}  # a note, such as that of an alarm, has names of its own
@@ -140,7 +140,7 @@ def _runs(content: Mapping[str, Any]) -> dict[tuple[str, float], float | None]:
 
 
 def _deviations(kind: str, content: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
-    """What did not go as planned."""
+    """Return what did not go as planned."""
     found: list[tuple[str, Mapping[str, Any]]] = []
     if kind == ALARM:
         found.append((kind, content))
@@ -172,7 +172,7 @@ class StationEvent:
 
 
 class StationStanding(BaseModel):
-    """How the station stands, as far as it was told: alarms that last by their keys, and what jobs wait for."""
+    """The standing of the station, as far as it was told: alarms that last by their keys, and what jobs wait for."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     mode: str | None = None
@@ -181,7 +181,7 @@ class StationStanding(BaseModel):
     waits: dict[str, list[str]] = {}
 
     def after(self, record: RunRecord) -> tuple[StationStanding, list[StationEvent]]:
-        """How it stands after a record, and what is to be told."""
+        """Return how it stands after a record, and what is to be told."""
         reader = _READERS.get(record.kind)
         if reader is None:
             return self, []
@@ -190,7 +190,7 @@ class StationStanding(BaseModel):
         return (self.model_copy(update=changes) if changes else self), told
 
     def without(self, job: str) -> StationStanding:
-        """Where a job is over, nothing is waited for any more."""
+        """Return it without a job that is over, for which nothing is waited any more."""
         if job not in self.waits:
             return self
         return self.model_copy(update={"waits": {id_: waits for id_, waits in self.waits.items() if id_ != job}})
@@ -205,7 +205,7 @@ class StationStanding(BaseModel):
         changes |= {"mode": mode, "packml": None, "alarms": {}}
 
     def _whole(self, time: float, content: Mapping[str, Any], changes: dict[str, Any]) -> Iterator[StationEvent]:
-        """Where reading begins with a snapshot, that says the mode."""
+        """Take the mode from a snapshot that says it, where reading begins with one."""
         if self.mode is None:
             changes["mode"] = content.get("mode")
         yield from ()
@@ -529,7 +529,7 @@ class OrderTracker:
 
 
 def response(job: JobMade, masters: WorkMastersView) -> JobResponse:
-    """What was made for a job that is over. The description is that of its order, which is entered then."""
+    """Return what was made for a job that is over. The description is that of its order, which is entered then."""
     master = masters.work_masters.get(job.work_master)
     names = list(job.operations) if master is None else [*dict.fromkeys([*master.operations, *job.operations])]
     assert job.ended is not None

@@ -1,4 +1,4 @@
-"""What all documents have in common: parts with nothing beside what is declared, and the values they share."""
+"""The things that all documents have in common: parts with nothing beside what is declared, and the values they share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a station is run, as far as a model has to fit that."""
+"""The way a station is run, as far as a model has to fit that."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class StartNeeds:
-    """Whether its devices are to be emulated, and whether there is a rosbridge server for topics of ROS 1."""
+    """The needs of a start: whether its devices are to be emulated, and whether there is a rosbridge server for topics
+    of ROS 1.
+    """
 
     emulated: bool = False
     rosbridge: bool = True

@@ -51,18 +51,20 @@ class Station:
 
     @property
     def title(self) -> str:
-        """What people call it."""
+        """The name that people call it by."""
         return self.station.title or self.station.name
 
 
 class ReadBefore:
-    """What the files of one station were found to hold, each for its text: what is the same is not read again."""
+    """The contents found in the files of one station, each for its text: what is the same is not read again."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, type[BaseModel]], tuple[str, object, tuple[Finding, ...]]] = {}
 
     def find(self, name: str, kind: type[BaseModel], text: str) -> tuple[object, tuple[Finding, ...]] | None:
-        """What the file `name` holds as `kind`, and what is wrong with it; None unless it was read with this text."""
+        """Return what the file `name` holds as `kind`, and what is wrong with it; None unless it was read with this
+        text.
+        """
         known = self._known.get((name, kind))
         return None if known is None or known[0] != text else known[1:]
 
@@ -160,7 +162,7 @@ class _FolderReader:
         self._before.forget_others(self._names)
 
     def _once(self, name: str, kind: type[BaseModel], reading: _Reading) -> object:
-        """What the file holds, read now unless it was with the same text before; None where it cannot be read."""
+        """Return what the file holds, read now unless it was with the same text before; None where it cannot be read."""
         self._names.add(name)
         called = str(self._folder / name)
         try:

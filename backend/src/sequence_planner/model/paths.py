@@ -65,7 +65,7 @@ def parse_path(text: str) -> EntryPath:
 
 
 def missing(path: EntryPath, depth: int, around: object) -> str:
-    """What is to be said where `around`, at the first `depth` steps of `path`, has not the next step."""
+    """Return what is to be said where `around`, at the first `depth` steps of `path`, has not the next step."""
     step = path[depth]
     where = f"`{shown_path(path[:depth])}`" if depth else "the document"
     if isinstance(around, dict):

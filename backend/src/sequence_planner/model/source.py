@@ -69,7 +69,7 @@ class SourceText(str):
         return Place(self.place.file, self.place.line + breaks, column)
 
     def written(self, span: Span) -> tuple[int, int]:
-        """Where a span of this text, which begins and ends with no white space, begins and ends in `raw`."""
+        """Return where a span of this text, which begins and ends with no white space, begins and ends in `raw`."""
         before, length = (
             sum(not character.isspace() for character in part)
             for part in (self[: span.start], self[span.start : span.end])
@@ -98,7 +98,7 @@ _ESCAPED_SPACE = frozenset({"\\" + character for character in "\n \tnrtvfNLP_"})
 
 
 def _written(raw: str) -> list[tuple[int, int]]:
-    """Where each character of a text but white space begins and ends in `raw`. A closing quote comes last."""
+    """Return where each character of a text but white space begins and ends in `raw`. A closing quote comes last."""
     quote = raw[:1] if raw[:1] in ("'", '"') else ""
     is_block = raw[:1] in ("|", ">")
     start = (raw.find("\n") + 1 or len(raw)) if is_block else len(quote)

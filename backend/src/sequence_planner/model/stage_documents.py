@@ -1,4 +1,4 @@
-"""What the stages of a pipeline may hold, one document for each kind."""
+"""The contents that the stages of a pipeline may hold, one document for each kind."""
 
 from __future__ import annotations
 
@@ -273,5 +273,5 @@ class StageDocument(DocumentPart):
 
     @property
     def place(self) -> Place:
-        """Where the key was written."""
+        """The place where the key was written."""
         return self._place

@@ -1,4 +1,4 @@
-"""What is wrong with the form of a document, said in its own words.
+"""The faults in the form of a document, said in its own words.
 
 pydantic finds it; here its findings get their place in the file, and those about one entry become one.
 """
@@ -54,7 +54,7 @@ def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, k
 
 
 def complaint(error: ValidationError, kind: type[BaseModel]) -> str:
-    """What is wrong with something that was read as a `kind` and has no place in a file, in one line."""
+    """Say what is wrong with something that was read as a `kind` and has no place in a file, in one line."""
     said: dict[str, None] = {}
     expected: dict[str, dict[str, None]] = {}
     for details in error.errors():
@@ -77,7 +77,7 @@ def _path(loc: Sequence[str | int], content: object) -> Iterable[str | int]:
 
 
 def _content_at(document: YamlDocument, path: EntryPath) -> object:
-    """What stands at an entry; None where there is none."""
+    """Return what stands at an entry; None where there is none."""
     content: Any = document.content
     for step in path:
         try:
@@ -132,7 +132,7 @@ def _entry_above(document: YamlDocument, path: EntryPath, name: str) -> tuple[st
 
 
 def _is_looked_into(details: ErrorDetails, every: Iterable[ErrorDetails]) -> bool:
-    """Whether another branch of the union has taken this mapping for what it is, and says what is wrong in it."""
+    """Return whether another branch of the union has taken this mapping for what it is, and says what is wrong in it."""
     here = details["loc"][:-1]
     return isinstance(details["input"], dict) and any(
         each["loc"][: len(here)] == here and len(each["loc"]) > len(details["loc"]) for each in every
@@ -160,7 +160,7 @@ def _expectation(details: ErrorDetails) -> str:
 
 
 def shown(value: object) -> str:
-    """What was found, in a few words."""
+    """Say what was found, in a few words."""
     match value:
         case None:
             return "nothing"

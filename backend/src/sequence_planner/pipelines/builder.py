@@ -89,7 +89,7 @@ class ClientBuilding:
         return full
 
     def _check_status(self, resource: str, name: SourceText) -> None:
-        """Whether the variable can say all that may become of a goal."""
+        """Check whether the variable can say all that may become of a goal."""
         full = f"{resource}.{name}"
         variable = self._automaton.variables.get(full)
         if variable is None or variable.kind is not Kind.MEASURED:
@@ -326,7 +326,7 @@ def outgoing_pipeline(
 
 
 def _is_set(resource: Resource, building: ChainBuilding, name: str) -> bool:
-    """Whether a field at the end is one of the message, of a type that it can hold; else a finding."""
+    """Check whether a field at the end is one of the message, of a type that it can hold; else a finding."""
     try:
         path, wanted = find_field(building.wanted, name)
     except NoFieldError:
@@ -498,11 +498,11 @@ class _Building:
         self._note(flow.name, before)
 
     def has_all(self, flows: int) -> bool:
-        """Whether so many flows, which is all, could be made: else nobody knows what is of no use."""
+        """Return whether so many flows, which is all, could be made: else nobody knows what is of no use."""
         return len(self.flows) == flows and all(self.chains[name].is_sound for name in self.flows)
 
     def check_uses(self) -> None:
-        """Whether everything that topics and flows give has a use."""
+        """Check whether everything that topics and flows give has a use."""
         for name in (*self.incoming, *self.flows):
             chain = self.chains[name]
             node = self.incoming.get(name) or self.flows[name]
@@ -538,7 +538,7 @@ class _Building:
             self._fed[variable] = name
 
     def _check_read(self, name: str, complaint: str, wanted: Iterable[str]) -> None:
-        """Whether all that the stages give is wanted at the end, or read."""
+        """Check whether all that the stages give is wanted at the end, or read."""
         chain = self.chains[name]
         if chain.is_sound:
             for given, edge in chain.unread(self._read_behind(name)):

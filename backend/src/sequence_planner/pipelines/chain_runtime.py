@@ -38,16 +38,16 @@ class RunningChain:
 
     @property
     def due(self) -> float | None:
-        """When time next makes a difference if nothing comes before."""
+        """The moment when time next makes a difference if nothing comes before."""
         moments = [due for course in self._courses if (due := course.due) is not None]
         return min(moments, default=None)
 
     def take(self, record: Record, now: float) -> Record | None:
-        """What comes out at the end because of a record."""
+        """Return what comes out at the end because of a record."""
         return self._push(record, 0, now)
 
     def wake(self, now: float) -> Iterator[Record]:
-        """What comes out at the end because time has passed, from the first stage on."""
+        """Yield what comes out at the end because time has passed, from the first stage on."""
         for index, course in enumerate(self._courses):
             if (due := course.due) is not None and due <= now and (record := course.wake(now)) is not None:
                 came = self._push(record, index + 1, now)
@@ -60,11 +60,11 @@ class RunningChain:
         return {course.name: course for course in self._courses if isinstance(course, Overriding)}
 
     def set_override(self, name: str, fields: Mapping[str, object], now: float, actor: str) -> Record | None:
-        """What comes out because a person sets fields. Raises ValueError for what the model does not allow."""
+        """Return what comes out because a person sets fields. Raises ValueError for what the model does not allow."""
         return self._after(name, self.overrides[name].set_override(fields, now, actor), now)
 
     def clear_override(self, name: str, now: float) -> Record | None:
-        """What comes out because a person takes back what was set."""
+        """Return what comes out because a person takes back what was set."""
         return self._after(name, self.overrides[name].clear_override(now), now)
 
     def _after(self, name: str, record: Record | None, now: float) -> Record | None:
@@ -74,7 +74,7 @@ class RunningChain:
         return self._push(record, index + 1, now)
 
     def edges(self, end: str) -> tuple[EdgeView, ...]:
-        """What has passed each edge; `end` is what the last one leads to."""
+        """Return what has passed each edge; `end` is what the last one leads to."""
         counts = [edge.records for edge in self._edges]
         names = [f"{number} {stage.kind}" for number, stage in enumerate(self._chain.stages, start=1)]
         held = [max(0, before - after) for before, after in pairwise(counts)]
@@ -151,7 +151,7 @@ class RunningOutgoing:
         return message_of(self._pipeline, record)
 
     def observed(self) -> PipelineView:
-        """What has passed each edge."""
+        """Return what has passed each edge."""
         overrides = {name: course.override for name, course in self.chain.overrides.items()}
         topic = self._pipeline.topic.name
         return PipelineView(topic, self._pipeline.variables, self.chain.edges(topic), 0, overrides)

@@ -24,7 +24,7 @@ _PASSING = frozenset({"fold", "debounce", "timeout", "override"})
 
 @dataclass
 class PipelineFindings:
-    """What is wrong with the pipelines, all of it."""
+    """The findings of all that is wrong with the pipelines."""
 
     found: list[Finding] = field(default_factory=list)
 
@@ -95,7 +95,7 @@ class ChainBuilding:
 
     @property
     def chain(self) -> Chain:
-        """What has been made."""
+        """The chain that has been made."""
         return Chain(tuple(self.stages), tuple(self.fields))
 
     @property
@@ -109,7 +109,7 @@ class ChainBuilding:
         }
 
     def _is_about_all(self, index: int) -> bool:
-        """Whether a stage is about every field there is: that is no use of any."""
+        """Return whether a stage is about every field there is: that is no use of any."""
         return self.documents[index].fold == []
 
     @property
@@ -119,7 +119,7 @@ class ChainBuilding:
         return {str(each.variable): str(each.otherwise) for each in made if each and each.otherwise is not None}
 
     def place_of(self, name: str) -> Place:
-        """Where a name that a stage has given is written, or the pipeline itself."""
+        """Return where a name that a stage has given is written, or the pipeline itself."""
         index = self.given.get(name)
         if index is None:
             return self.name.place
@@ -174,7 +174,7 @@ def used_up(stage: StageDocument) -> frozenset[str]:
 
 
 def is_field(fields: RecordType, name: str) -> bool:
-    """Whether there is such a field, by its path."""
+    """Return whether there is such a field, by its path."""
     try:
         find_field(fields, name)
     except NoFieldError:

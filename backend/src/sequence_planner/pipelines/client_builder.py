@@ -31,7 +31,7 @@ Topics = Mapping[SourceText, TopicDocument]
 
 
 def is_part(name: str) -> bool:
-    """Whether a pipeline is not that of a topic."""
+    """Return whether a pipeline is not that of a topic."""
     return " " in name
 
 

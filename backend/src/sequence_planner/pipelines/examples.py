@@ -34,7 +34,7 @@ Plain = dict[str, object]
 
 
 class GivenError(Exception):
-    """What an example gives cannot be taken; the text says why."""
+    """The error that what an example gives cannot be taken; the text says why."""
 
 
 class ExampleHarness(ABC):
@@ -60,7 +60,7 @@ class ExampleHarness(ABC):
 
     @abstractmethod
     def came(self) -> Plain:
-        """What has come of it, by name; None is unknown."""
+        """Return what has come of it, by name; None is unknown."""
 
     def take(self, values: Plain, now: float) -> None:
         """Take a record."""
@@ -201,12 +201,12 @@ class PipelineExample:
 
     @property
     def steps(self) -> list[ExampleStepDocument]:
-        """What happens when."""
+        """The steps that say what happens when."""
         document = self.document
         return document.steps or [ExampleStepDocument(at=0.0, given=document.given, gives=document.gives)]
 
     def failures(self) -> list[Finding]:
-        """What does not come as the example says, at most one finding for each name and moment."""
+        """Return what does not come as the example says, at most one finding for each name and moment."""
         bench = bench_of(self.pipeline, self.pipelines, self.automaton, self.registry)
         try:
             return [Finding(place.place, f"example `{self}`{text}") for place, text in self._run(bench)]
@@ -227,7 +227,7 @@ class PipelineExample:
         return f" at {step.at:g} s" if self.document.steps else ""
 
     def disagreements(self, step: ExampleStepDocument, moment: ExampleMoment) -> Iterator[tuple[SourceText, str]]:
-        """What has not come of a step as the example says, by name."""
+        """Yield what has not come of a step as the example says, by name."""
         for key, value in (step.gives or {}).items():
             wanted = plain(value)
             if key not in moment.came:
@@ -240,7 +240,7 @@ class PipelineExample:
 
 @dataclass(frozen=True)
 class ExampleMoment:
-    """What has come of a pipeline by some moment, and what of it makes no sense; and what has passed each edge."""
+    """The outcome of a pipeline by some moment, and what of it makes no sense; and what has passed each edge."""
 
     came: Plain
     trouble: str | None
@@ -248,7 +248,7 @@ class ExampleMoment:
 
 
 def given_by(step: ExampleStepDocument) -> Plain | None:
-    """What comes in a step of an example."""
+    """Return what comes in a step of an example."""
     return None if step.given is None else {str(key): plain(value) for key, value in step.given.items()}
 
 
@@ -291,7 +291,9 @@ def plain(value: object) -> object:
 
 
 def agrees(came: object, wanted: object) -> bool:
-    """Whether a value is as wanted: numbers but for rounding, and of nested messages the fields that are mentioned."""
+    """Return whether a value is as wanted: numbers but for rounding, and of nested messages the fields that are
+    mentioned.
+    """
     match came, wanted:
         case dict(), dict():
             return all(name in came and agrees(came[name], value) for name, value in wanted.items())
@@ -316,7 +318,7 @@ def _said(value: object) -> str:
 
 
 def failures(examples: Sequence[PipelineExample]) -> list[Finding]:
-    """What does not come as the examples say."""
+    """Return what does not come as the examples say."""
     return [finding for example in examples for finding in example.failures()]
 
 

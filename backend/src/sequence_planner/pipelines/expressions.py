@@ -323,7 +323,7 @@ class Words:
         return self._text[span.start : span.end]
 
     def bracket(self) -> str:
-        """What stands between the bracket at hand and its end; nothing when it is not closed."""
+        """Return what stands between the bracket at hand and its end; nothing when it is not closed."""
         found: list[str] = []
         for word in self._words[self._next + 1 :]:
             if word.kind == "]":

@@ -24,7 +24,7 @@ _STEP = re.compile(r"\.([A-Za-z_]\w*)|\[(\d+)\]")
 
 @dataclass(frozen=True)
 class FieldPath:
-    """Where a field is: its key in the record, and from there through nested messages (names) and lists (indices)."""
+    """The path to a field: its key in the record, and from there through nested messages (names) and lists (indices)."""
 
     text: str
     key: str
@@ -128,14 +128,14 @@ def as_written(value: object) -> str:
 
 
 def is_number(value: object) -> bool:
-    """Whether `value` is a finite number, of a size that a real one can have; a truth value is none."""
+    """Return whether `value` is a finite number, of a size that a real one can have; a truth value is none."""
     if isinstance(value, float):
         return math.isfinite(value)
     return isinstance(value, int) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def fits(type_: FieldType, value: object) -> bool:
-    """Whether `value` is one of `type_`."""
+    """Return whether `value` is one of `type_`."""
     match type_:
         case RealType():
             return is_number(value)
@@ -153,17 +153,17 @@ def fits(type_: FieldType, value: object) -> bool:
 
 
 def is_numeric(type_: FieldType) -> bool:
-    """Whether the values of `type_` are numbers."""
+    """Return whether the values of `type_` are numbers."""
     return isinstance(type_, RealType | IntegerRange)
 
 
 def is_textual(type_: FieldType) -> bool:
-    """Whether the values of `type_` are texts, or names."""
+    """Return whether the values of `type_` are texts, or names."""
     return isinstance(type_, TextType | EnumerationType)
 
 
 def written(type_: FieldType, value: object) -> object:
-    """What `value`, as a document has it, means where a value of `type_` stands; None when it is none.
+    """Return what `value`, as a document has it, means where a value of `type_` stands; None when it is none.
 
     Keys of a document are texts whatever they mean, so a text is also read as a number or a truth value.
     """

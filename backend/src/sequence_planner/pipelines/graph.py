@@ -73,7 +73,7 @@ class Chain:
 
     @property
     def is_timed(self) -> bool:
-        """Whether a record that says the same as the one before can make a difference."""
+        """Return whether a record that says the same as the one before can make a difference."""
         return any(stage.kind in _TIMED for stage in self.stages)
 
 
@@ -108,7 +108,7 @@ class IncomingPipeline:
 
 
 class Joining(StrEnum):
-    """How a flow comes of its sources."""
+    """The way a flow comes of its sources."""
 
     BRANCH = "branch"  # the records of one source, a second time
     INTERLEAVE = "interleave"  # the records of several, in the order of arrival
@@ -202,14 +202,14 @@ class StationPipelines:
 
     @property
     def answers(self) -> Mapping[str, IncomingPipeline]:
-        """What services and actions answer."""
+        """The pipelines of what services and actions answer."""
         responses = [use.response for use in self.services.values()]
         told = [part for use in self.actions.values() for part in (use.feedback, use.result, use.status)]
         return {part.name: part for part in (*responses, *told)}
 
     @property
     def requests(self) -> Mapping[str, OutgoingPipeline]:
-        """What services and actions are asked."""
+        """The pipelines of what services and actions are asked."""
         asked = (*(use.request for use in self.services.values()), *(use.goal for use in self.actions.values()))
         return {part.topic.name: part for part in asked}
 
@@ -268,7 +268,7 @@ class StationPipelines:
 
 @dataclass(slots=True)
 class Edge:
-    """What has passed an edge while the station runs; `at` is on the clock of the pipelines."""
+    """A view of what has passed an edge while the station runs; `at` is on the clock of the pipelines."""
 
     records: int = 0
     last: Record | None = None

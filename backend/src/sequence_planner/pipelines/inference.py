@@ -78,7 +78,7 @@ def _completed(document: ResourceDocument, registry: MessageRegistry, findings: 
 
 
 def _clash(document: ResourceDocument, name: SourceText, other: Mapping[SourceText, VariableDocument]) -> str | None:
-    """What bears the name already that a field would give to a variable."""
+    """Say what bears the name already that a field would give to a variable."""
     if name in FLAGS:
         return "that is a flag of every ability"
     if name in document.abilities:

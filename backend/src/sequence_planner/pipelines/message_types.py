@@ -33,7 +33,7 @@ def _field(registry: MessageRegistry, field: ros.FieldType) -> FieldType:
 
 
 def feeds(field: FieldType, variable: Type) -> bool:
-    """Whether values of a field can be those of a variable; which of them are none shows when they come."""
+    """Return whether values of a field can be those of a variable; which of them are none shows when they come."""
     match field, variable:
         case BooleanType(), BooleanType():
             return True
@@ -47,7 +47,7 @@ def feeds(field: FieldType, variable: Type) -> bool:
 
 
 def fills(value: FieldType, field: FieldType) -> bool:
-    """Whether values of the type of a record's field can be sent in a field of a message."""
+    """Return whether values of the type of a record's field can be sent in a field of a message."""
     match value, field:
         case IntegerRange(), IntegerRange():
             return _within(value, field)

@@ -1,4 +1,4 @@
-"""What travels along the edges of a pipeline: records, and the types of their fields.
+"""The things that travel along the edges of a pipeline: records, and the types of their fields.
 
 A record is a message, or what stages have made of it: named fields, each of a type. A model's variables are finite;
 messages also carry real numbers, texts, lists and nested messages, so an edge has more types than the language has.

@@ -89,7 +89,7 @@ class RunningPipelines:
         self.repeats = {topic: self._may_repeat(names) for topic, names in self._behind.items()}
 
     def _may_repeat(self, names: Iterable[str]) -> bool:
-        """Whether a message that says the same as the one before makes no difference anywhere behind it."""
+        """Return whether a message that says the same as the one before makes no difference anywhere behind it."""
         nodes = [self._nodes[name].description for name in names]
         is_ordered = any(isinstance(each, Flow) and each.joining is Joining.INTERLEAVE for each in nodes)
         return not is_ordered and not any(each.chain.is_timed for each in nodes)
@@ -133,7 +133,7 @@ class RunningPipelines:
 
     @property
     def due(self) -> float | None:
-        """When time next makes a difference if nothing comes before."""
+        """The moment when time next makes a difference if nothing comes before."""
         return min((due for node in self._timed if (due := node.chain.due) is not None), default=None)
 
     def wake(self, now: float) -> dict[str, str]:
@@ -165,7 +165,7 @@ class RunningPipelines:
         return any(sources) if description.joining is Joining.INTERLEAVE else all(sources)
 
     def trouble(self, topic: str) -> str | None:
-        """What in the last messages made no sense, in the topic's pipeline and in the flows behind it."""
+        """Say what in the last messages made no sense, in the topic's pipeline and in the flows behind it."""
         nodes = [self._nodes[name] for name in self._behind[topic]]
         said = [each for node in nodes for each in (node.trouble, node.chain.dropped) if each]
         return "; ".join(dict.fromkeys(said)) or None
@@ -187,7 +187,7 @@ class RunningPipelines:
         self._carry({pipeline: [] if record is None else [record]}, now, self._nodes)
 
     def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
-        """What has passed each edge of each pipeline, or of those `among` these."""
+        """Return what has passed each edge of each pipeline, or of those `among` these."""
         views = {}
         for name, node in self._nodes.items():
             if among is not None and name not in among:

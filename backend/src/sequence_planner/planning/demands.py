@@ -1,4 +1,4 @@
-"""What a start asks of the state before it and leaves in the one after it, as far as its text alone says so."""
+"""Demands of a start on the state before it, and what it leaves in the one after it, as far as its text alone says so."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ class Demands:
                 yield name, value
 
     def excludes(self, other: Demands) -> bool:
-        """Whether `other` cannot start in the same tick after this start and no others."""
+        """Return whether `other` cannot start in the same tick after this start and no others."""
         left = self.left
         for name, values in other.asked.items():
             if not left.get(name, -1) & values:
@@ -185,18 +185,20 @@ class Demands:
         return evaluate(part, self._known) is False
 
     def _apart(self, name: str, some: Some, other: str, others: Some) -> bool:
-        """Whether two variables with these values have none in common."""
+        """Return whether two variables with these values have none in common."""
         return set(self._domains.some(name, some)).isdisjoint(self._domains.some(other, others))
 
     def undone_by(self, other: Demands) -> bool:
-        """Whether `other`, right after this start, leaves every variable as it was before this start."""
+        """Return whether `other`, right after this start, leaves every variable as it was before this start."""
         own, others = self._constants, other._constants
         if own is None or others is None:
             return False
         return all(name in self._before and self._before[name] == value for name, value in {**own, **others}.items())
 
     def commutes_with(self, other: Demands) -> bool:
-        """Whether `other`, where it can start after this, can start before this just as well, to the same effect."""
+        """Return whether `other`, where it can start after this, can start before this just as well, to the same
+        effect.
+        """
         own, others = self._constants, other._constants
         if own is None or others is None:
             return False
@@ -211,7 +213,7 @@ class Demands:
 
     @cached_property
     def _constants(self) -> Mapping[str, Value] | None:
-        """What it writes, if these are constants in any case."""
+        """The values it writes, if these are constants in any case."""
         found: dict[str, Value] = {}
         for written in self.writes:
             if type(written.action.value) is not Constant or written.action.condition is not None:
@@ -229,7 +231,7 @@ class Demands:
         return [(part, read_variables(self._domains.automaton, (part,))) for part in self.others]
 
     def _holds(self, changing: Set[str], state: State) -> bool:
-        """Whether what is asked of what is `changing` is so in `state`."""
+        """Return whether what is asked of what is `changing` is so in `state`."""
         for name in changing & self.asked.keys():
             value = state[name]
             if value is None or not self.asked[name] >> self._domains.number[name][value] & 1:
@@ -240,7 +242,7 @@ class Demands:
 
 
 class Starts:
-    """What each start of an automaton asks for and leaves, made when it is first asked about."""
+    """The demands of each start of an automaton and what it leaves, made when it is first asked about."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self.domains = Domains(automaton)

@@ -29,7 +29,7 @@ _PROCESS_SHARE = 0.9  # of the time, for the process: it says what it has found 
 
 
 class DiagnosisModel(Immutable):
-    """What is planned for; `supervisor_for` is asked which specifications matter."""
+    """The model that is planned for; `supervisor_for` is asked which specifications matter."""
 
     automaton: Automaton
     supervisor: Supervisor
@@ -60,7 +60,7 @@ class Diagnoser:
         self._number = 0
 
     def diagnose(self, task: PlanningTask, budget: Budget) -> Diagnosis:
-        """What is found before the budget is spent; as soon as it is called off, nothing."""
+        """Return what is found before the budget is spent; as soon as it is called off, nothing."""
         if self._companion is None:
             self._heard = SimpleQueue()
             self._companion = Companion(work, self._model, self._heard.put, "diagnosis")

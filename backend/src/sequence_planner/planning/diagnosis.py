@@ -200,7 +200,9 @@ class _Corrections:
 
 
 def _covers(refuted: PlanningTask, proof: Proof, task: PlanningTask) -> bool:
-    """Whether the proof for `refuted` is one for `task` too: no more may happen, and its invariant holds at first."""
+    """Return whether the proof for `refuted` is one for `task` too: no more may happen, and its invariant holds at
+    first.
+    """
     return (
         refuted.goals == task.goals
         and refuted.circumstances.offline <= task.circumstances.offline
@@ -241,7 +243,7 @@ SupervisorFor = Callable[[frozenset[str]], Supervisor]
 
 
 class MemberKind(StrEnum):
-    """What a member of a reason is."""
+    """The kind of a member of a reason."""
 
     VALUE = "value"  # of a variable, in the state to plan from
     SPECIFICATION = "specification"
@@ -282,14 +284,14 @@ def explain(automaton: Automaton, supervisor_for: SupervisorFor, task: PlanningT
 
 
 class _Situation(Immutable):
-    """What is still as it was: a task, the specifications, and the variables with their values."""
+    """The part that is still as it was: a task, the specifications, and the variables with their values."""
 
     task: PlanningTask
     specifications: frozenset[str]
     fixed: frozenset[str]
 
     def members(self, automaton: Automaton) -> Iterator[Member]:
-        """What is still as it was; what the user would rather not hear of comes first."""
+        """Yield what is still as it was; what the user would rather not hear of comes first."""
         circumstances = self.task.circumstances
         for name in automaton.variables:
             if name in self.fixed:
@@ -365,7 +367,7 @@ class _Explanation:
         return Reason(tuple(situation.members(automaton)), minimal and self._certain, proof)
 
     def _monotone(self, task: PlanningTask) -> bool:
-        """Whether one pass is enough. A value that is awaited is none of those that a free variable may have."""
+        """Return whether one pass is enough. A value that is awaited is none of those that a free variable may have."""
         return None not in task.state.values() and synchronise(self._automaton, task.state) == dict(task.state)
 
     def _excluded(self, situation: _Situation) -> tuple[_Situation, Proof] | None:
@@ -393,7 +395,7 @@ class _Explanation:
         return None
 
     def _has_plan(self, situation: _Situation, without: Member) -> bool:
-        """Whether a plan is soon found without a member, with nothing else different: then it is needed."""
+        """Return whether a plan is soon found without a member, with nothing else different: then it is needed."""
         automaton, task = self._automaton, situation.task
         if not task.goals or _is_awaited(without) or any(task.state[name] is None for name in self._free(situation)):
             return False  # one that is awaited, and free, is to have any value but to be awaited still
@@ -456,7 +458,7 @@ class _Explanation:
 
 
 def _is_awaited(member: Member) -> bool:
-    """Whether it is a variable that has no value yet."""
+    """Return whether it is a variable that has no value yet."""
     return member.part is MemberKind.VALUE and member.value is None
 
 
@@ -479,7 +481,7 @@ class DiagnosisRequest(Immutable):
 
     @property
     def task(self) -> PlanningTask:
-        """What cannot be done: goals that are met already take no part in it."""
+        """The task that cannot be done: goals that are met already take no part in it."""
         return PlanningTask(self.state, missing(self.goals, self.state), self.circumstances)
 
 
@@ -493,7 +495,7 @@ class Diagnosis(Immutable):
 def diagnose(
     automaton: Automaton, supervisor: Supervisor, supervisor_for: SupervisorFor, task: PlanningTask, budget: Budget
 ) -> Diagnosis:
-    """Why the goals of `task` cannot be reached, as far as the budget lets it be found."""
+    """Find out why the goals of `task` cannot be reached, as far as the budget lets it be found."""
     reason = explain(automaton, supervisor_for, task, budget.part(_SHARE))
     return Diagnosis(reason, () if reason is None else corrections(automaton, supervisor, task, budget))
 
@@ -537,7 +539,7 @@ DiagnoseFrom = Callable[[State, Budget], Diagnosis]
 
 
 class FromThese(Immutable):
-    """Why there is no plan from any of `states`, of which the `diagnosis` is of the first."""
+    """The reason why there is no plan from any of `states`, of which the `diagnosis` is of the first."""
 
     states: tuple[State, ...]
     diagnosis: Diagnosis
@@ -546,7 +548,7 @@ class FromThese(Immutable):
 def why_from_each(
     states: Sequence[State], goals: Goals, diagnose_from: DiagnoseFrom, budget: Budget
 ) -> Iterator[FromThese]:
-    """Why none of `states` leads to `goals`; those that no reason is found for in time come last, together.
+    """Tell why none of `states` leads to `goals`; those that no reason is found for in time come last, together.
 
     A reason holds for every state that agrees with it, and so for those of the others that do.
     """
@@ -566,7 +568,7 @@ def why_from_each(
 
 
 def holds_for(reason: Reason, state: State, goals: Goals) -> bool:
-    """Whether `reason`, found for another state, excludes every plan from `state` too."""
+    """Return whether `reason`, found for another state, excludes every plan from `state` too."""
     wanted = {goal.name for goal in missing(goals, state)}
     return all(
         state[member.name] == member.value if member.part is MemberKind.VALUE else member.name in wanted

@@ -110,7 +110,7 @@ class OperationTask(RelaxedPredicates):
 
 
 def _attributed(allowed: Mapping[str, Iterable[_Fact]]) -> dict[str, list[_Fact]]:
-    """What each operation brings of what its goal allows."""
+    """Return what each operation brings of what its goal allows."""
     only: set[_Fact] = set()
     for facts in allowed.values():
         values = Counter(name for name, _ in facts)
@@ -134,7 +134,7 @@ _LEAST_TRIMMING = 0.2  # seconds, or as long as finding the plan took
 
 
 class _Work:
-    """What has been done of a task: the ticks so far, where they lead, and what was tried in vain from there."""
+    """The work done on a task: the ticks so far, where they lead, and what was tried in vain from there."""
 
     def __init__(self, task: PlanningTask, space: Space, possible: Possible) -> None:
         self.task = task
@@ -238,7 +238,7 @@ class OperationByOperation:
 
 
 def _walked(space: Space, position: RunPosition, ticks: tuple[PlanTick, ...]) -> RunPosition | None:
-    """Where `ticks` lead, at most as far as the goals; None if that must not be."""
+    """Return where `ticks` lead, at most as far as the goals; None if that must not be."""
     here: RunPosition | None = position
     for tick in ticks:
         moves: tuple[Move, ...] = (tick.effects, *tick.starts)

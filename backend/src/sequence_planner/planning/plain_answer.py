@@ -9,7 +9,8 @@ from sequence_planner.planning.problem import Proof, Verdict
 
 
 class PlainAnswer(Immutable):
-    """Whether there is a plan, and its transitions by name; `minimal` says that it is proven that none has fewer.
+    """The answer whether there is a plan, and its transitions by name; `minimal` says that it is proven that none has
+    fewer.
 
     No plan has up to `searched` transitions, or, when there is a plan, none has fewer than `searched`. `engine` gave
     the answer. That there is none at all is proven by `proof`, or, without one, by having looked at all that can be

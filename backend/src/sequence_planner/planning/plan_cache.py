@@ -1,4 +1,4 @@
-"""What the planner has answered, as far as it answers further questions.
+"""Answers that the planner has given, as far as they answer further questions.
 
 The rest of a plan is a plan from the state at the end of each of its ticks: it was replayed when the whole was. If the
 whole has the fewest ticks, and of these the fewest starts, so has the rest, or a better one would make the whole better
@@ -47,7 +47,7 @@ class PlanCache:
         self._proofs: deque[_Proven] = deque(maxlen=_MOST_PROOFS)
 
     def finding(self, task: PlanningTask) -> Finding | None:
-        """What is known of `task`; None if that is nothing."""
+        """Return what is known of `task`; None if that is nothing."""
         plan = self.plan(task)
         if plan is not None:
             return Finding(plan, searched=len(plan.ticks) if plan.minimal_ticks else 0)

@@ -70,7 +70,7 @@ class PlanningAttempt:
 
     @property
     def answered(self) -> bool:
-        """Whether what the contract asks for has been found."""
+        """True if what the contract asks for has been found."""
         plan = self.plan
         if plan is None:
             return self.impossible
@@ -78,7 +78,7 @@ class PlanningAttempt:
 
     @property
     def impossible(self) -> bool:
-        """Whether there is no plan at all."""
+        """True if there is no plan at all."""
         return self.proof is not None or self.exhausted
 
     @property
@@ -272,7 +272,7 @@ class Planner:
         return replace(outcome, undecided=undecided)
 
     def _without_unreachable(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
-        """What the delete relaxation excludes is looked at only now: most questions have an answer without."""
+        """Look only now at what the delete relaxation excludes: most questions have an answer without."""
         possible, proof = self._reachable(request, outcome.goals)
         if proof is None:
             return outcome
@@ -330,7 +330,7 @@ class Planner:
         return early.plan
 
     def _accepts(self, task: PlanningTask, plan: Plan) -> bool:
-        """Whether it replays; one that is known has been replayed, and one that does is known from now on."""
+        """Return whether it replays; one that is known has been replayed, and one that does is known from now on."""
         if self._recollection.plan(task) == plan:
             return True
         course = self._acceptance.course(task, plan)
@@ -352,7 +352,9 @@ class Planner:
 
 
 def _is_hindered(request: PlanRequest) -> bool:
-    """Whether something is missing, so that goals may well be out of reach, which no engine should have to find out."""
+    """Return whether something is missing, so that goals may well be out of reach, which no engine should have to find
+    out.
+    """
     circumstances = request.circumstances
     absent = circumstances.offline or circumstances.barred
     return bool(absent) or any(value is None for value in request.state.values())

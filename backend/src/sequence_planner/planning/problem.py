@@ -41,7 +41,7 @@ class Goal(Immutable):
 
 
 class Circumstances(Immutable):
-    """What a plan must cope with besides the state.
+    """The circumstances that a plan must cope with besides the state.
 
     Abilities of `offline` resources do not start and their effects do not happen. With `restart`, restart abilities may
     start. No state after step 3 or after a start may satisfy one of `avoid`, nor leave it open. The abilities `barred`
@@ -54,7 +54,7 @@ class Circumstances(Immutable):
     barred: frozenset[str] = frozenset()
 
     def bars(self, ability: Ability) -> bool:
-        """Whether the ability does not start, whatever the state."""
+        """Return whether the ability does not start, whatever the state."""
         absent = ability.resource in self.offline or ability.name in self.barred
         return absent or (ability.restart and not self.restart)
 
@@ -98,7 +98,7 @@ class PlanRequest(Immutable):
 
 
 class Verdict(StrEnum):
-    """What kind of answer it is."""
+    """The kind of an answer."""
 
     FOUND = "found"
     NONE_UP_TO = "none up to"  # none within the searched number of ticks
@@ -118,7 +118,8 @@ Clause = tuple[Literal, ...]
 
 
 class Proof(Immutable):
-    """Why there is no plan at all: an inductive invariant of the state to plan from, in which no goal is reached.
+    """A proof that there is no plan at all: an inductive invariant of the state to plan from, in which no goal is
+    reached.
 
     Every tick leads from states that satisfy all `invariant` clauses into such states, and the goals that are reached
     on the way never are all of them. Of several goals clauses also say whether one has been reached,

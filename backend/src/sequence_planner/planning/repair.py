@@ -85,7 +85,7 @@ class Repair:
         return None
 
     def _nearest(self, ways: Iterable[_Way], begin: ReferenceRun) -> Iterator[_Place]:
-        """Where the fewest variables have other values than where a run begins, with what it has not started there."""
+        """Yield where the fewest variables differ in value from where a run begins, with what it has not started there."""
         values = _values(begin.values, self._variables)
 
         def different(point: tuple[Plan, Waypoint]) -> int:
@@ -150,11 +150,11 @@ class _Place(Immutable):
 
     @property
     def rest(self) -> int:
-        """How many ticks come after it."""
+        """Return how many ticks come after it."""
         return len(self.plan.ticks) - 1 - self.tick
 
     def leading(self, begin: ReferenceRun) -> Iterator[PlanTick]:
-        """What could lead from `begin` to the way: what is left together with the next tick, or before it."""
+        """Yield what could lead from `begin` to the way: what is left together with the next tick, or before it."""
         for tick in self.plan.ticks[self.tick + 1 : self.tick + 2]:
             if not set(self.left).intersection(tick.starts):  # an ability starts once in a tick
                 yield PlanTick(begin.happening((*self.late.effects, *tick.effects)), self.left + tick.starts)
@@ -162,7 +162,7 @@ class _Place(Immutable):
 
 
 def _judged(task: PlanningTask, place: _Place, plan: Plan) -> Finding | None:
-    """What is proven of a plan from a place on the way itself; None if that is not enough."""
+    """Return what is proven of a plan from a place on the way itself; None if that is not enough."""
     if plan.minimal_starts:
         return Finding(plan, searched=len(plan.ticks))
     starts = len(place.left) + sum(len(tick.starts) for tick in place.plan.ticks[place.tick + 1 :])
@@ -175,7 +175,8 @@ def _judged(task: PlanningTask, place: _Place, plan: Plan) -> Finding | None:
 
 
 def _needless(plan: Plan, begin: ReferenceRun, number: int) -> bool:
-    """Whether a start of a tick, by its number, can be left out of `plan`, with all that cannot happen without it.
+    """Return whether a start of a tick, by its number, can be left out of `plan`, with all that cannot happen without
+    it.
 
     Of the rest of a plan, as it is remembered, all starts are needed. Those that lead to it need not be: what they
     bring about may have happened already, or be no longer asked for by a formula that has come further.
@@ -185,7 +186,9 @@ def _needless(plan: Plan, begin: ReferenceRun, number: int) -> bool:
 
 
 def _reaches(plan: Plan, begin: ReferenceRun, number: int, left_out: int) -> bool:
-    """Whether `plan` reaches its goals without a start, by its tick and place there, less what then cannot happen."""
+    """Return whether `plan` reaches its goals without a start, by its tick and place there, less what then cannot
+    happen.
+    """
     run = begin.fork()
     for tick_number, tick in enumerate(plan.ticks):
         if not run.settle(run.happening(tick.effects)):

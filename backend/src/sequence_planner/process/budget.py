@@ -1,4 +1,4 @@
-"""How long a question may be worked on."""
+"""The time for which a question may be worked on."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Budget:
 
     @property
     def spent(self) -> bool:
-        """Whether work on the question must end."""
+        """True if work on the question must end."""
         return self.remaining == 0.0
 
     def require(self) -> None:

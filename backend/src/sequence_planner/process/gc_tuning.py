@@ -34,6 +34,6 @@ def collection_seldom() -> Iterator[None]:
 
 
 def keep_everything() -> None:
-    """What there is now stays: it is looked through once more, and then never again, since each look stops all else."""
+    """Keep what there is now: it is looked through once more, and then never again, since each look stops all else."""
     gc.collect()
     gc.freeze()

@@ -73,7 +73,7 @@ class MemoryLimit:
 
 
 def memory_limit(environ: Mapping[str, str] = os.environ) -> float:
-    """How many GB there are for each process that checks a model. Raises `MemoryLimitError`."""
+    """Return how many GB there are for each process that checks a model. Raises `MemoryLimitError`."""
     text = environ.get(VARIABLE) or str(USUAL)
     try:
         limit = float(text)
@@ -85,7 +85,7 @@ def memory_limit(environ: Mapping[str, str] = os.environ) -> float:
 
 
 def _resident(pid: int) -> int | None:
-    """How many bytes of a process are in memory (proc_pid_statm(5)); None once it has ended."""
+    """Return how many bytes of a process are in memory (proc_pid_statm(5)); None once it has ended."""
     try:
         return int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, IndexError):

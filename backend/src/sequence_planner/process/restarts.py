@@ -1,4 +1,4 @@
-"""How often the launcher has started a part of the station again, told in a file of its folder to who asks for it."""
+"""Restarts of a part of the station by the launcher: their number, told in a file of its folder to who asks for it."""
 
 from __future__ import annotations
 

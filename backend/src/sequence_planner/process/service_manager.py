@@ -1,4 +1,4 @@
-"""What systemd is told of a station that it runs (sd_notify(3)), where it asks for that; else nothing."""
+"""Messages to systemd about a station that it runs (sd_notify(3)), where it asks for that; else nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who runs the program, as the machine knows; what the environment says anybody may write there."""
+"""The user who runs the program, as the machine knows; what the environment says anybody may write there."""
 
 from __future__ import annotations
 

@@ -43,7 +43,8 @@ class EndedEarlyError(Exception):
 async def carried_out(
     work: str, task: object, longest: float, tell: Callable[[object], None] = lambda _: None
 ) -> object:
-    """What `work`, as in `package.module:function`, makes of `task` in a process; `tell` is called with what it tells.
+    """Return what `work`, as in `package.module:function`, makes of `task` in a process; `tell` is called with what it
+    tells.
 
     Raises the `StorageError` that it raises, `TimeoutError` after `longest` seconds, and `EndedEarlyError`.
     """
@@ -68,7 +69,7 @@ async def carried_out(
 
 
 async def _told_of_work(connection: Connection) -> tuple[bool, object]:
-    """Whether it is the last word, and what it says."""
+    """Return whether it is the last word, and what it says."""
     heard, loop = asyncio.Event(), asyncio.get_running_loop()
     loop.add_reader(connection.fileno(), heard.set)
     try:
@@ -230,7 +231,7 @@ def stand_by(connection: Connection, prepare: Callable[[Any], Callable[[Any, Bud
 
 
 class _Inbox:
-    """What a thread of the process has read."""
+    """The messages that a thread of the process has read."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
@@ -302,7 +303,7 @@ Request = TypeVar("Request", bound=LimitedRequest)
 
 @dataclass(frozen=True)
 class Listener(Generic[Request, Answer]):
-    """Who hears of it, on the event loop: an answer, or why there is none and whether to ask the same again."""
+    """The one who hears of it, on the event loop: an answer, or why there is none and whether to ask the same again."""
 
     answered: Callable[[Request, Answer], None]
     failed: Callable[[Request, str, bool], None]
@@ -310,7 +311,7 @@ class Listener(Generic[Request, Answer]):
 
 @dataclass(frozen=True)
 class WorkerTask(Generic[Model, Request]):
-    """What the process does: it is called `name` and lives `serve`, beginning with `model`.
+    """The task of the process: it is called `name` and lives `serve`, beginning with `model`.
 
     A request over which it has died is asked `again` where that is said, and the next one begins with `cautious`, if
     that is another model.
@@ -347,7 +348,7 @@ class AnsweringWorker(Generic[Model, Request, Answer]):
 
     @property
     def busy(self) -> bool:
-        """Whether a question is out, or there can be no process to be asked yet."""
+        """True if a question is out, or there can be no process to be asked yet."""
         return self._asked is not None or (self._companion is None and not self._rests)
 
     def ask(self, request: Request) -> None:
@@ -495,7 +496,7 @@ class WorkEndedError(Exception):
 
 @asynccontextmanager
 async def working(module: str, name: str, *arguments: object) -> AsyncIterator[AsyncIterator[object]]:
-    """What the generator `name` of a module tells, until the block is left: then its process is killed.
+    """Yield what the generator `name` of a module tells, until the block is left: then its process is killed.
 
     It is called with `arguments` and the path of an empty folder. Iterating raises `WorkEndedError` when the process
     ends too early, as it does when it takes more memory than there is for it.
@@ -515,7 +516,7 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
 
 
 async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> object:
-    """What the task `name` of `tasks` finds within so many seconds. Raises `WorkEndedError`."""
+    """Return what the task `name` of `tasks` finds within so many seconds. Raises `WorkEndedError`."""
     try:
         async with asyncio.timeout(patience), working("sequence_planner.editor.checks", name, *arguments) as found:
             async for each in found:
@@ -539,7 +540,7 @@ class Answering:
 
     @property
     def begun(self) -> bool:
-        """Whether it lives, and knows what it was told before."""
+        """True if it lives, and knows what it was told before."""
         return self._kept is not None
 
     async def ask(self, question: Callable[[], object], patience: float) -> object:

@@ -70,7 +70,7 @@ DAYS: Final = 14  # of growth that are told
 
 @dataclass(frozen=True)
 class Day:
-    """What has come in a day that begins at `since`, in seconds since the epoch."""
+    """The growth in a day that begins at `since`, in seconds since the epoch."""
 
     since: float
     records: int
@@ -129,7 +129,9 @@ def orders_size(connection: Connection) -> int:
 
 
 def growth(connection: Connection, now: float, blocks: Blocks) -> tuple[Day, ...]:
-    """What has come in each of the last days of which the database has all, the oldest first; the last one ends now."""
+    """Return what has come in each of the last days of which the database has all, the oldest first; the last one ends
+    now.
+    """
     bounds = run_journal.bounds(connection)
     if bounds is None:
         return ()
@@ -169,7 +171,7 @@ def free_on_disk(path: Path) -> int | None:
 
 
 def are_on_one_disk(path: Path, other: Path) -> bool:
-    """Whether what takes room from one takes it from the other."""
+    """Return whether what takes room from one takes it from the other."""
     first, second = _there(path), _there(other)
     return first is not None and second is not None and first.stat().st_dev == second.stat().st_dev
 
@@ -220,7 +222,7 @@ class RetentionTask:
 
 @dataclass(frozen=True)
 class Done:
-    """How many records, and job orders, events or responses were cut; with `more` another pass finds more to do."""
+    """The numbers of records, and of job orders, events or responses cut; with `more` another pass finds more to do."""
 
     records: int = 0
     orders: int = 0

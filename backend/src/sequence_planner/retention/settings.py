@@ -1,4 +1,4 @@
-"""What `run` is told of how long things are kept."""
+"""Settings of `run` for how long things are kept."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ GB: Final = 1e9  # bytes
 
 @dataclass(frozen=True)
 class Retention:
-    """How long what happened stays in the database, and how many GB of it, whichever comes first; and for how long job
-    orders do that are over, with their events and responses.
+    """The time that what happened stays in the database, or its most GB, whichever comes first; and that for job orders
+    over, with events and responses.
 
     What is cut goes to `folder`, or None for one beside the database; nowhere if not `archived`. Files of the archive
     are removed when they are older than `archive_days` or more than `archive_gb`, where these are given.

@@ -35,7 +35,7 @@ _REMEMBERED = 100
 
 
 class GoalStatus(IntEnum):
-    """What has become of a goal, as action_msgs/msg/GoalStatus has it."""
+    """The state of a goal, as action_msgs/msg/GoalStatus has it."""
 
     UNKNOWN = 0
     ACCEPTED = 1
@@ -47,7 +47,7 @@ class GoalStatus(IntEnum):
 
     @property
     def ended(self) -> bool:
-        """Whether nothing more will come of it."""
+        """True if nothing more will come of it."""
         return self >= GoalStatus.SUCCEEDED
 
 
@@ -55,7 +55,7 @@ _ENDED = {status for status in GoalStatus if status.ended}
 
 
 class GoalOutcome(NamedTuple):
-    """How a goal ended, and the fields of the action's result."""
+    """The way a goal ended, and the fields of the action's result."""
 
     status: GoalStatus
     result: Values

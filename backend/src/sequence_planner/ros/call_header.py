@@ -1,4 +1,4 @@
-"""What stands before a request or a response in Cyclone's mapping of services: whose call it is, and its number."""
+"""Header before a request or a response in Cyclone's mapping of services: whose call it is, and its number."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ _LAST_DOMAIN = 232
 
 
 class DiscoveryRange(StrEnum):
-    """How far to look for peers."""
+    """The distance to look for peers."""
 
     LOCALHOST = "LOCALHOST"
     SUBNET = "SUBNET"
@@ -115,7 +115,9 @@ def enclave_of(node: str) -> str:
 
 
 def arguments(node: str, environ: Mapping[str, str] = os.environ) -> list[str]:
-    """What the context of a node is told of its enclave: nothing without security, or where ROS 2 is told itself."""
+    """Return what the context of a node is told of its enclave: nothing without security, or where ROS 2 is told
+    itself.
+    """
     if not security_wanted(environ) or environ.get(OVERRIDE):
         return []
     return ["--ros-args", "--enclave", enclave_of(node)]

@@ -1,4 +1,4 @@
-"""Who else commands the same devices: two publishers of one topic would fight over it.
+"""Others who command the same devices: two publishers of one topic would fight over it.
 
 A publisher that was killed stays known for as long as its lease lasts, so an endpoint alone proves nothing at once: one
 that is heard speaking is alive, and one that outlasts every lease without a word is taken to be.

@@ -1,4 +1,4 @@
-"""How ROS 2 writes its names into DDS.
+"""The way ROS 2 writes its names into DDS.
 
 DDS knows topics and types by strings. ROS 2 prefixes a topic with `rt`, puts a type into the C++ namespace its
 generated code has there, and hangs what DDS has no place for (type hashes, enclaves) on an entity's user data.

@@ -22,7 +22,7 @@ _MAX_DEPTH = 100_000
 
 @dataclass(frozen=True)
 class QualityOfService:
-    """How samples of a topic are kept and delivered, as ROS 2 has it.
+    """The way samples of a topic are kept and delivered, as ROS 2 has it.
 
     `reliable`: lost samples are sent again. `transient_local`: a late joiner gets the samples kept. `depth`: so many
     samples are kept. `deadline` (s): a sample comes at least so often. `liveliness` (s): a publisher shows that it is
@@ -64,7 +64,7 @@ class QualityOfService:
 
     @property
     def of_a_reader(self) -> QualityOfService:
-        """What a reader has that loses nothing while its process is busy; its depth is nobody else's affair."""
+        """The quality of a reader that loses nothing while its process is busy; its depth is nobody else's affair."""
         return replace(self, depth=max(self.depth, READER_DEPTH)) if self.reliable else self
 
     def __str__(self) -> str:
@@ -95,7 +95,7 @@ _NAMED = {
 
 @dataclass(frozen=True)
 class QualityEvent:
-    """What the middleware says about the quality of service of one of our own endpoints.
+    """A message of the middleware about the quality of service of one of our own endpoints.
 
     `incompatible`: a peer was found that does not agree, so nothing passes between the two. `deadline`: no sample came
     in time, or we sent none. `liveliness`: a publisher has stopped showing that it is alive. `count` is how often this

@@ -125,7 +125,7 @@ class NetworkEndpoint:
 
     @property
     def quality(self) -> QualityOfService:
-        """What it offers or wants; how many samples it keeps is nobody else's affair."""
+        """The quality that it offers or wants; how many samples it keeps is nobody else's affair."""
         return QualityOfService(self.reliable, self.transient_local, deadline=self.deadline, liveliness=self.liveliness)
 
 

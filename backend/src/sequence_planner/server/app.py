@@ -163,7 +163,7 @@ def _workshop(office: IdentityService, model: Path, settings: Settings) -> Works
 
 
 def _backup_desk(office: IdentityService, settings: Settings, controller: ControllerClient) -> BackupService | None:
-    """Who looks after backups; nobody where there is no model to go with the database, or where it is forgotten."""
+    """Return who looks after backups; nobody where there is no model to go with the database, or where it is forgotten."""
     if settings.model is None or settings.demonstration:
         return None
     shelf = Shelf(settings.database, settings.model, settings.backups)
@@ -173,7 +173,7 @@ def _backup_desk(office: IdentityService, settings: Settings, controller: Contro
 def _retention_desk(
     office: IdentityService, settings: Settings, controller: ControllerClient
 ) -> RetentionService | None:
-    """Who sees to it that the database does not grow for ever; nobody where there is none to keep."""
+    """Return who sees to it that the database does not grow for ever; nobody where there is none to keep."""
     if settings.model is None or settings.demonstration:
         return None
     return RetentionService(
@@ -256,7 +256,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
 
 
 def _route(app: FastAPI, settings: Settings) -> None:
-    """What answers each address: the interface, what watches over the station's health, and the page's files."""
+    """Add what answers each address: the interface, what watches over the station's health, and the page's files."""
     for part in (*PARTS, health.health_router, metrics.metrics_router):
         app.router.routes.extend(part.routes)
     check_declared(app.routes)
@@ -264,7 +264,7 @@ def _route(app: FastAPI, settings: Settings) -> None:
 
 
 def _surround(app: FastAPI, settings: Settings) -> None:
-    """What each request passes before its route, and each answer after it; the last is outermost."""
+    """Add what each request passes before its route, and each answer after it; the last is outermost."""
     app.add_middleware(GZipMiddleware, minimum_size=LONG, compresslevel=1)
     app.add_middleware(Remembering)
     app.add_middleware(RequestGuard, endpoint=settings)

@@ -85,7 +85,7 @@ def flow_token(connection: HTTPConnection) -> str | None:
 
 
 def credentials(connection: HTTPConnection) -> Credentials:
-    """What `connection` shows. A key is shown as `Authorization: Bearer sp_…`; other schemes are not ours."""
+    """Return what `connection` shows. A key is shown as `Authorization: Bearer sp_…`; other schemes are not ours."""
     settings: Settings = connection.app.state.settings
     scheme, _, secret = connection.headers.get("authorization", "").partition(" ")
     cookies = connection.cookies
@@ -147,7 +147,7 @@ _LET_IN = (WatchState.WAITING, WatchState.ACTIVE)
 
 @dataclass(frozen=True)
 class Bearer:
-    """Who shows credentials: those of them that are right."""
+    """Somebody who shows credentials: those of them that are right."""
 
     signed_in: SignedIn | None = None
     watch: Watch | None = None
@@ -155,7 +155,7 @@ class Bearer:
 
     @property
     def expires(self) -> float:
-        """When the first of them ends at the latest, in seconds since the epoch."""
+        """The time when the first of them ends at the latest, in seconds since the epoch."""
         return min((each.expires for each in (self.signed_in, self.watch, self.key) if each), default=0.0)
 
 
@@ -184,7 +184,7 @@ class BearerMemory:
                 del self._found[next(iter(self._found))]
 
     def recall(self, shown: Credentials, now: float) -> Bearer | None:
-        """Who has shown this before, if that has not ended since: a session lasts for an hour without a request."""
+        """Return who has shown this before, if that has not ended since: a session lasts for an hour without a request."""
         found = self._found.get(_mark(shown))
         if found is None or now >= found.bearer.expires or abs(now - found.used) > LONGEST_IDLE:
             return None
@@ -236,7 +236,7 @@ def _still_there(bearers: list[Bearer], connection: Connection, now: float) -> l
 
 
 def _is_as_it_was(key: Key, found: Key | None) -> bool:
-    """Whether a key was neither revoked nor given another secret since."""
+    """Return whether a key was neither revoked nor given another secret since."""
     if found is None or found.revoked is not None:
         return False
     return (key.former_until, key.created) == (found.former_until, found.created)
@@ -252,19 +252,19 @@ FORWARDED = ("forwarded", "x-forwarded-for", "x-real-ip")  # somebody stands bet
 
 
 def may_be_demonstration(connection: HTTPConnection, settings: Settings, controller: ControllerClient) -> bool:
-    """Whether a demonstration that was opened may go on: nothing speaks against it."""
+    """Return whether a demonstration that was opened may go on: nothing speaks against it."""
     is_real = controller.view is not None and not controller.view.station.emulated
     return settings.demonstration and is_beside(connection) and not is_real
 
 
 def may_open_demonstration(connection: HTTPConnection, settings: Settings, controller: ControllerClient) -> bool:
-    """Whether a demonstration may be opened: the controller itself says now that its devices are emulated."""
+    """Return whether a demonstration may be opened: the controller itself says now that its devices are emulated."""
     is_emulated = controller.heard and controller.view is not None and controller.view.station.emulated
     return is_emulated and may_be_demonstration(connection, settings, controller)
 
 
 def is_beside(connection: HTTPConnection) -> bool:
-    """Whether the other end of the connection is on this machine."""
+    """Return whether the other end of the connection is on this machine."""
     if connection.client is None or any(name in connection.headers for name in FORWARDED):
         return False
     try:
@@ -329,7 +329,7 @@ class IdentityService:
         self.database.close()
 
     async def read(self, work: Callable[[Connection], T]) -> T:
-        """What `work` reads. Raises `StorageError`, and what `work` raises."""
+        """Return what `work` reads. Raises `StorageError`, and what `work` raises."""
 
         def inside() -> T:
             with self.database.reading() as connection:
@@ -338,7 +338,7 @@ class IdentityService:
         return await to_thread.run_sync(inside, abandon_on_cancel=True)
 
     async def write(self, work: Callable[[Connection], T], *, by: Actor | None = None) -> T:
-        """What `work` gives; what it wrote is durable then, or not written at all. Raises as `read` does.
+        """Return what `work` gives; what it wrote is durable then, or not written at all. Raises as `read` does.
 
         Nothing is written, and `IdentityRefused` (`signed-out`, 401) raised, when the session in which `by` acts has
         ended since the request was let in, or the key was revoked: it may have waited for a hash, or behind others.
@@ -376,11 +376,11 @@ class IdentityService:
             take()
 
     def remembered(self, shown: Credentials) -> Bearer | None:
-        """Who has shown these credentials in the last minutes; nothing is admitted by it."""
+        """Return who has shown these credentials in the last minutes; nothing is admitted by it."""
         return self._memory.recall(shown, self.now())
 
     async def find(self, shown: Credentials) -> Bearer:
-        """Who shows these credentials: either a key, or cookies.
+        """Return who shows these credentials: either a key, or cookies.
 
         Raises `StorageError` when the database does not answer and they are not those of somebody who was let in.
         """
@@ -465,7 +465,7 @@ PUBLIC, WATCH, BESIDE = "public", "watch", "beside"
 
 @dataclass(frozen=True)
 class Admitted:
-    """Who has been let in: `actor`, and of the other three the one that it is."""
+    """Somebody who has been let in: `actor`, and of the other three the one that it is."""
 
     actor: Actor
     signed_in: SignedIn | None = None
@@ -483,7 +483,7 @@ class Admitted:
 
 @dataclass(frozen=True)
 class Access:
-    """What a route declares. Without `role` no person may use it; `public` lets everybody in.
+    """The access that a route declares. Without `role` no person may use it; `public` lets everybody in.
 
     `scope` is that of the keys which may; `watch` lets active watches in, `waiting` those too that nobody has
     confirmed yet; `unready` lets people in who must change their password first. `beside` lets in whoever shows no key
@@ -518,7 +518,9 @@ class Access:
         connection.state.key = admitted.key
 
     async def admit(self, connection: HTTPConnection) -> Admitted:
-        """Who shows what is asked for here. Raises `ProblemFound` 401 or 403, and 503 when nobody can be looked up."""
+        """Return who shows what is asked for here. Raises `ProblemFound` 401 or 403, and 503 when nobody can be looked
+        up.
+        """
         shown = self._asked_for(credentials(connection))
         return self._judge(shown, await bearer_of(connection, shown), address_of(connection))
 
@@ -602,7 +604,7 @@ def beside_or(scope: Scope) -> params.Depends:
 
 
 def declared(route: RouteContext) -> Access:
-    """What a route declares. Raises `RuntimeError` when it declares nothing, or more than once."""
+    """Return what a route declares. Raises `RuntimeError` when it declares nothing, or more than once."""
     found = [each.dependency for each in getattr(route, "dependencies", None) or []]
     accesses = [each for each in found if isinstance(each, Access)]
     if len(accesses) != 1:
@@ -622,7 +624,7 @@ def address_of(connection: HTTPConnection) -> str:
 
 
 async def bearer_of(connection: HTTPConnection, shown: Credentials) -> Bearer:
-    """Who shows these credentials here. A session of a demonstration ends with what allowed it.
+    """Return who shows these credentials here. A session of a demonstration ends with what allowed it.
 
     Raises `StorageError`.
     """

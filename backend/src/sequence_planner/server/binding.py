@@ -21,7 +21,7 @@ NOT_YET_VALID, EXPIRED, HOST_MISMATCH, ADDRESS_MISMATCH = 9, 10, 62, 64
 
 
 def server_context(certificate: Path, private_key: Path) -> ssl.SSLContext:
-    """What the server speaks TLS with: 1.2 or newer.
+    """Return what the server speaks TLS with: 1.2 or newer.
 
     Raises `SettingsError` when the files cannot be read, are not PEM, do not fit together, or need a passphrase.
     """
@@ -55,7 +55,7 @@ def server_context(certificate: Path, private_key: Path) -> ssl.SSLContext:
 
 
 def trusting_context(certificate: Path) -> ssl.SSLContext:
-    """What trusts a server that shows `certificate`, by whatever name, and no other."""
+    """Return what trusts a server that shows `certificate`, by whatever name, and no other."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.check_hostname = False
     context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN
@@ -136,7 +136,7 @@ def check_endpoint(endpoint: Endpoint) -> None:
 
 
 def wrong_with(endpoint: Endpoint) -> Iterator[str]:
-    """Why the server may not be reached so; each names the options that it is about."""
+    """Yield the reasons why the server may not be reached so; each names the options that it is about."""
     is_address = address_of(endpoint.host) is not None
     if not is_address:
         yield f"{endpoint.host!r} is no address; use --host with {LOCALHOST} or one of this machine"

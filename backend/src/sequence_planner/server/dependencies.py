@@ -74,7 +74,7 @@ LiveView = Annotated[StationView, Depends(live_view)]
 
 
 async def actor(request: Request) -> Acting:
-    """Who acts, as `access.allowed` has found out; a public route has nobody."""
+    """Return who acts, as `access.allowed` has found out; a public route has nobody."""
     found: Acting = request.state.actor
     return found
 
@@ -109,7 +109,7 @@ Address = Annotated[str, Depends(address)]
 
 
 async def agent(request: Request) -> str:
-    """What the other end calls itself: `User-Agent`, cut at 200 characters."""
+    """Return what the other end calls itself: `User-Agent`, cut at 200 characters."""
     return request.headers.get("user-agent", "")[:LONGEST_AGENT]
 
 
@@ -158,6 +158,6 @@ UnreadBody = Annotated[bytes, Depends(_unread_body)]
 
 
 def takes(model: type[BaseModel]) -> dict[str, Any]:
-    """What `openapi_extra` of a route says whose `UnreadBody` is a `model`, which `openapi_document` must know."""
+    """Return what `openapi_extra` of a route says whose `UnreadBody` is a `model`, which `openapi_document` must know."""
     schema = {"$ref": f"#/components/schemas/{model.__name__}"}
     return {"requestBody": {"required": True, "content": {JSON: {"schema": schema}}}}

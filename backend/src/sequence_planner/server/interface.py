@@ -104,5 +104,5 @@ def beside_interface(
 
 
 def _operation(route: APIRoute) -> str:
-    """What generated clients call the operation of a route: the name of its function, which no other one has."""
+    """Return what generated clients call the operation of a route: the name of its function, which no other one has."""
     return route.name

@@ -52,7 +52,7 @@ FIGURES_FRESH = 1.0  # seconds
 
 
 class ControllerFigures:
-    """What `controller` has counted and timed of itself."""
+    """The figures that `controller` has counted and timed of itself."""
 
     def __init__(self, controller: ControllerClient) -> None:
         self._controller = controller
@@ -98,7 +98,7 @@ class WayToDatabase:
         self._threads: CapacityLimiter | None = None  # others may have taken all that there are
 
     def is_shut(self, office: IdentityService) -> bool:
-        """Whether nothing has come through it for a while that would have come through another."""
+        """Return whether nothing has come through it for a while that would have come through another."""
         now = time.monotonic()
         if now >= self._due and (self._looking is None or self._looking.done()):
             self._due = now + EVERY
@@ -297,7 +297,7 @@ PREFIX = "sequence_planner"
 def of_server(
     noted: RequestMetrics, failing: Collection[ReadinessCheck], restarts: Mapping[str, int]
 ) -> Iterator[Metric]:
-    """What the server itself knows."""
+    """Yield what the server itself knows."""
     yield InfoMetricFamily(f"{PREFIX}_build", "What is running.", _build())
     ready = GaugeMetricFamily(f"{PREFIX}_ready", "Whether a check of /readyz is passed.", labels=["check"])
     for check in ReadinessCheck:
@@ -328,7 +328,7 @@ def of_server(
 
 
 def of_controller(figures: FiguresView | None) -> Iterator[Metric]:
-    """What the controller has counted and timed since it began; nothing where it does not tell."""
+    """Yield what the controller has counted and timed since it began; nothing where it does not tell."""
     if figures is None:
         return
     yield GaugeMetricFamily(
@@ -369,7 +369,7 @@ def of_controller(figures: FiguresView | None) -> Iterator[Metric]:
 
 
 def of_view(view: StationView | None) -> Iterator[Metric]:
-    """What the station shows; nothing while it is not heard."""
+    """Yield what the station shows; nothing while it is not heard."""
     yield GaugeMetricFamily(f"{PREFIX}_controller_up", "Whether the controller is heard.", view is not None)
     if view is None:
         return
@@ -393,7 +393,7 @@ def of_view(view: StationView | None) -> Iterator[Metric]:
 
 
 def of_backups(newest: float | None) -> Iterator[Metric]:
-    """When the newest backup was made; nothing where there is none."""
+    """Yield the time when the newest backup was made; nothing where there is none."""
     if newest is not None:
         yield GaugeMetricFamily(
             f"{PREFIX}_backup_time_seconds", "When the newest backup was made, in seconds since the epoch.", newest
@@ -415,7 +415,7 @@ def _topics(view: StationView) -> Iterator[Metric]:
 
 
 def of_retention(desk: RetentionService | None) -> Iterator[Metric]:
-    """How much is kept, as it was looked at last, and whether it can be archived; nothing where nothing is kept."""
+    """Yield how much is kept, as it was looked at last, and whether it can be archived; nothing where nothing is kept."""
     if desk is None:
         return
     if desk.sizes is not None:
@@ -464,7 +464,7 @@ FORMATS = {"text/plain": {"schema": {"type": "string"}}, "application/openmetric
 
 
 class _Collected(Collector):
-    """What was collected for one answer."""
+    """The metrics collected for one answer."""
 
     def __init__(self, collected: Iterable[Metric]) -> None:
         self._collected = list(collected)

@@ -108,8 +108,8 @@ WEBHOOKS: Final[dict[str, Any]] = {
 
 
 def websockets(sent: Mapping[str, type[BaseModel]], taken: str) -> dict[str, Any]:
-    """What is said over WebSockets, which OpenAPI has no words for: of each path the models of what the server sends
-    and takes.
+    """Return what is said over WebSockets, for which OpenAPI has no words: the models sent and taken by the server, by
+    path.
     """
     ref = "#/components/schemas/{}"
     takes = {"$ref": ref.format(taken)}

@@ -37,7 +37,7 @@ OPEN_FILES = 8192  # connections that never finish a TLS handshake are kept for 
 
 
 def uvicorn_config(settings: Settings) -> uvicorn.Config:
-    """How uvicorn serves the station. Raises `SettingsError` when its certificate cannot be used."""
+    """Return how uvicorn serves the station. Raises `SettingsError` when its certificate cannot be used."""
     tls, crowd = _tls(settings), Crowd()
     return uvicorn.Config(
         create_app(settings, ControllerClient(settings.controller_socket)),

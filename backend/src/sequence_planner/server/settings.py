@@ -1,4 +1,4 @@
-"""Where the server listens, by which names it is opened, and what it serves."""
+"""The settings of the server: where it listens, by which names it is opened, and what it serves."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class SettingsError(Exception):
 
 @dataclass(frozen=True)
 class StreamLimits:
-    """How much one client of the stream may ask of the server."""
+    """The limits of what one client of the stream may ask of the server."""
 
     queue: int = 32  # messages; a client that is further behind gets one fresh snapshot instead
     send_seconds: float = 5.0  # a client that takes no message for so long is dropped
@@ -39,7 +39,7 @@ class StreamLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class Endpoint:
-    """Where the server is reached, and how; `check_endpoint` says whether it may be.
+    """The place where the server is reached, and how; `check_endpoint` says whether it may be.
 
     `host` is an address of this machine or `localhost`. With `certificate` and `private_key` (PEM) it speaks HTTPS
     itself; with `proxies`, the addresses of reverse proxies that do, it serves those and nobody else. `names` are the
@@ -55,7 +55,7 @@ class Endpoint:
 
     @property
     def https(self) -> bool:
-        """Whether browsers speak HTTPS to it."""
+        """True if browsers speak HTTPS to it."""
         return self.certificate is not None or bool(self.proxies)
 
     @property
@@ -65,7 +65,7 @@ class Endpoint:
 
     @property
     def loopback(self) -> bool:
-        """Whether only this machine reaches it."""
+        """True if only this machine reaches it."""
         found = address_of(self.host)
         return found is not None and found.is_loopback
 
@@ -81,7 +81,7 @@ class Endpoint:
 
     @property
     def address(self) -> str:
-        """What people open: by the first of its names, or else where it listens."""
+        """The address that people open: by the first of its names, or else where it listens."""
         return f"{self.scheme}://{next(self._hosts())}"
 
     def _hosts(self) -> Iterator[str]:

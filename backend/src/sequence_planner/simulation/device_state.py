@@ -1,4 +1,4 @@
-"""How emulated devices stand, kept in a file, so that those of another model can go on from there.
+"""The state of emulated devices, kept in a file, so that those of another model can go on from there.
 
 What exists in both models goes on: measured values, commands that were heard, and the numbers behind discretised
 values. All else begins as the model says. What was under way sets out once more, and faults are over.
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def standing_file(beside: Path) -> Path:
-    """Where the devices that run beside a controller, with its socket in `beside`, are kept; there as soon as they are
+    """Return where the devices that run beside a controller, with its socket in `beside`, are kept; there once they are
     up.
     """
     return beside / "emulated.json"
@@ -41,7 +41,7 @@ def keep(devices: EmulatedDevices, file: Path) -> None:
 
 
 def read(file: Path) -> DeviceState:
-    """How devices stood; nothing where nothing was written, or it cannot be read."""
+    """Return how devices stood; nothing where nothing was written, or it cannot be read."""
     try:
         document: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         return DeviceState(dict(document["values"]), dict(document["messages"]))
@@ -50,4 +50,4 @@ def read(file: Path) -> DeviceState:
 
 
 def _unknown(value: object) -> None:
-    """What no file of JSON can hold, such as bytes: no discretised variable is made of it."""
+    """Return None for what no file of JSON can hold, such as bytes: no discretised variable is made of it."""

@@ -58,7 +58,7 @@ class CommandReader:
 
     @property
     def variables(self) -> frozenset[str]:
-        """What a message says."""
+        """The variables that a message says."""
         return frozenset(name for group in self._groups for name in group.variables)
 
     def read(self, message: Mapping[str, object]) -> tuple[dict[str, Value | None], list[str]]:
@@ -112,7 +112,7 @@ def _plain(value: object) -> object:
 
 
 def _distance(said: object, known: object) -> float:
-    """How far a value is from another; infinite where they are of different kinds, or differ without a measure."""
+    """Return how far a value is from another; infinite where they are of different kinds, or differ without a measure."""
     if isinstance(said, tuple) and isinstance(known, tuple):
         if len(said) != len(known):
             return math.inf
@@ -227,7 +227,7 @@ class EmulatedDevices:
         return None
 
     def emulates(self, resource: str) -> bool:
-        """Whether the devices of a resource are emulated here."""
+        """Return whether the devices of a resource are emulated here."""
         return self._resources is None or resource in self._resources
 
     def observe(self, values: Mapping[str, Value | None]) -> None:
@@ -279,7 +279,7 @@ class EmulatedDevices:
             self.on_change()
 
     def is_underway(self, variables: Iterable[str]) -> bool:
-        """Whether an effect on one of these variables is on its way."""
+        """Return whether an effect on one of these variables is on its way."""
         return any(not each.writes.keys().isdisjoint(variables) for each in self._underway.values())
 
     def put(self, variable: str, value: Value) -> None:
@@ -323,7 +323,9 @@ class EmulatedDevices:
 
     @property
     def due(self) -> float:
-        """When the next thing happens by itself, after the last `advance`: at once where numbers glide; inf if none."""
+        """The time when the next thing happens by itself, after the last `advance`: at once where numbers glide; inf if
+        none.
+        """
         waiting = self._underway.values()
         if any(each.glides or each.resource in self._slowness for each in waiting):
             return -math.inf

@@ -21,7 +21,7 @@ _FORM = "write `faults:` and below it entries such as `- {at: 10, fault: robot s
 
 @dataclass(frozen=True)
 class Scripted:
-    """What happens `at` so many seconds."""
+    """An event that happens `at` so many seconds."""
 
     at: float
     what: Fault | Clear

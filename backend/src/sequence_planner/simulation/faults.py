@@ -21,7 +21,7 @@ from sequence_planner.simulation.messages import CannotSpeakError, Message, spok
 
 
 class FaultKind(StrEnum):
-    """What can be wrong with a device."""
+    """A kind of thing that can be wrong with a device."""
 
     SILENT = "silent"  # it says nothing
     STUCK = "stuck"  # it says what it said when the fault began
@@ -95,7 +95,7 @@ class FaultReader:
         self._targets = dict(_targets(pipelines, emulates))
 
     def read(self, text: str) -> Fault | Clear:
-        """What a line says. Raises `ExpressionError` with the word that does not fit."""
+        """Return what a line says. Raises `ExpressionError` with the word that does not fit."""
         words = list(_WORD.finditer(text))
         if not words:
             raise ExpressionError("write a fault such as `robot silent for 5 s`", Span(0, len(text)))
@@ -233,7 +233,7 @@ class _Underway:
 
 
 class FaultyDevices:
-    """What comes of what `devices` say and hear while they have faults. Times are on the clock of the devices.
+    """The outcome of what `devices` say and hear while they have faults. Times are on the clock of the devices.
 
     `seed` draws which messages are lost.
     """
@@ -284,7 +284,7 @@ class FaultyDevices:
 
     @property
     def due(self) -> float:
-        """When the next thing happens by itself, after the last `advance`; inf if none will."""
+        """The time when the next thing happens by itself, after the last `advance`; inf if none will."""
         ends = min((each.until for each in self._underway if each.until is not None), default=math.inf)
         return min(ends, self.devices.due)
 
@@ -306,13 +306,13 @@ class FaultyDevices:
             return message
 
     def sent(self, topic: str, data: bytes) -> bytes | None:
-        """What a message is on the network: itself, bytes that are no message, or None for one that is lost."""
+        """Return what a message is on the network: itself, bytes that are no message, or None for one that is lost."""
         if self._is_lost(topic):
             return None
         return garbage(data) if self._has(topic, FaultKind.GARBAGE) else data
 
     def hears(self, topic: str) -> bool:
-        """Whether a command that is sent on a topic of the station comes to the device."""
+        """Return whether a command that is sent on a topic of the station comes to the device."""
         return not self._has(topic, *_OFFLINE) and not self._is_lost(topic)
 
     def _end(self, ended: list[_Underway]) -> None:

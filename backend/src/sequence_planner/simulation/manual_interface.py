@@ -35,7 +35,7 @@ Act = Callable[[str], str]
 
 
 def answer_start(line: str) -> str:
-    """How the answer to a line begins."""
+    """Return how the answer to a line begins."""
     return f"{line[:_LONGEST]} => "
 
 

@@ -40,7 +40,7 @@ REPORT_EVERY = 0.1  # seconds between two reports that say the same
 
 @dataclass(frozen=True)
 class Emulation:
-    """What is emulated, and how.
+    """A description of what is emulated, and how.
 
     Devices go `speed` times as fast. `seed` draws all that is random; effects and repeated reports come up to `jitter`
     seconds late. Only the devices of `resources` are emulated; None stands for all. `script` has faults, in the order

@@ -1,4 +1,4 @@
-"""What keeps a station from being started though its model means something."""
+"""Findings that keep a station from being started though its model means something."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sequence_planner.station import ReadyStation
 
 
 def start_findings(station: ReadyStation, needs: StartNeeds) -> list[Finding]:
-    """What keeps it, or its emulated devices, from being started where it is run so; each at its place."""
+    """Return what keeps it, or its emulated devices, from being started where it is run so; each at its place."""
     return [*(emulation_findings(station) if needs.emulated else ()), *_unbridged(station, needs)]
 
 

@@ -1,4 +1,4 @@
-"""Whether the devices of a station can be emulated: every value must be sayable, and every command understandable."""
+"""The check whether a station's devices can be emulated: every value must be sayable, every command understandable."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sequence_planner.station import ReadyStation
 
 
 def emulation_findings(station: ReadyStation) -> list[Finding]:
-    """What of the station cannot be emulated, with the stages that cannot be read backwards."""
+    """Return what of the station cannot be emulated, with the stages that cannot be read backwards."""
     return sorted({*_unspoken(station), *_not_understood(station), *_unbegun(station)})
 
 
@@ -28,7 +28,7 @@ def _unspoken(station: ReadyStation) -> Iterator[Finding]:
 
 
 def _unbegun(station: ReadyStation) -> Iterator[Finding]:
-    """What the devices would have to say at the beginning, all of it together."""
+    """Yield what the devices would have to say at the beginning, all of it together."""
     pipelines, automaton = station.pipelines, station.automaton
     for topic in pipelines.sources:
         try:

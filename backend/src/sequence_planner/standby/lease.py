@@ -154,12 +154,12 @@ class Lease:
 
     @property
     def held(self) -> bool:
-        """Whether it is held at this moment."""
+        """True if it is held at this moment."""
         return self.clock() < self._until
 
     @property
     def is_ours(self) -> bool:
-        """Whether it was taken, and nobody else is known to have taken it since."""
+        """True if it was taken, and nobody else is known to have taken it since."""
         return self._epoch is not None
 
     @property
@@ -169,12 +169,12 @@ class Lease:
 
     @property
     def is_gone(self) -> bool:
-        """Whether it was ours and has not been held for so long that somebody else has it, if anybody is there."""
+        """True if it was ours and has not been held for so long that somebody else has it, if anybody is there."""
         return self.is_ours and self.clock() >= self._until + LEAVES
 
     @property
     def hindrance(self) -> str | None:
-        """Why this station must not take it, whatever becomes of its holder; None if it may."""
+        """The reason why this station must not take it, whatever becomes of its holder; None if it may."""
         seen = self.seen
         if seen is None or seen.model == self.model or seen.holder == self.name:
             return None
@@ -184,7 +184,7 @@ class Lease:
 
     @property
     def is_elsewhere(self) -> bool:
-        """Whether this station stands by: another one was seen to renew it, or this one must not take it."""
+        """True if this station stands by: another one was seen to renew it, or this one must not take it."""
         return not self.is_ours and (self._renewed_elsewhere or self.hindrance is not None)
 
     def try_to_take(self) -> bool:
@@ -205,7 +205,7 @@ class Lease:
         return self._take(seen)
 
     def _may_take(self, seen: Seen, now: float) -> bool:
-        """Whether it may be taken by now from who holds it, or did."""
+        """Return whether it may be taken by now from who holds it, or did."""
         if seen.holder == self.name and seen.epoch == self.unsettled:
             return True
         if self._left_at is not None and now - self._left_at < LASTS:
@@ -232,7 +232,7 @@ class Lease:
         return renewed
 
     def fence(self, connection: Connection) -> bool:
-        """Whether it is held in the transaction of `connection`, until whose end nobody else can take it."""
+        """Return whether it is held in the transaction of `connection`, until whose end nobody else can take it."""
         # Whoever is stopped while it writes must not keep others from the lease for ever.
         connection.execute(text(f"SET LOCAL idle_in_transaction_session_timeout = {_MILLISECONDS}"))
         seen = select(LEASE.c.epoch, LEASE.c.free).where(_THE_ROW)
@@ -277,7 +277,7 @@ class Lease:
             connection.execute(again)
 
     def standing_by(self) -> tuple[str, ...]:
-        """Who else is there, with the same model, and could take it."""
+        """Return who else is there, with the same model, and could take it."""
         with self._writing() as connection:
             rows = connection.execute(select(STANDBYS).where(STANDBYS.c.model == self.model)).all()
         now, before = self.clock(), self._standbys
@@ -351,7 +351,7 @@ def open_lease(url: str, name: str, model: str) -> Lease:
 
 
 def _is_renewed(before: Seen | None, now: Seen | None, name: str) -> bool:
-    """Whether somebody else than `name` holds it now, and has taken or renewed it since it was seen before."""
+    """Return whether somebody else than `name` holds it now, and has taken or renewed it since it was seen before."""
     return before is not None and now is not None and not now.free and now.holder != name and now != before
 
 
@@ -375,7 +375,7 @@ class LeaseLostError(Exception):
 
 @dataclass(frozen=True)
 class LeaseStatus:
-    """How things are: who holds the lease or did last, who else is there, and why this station does not take it."""
+    """The state of things: who holds the lease or did last, who else is there, and why this station does not take it."""
 
     name: str
     active: bool
@@ -401,12 +401,12 @@ class LeaseKeeper:
 
     @property
     def held(self) -> bool:
-        """Whether this station may say something to a device at this moment."""
+        """True if this station may say something to a device at this moment."""
         return self._lease.held
 
     @property
     def taken_from(self) -> str | None:
-        """Who commanded before this station did; None if that was nobody else."""
+        """The station that commanded before this one did; None if that was nobody else."""
         return self._lease.taken_from
 
     @property
@@ -436,7 +436,9 @@ class LeaseKeeper:
         await asyncio.shield(self._stands_by)
 
     async def settled(self, within: float) -> bool:
-        """Whether all that was accepted before it was taken is known to be recorded, by now or in so many seconds."""
+        """Return whether all that was accepted before it was taken is known to be recorded, by now or in so many
+        seconds.
+        """
         await asyncio.wait({self._settled}, timeout=within)
         return self._settled.done()
 

@@ -1,1 +1,1 @@
-"""How a station begins: what its processes import, what is done first, and what keeps them running."""
+"""The beginning of a station: what its processes import, what is done first, and what keeps them running."""

@@ -85,7 +85,7 @@ class UnderWay:
         self._begin_devices(anew=note is not None and note.reset)
 
     def _failure(self, since: float) -> str | None:
-        """Why the start has failed; None while it has not."""
+        """Return why the start has failed; None while it has not."""
         for part in (self._controller, self._emulator):
             code = None if part is None else part.ended
             if part is not None and code is not None and code != OVERTAKEN:

@@ -1,4 +1,4 @@
-"""What the processes of a station import: the fork server does so once for all of them, while the launcher starts.
+"""The imports of a station's processes: the fork server does them once for all, while the launcher starts.
 
 What is needed first stands first: a process is forked as soon as all is imported that it needs. The server has most to
 import that nobody else needs, so what it does without comes after it. What a station needs only when it runs is

@@ -1,4 +1,4 @@
-"""What the launcher has other processes do as a station begins.
+"""The tasks that the launcher has other processes do as a station begins.
 
 It lives as long as the station, and has no more use for models and databases then: what reads them would take several
 times as long to import as all that it needs, and as much memory. So a process does that which is soon over.
@@ -19,7 +19,7 @@ _FUNCTIONS: Final = "sequence_planner.startup.prestart_tasks"
 
 @dataclass(frozen=True)
 class StationBeginning:
-    """What shall begin, see `launcher.Launch`; where it is `shared` several stations have that database."""
+    """The station that shall begin, see `launcher.Launch`; where it is `shared` several stations have that database."""
 
     model: Path
     database: str
@@ -29,7 +29,7 @@ class StationBeginning:
 
 @dataclass(frozen=True)
 class Begun:
-    """What is `said` to people, a line each, and why the station cannot begin, if it is `refused`."""
+    """The lines `said` to people, and why the station cannot begin, if it is `refused`."""
 
     said: tuple[str, ...] = ()
     refused: str | None = None
@@ -42,7 +42,7 @@ def begin(what: StationBeginning) -> Begun:
 
 
 def first_start(model: Path, database: str, endpoint: Endpoint, *, at_terminal: bool) -> str | None:
-    """How the first administrator gets in, None when there is one already. Raises `SettingsError`.
+    """Return how the first administrator gets in, None when there is one already. Raises `SettingsError`.
 
     The link is a secret for whoever sits `at_terminal`; where there is none the output is kept somewhere, such as in a
     journal that others read, and then it is only said how to get it.
@@ -52,7 +52,7 @@ def first_start(model: Path, database: str, endpoint: Endpoint, *, at_terminal: 
 
 
 def _asked(function: str, model: Path, *arguments: object) -> Any:  # noqa: ANN401 (what each of them sends)
-    """What a process of its own answers. Raises `SettingsError` where it does not."""
+    """Return what a process of its own answers. Raises `SettingsError` where it does not."""
     ours, theirs = Pipe(duplex=False)
     with ours:
         working = start(f"{_FUNCTIONS}:{function}", *arguments, name="beginning", connection=theirs)

@@ -1,4 +1,4 @@
-"""What is done once as a station begins, in a process of its own: see `prestart`."""
+"""Tasks that are done once as a station begins, in a process of its own: see `prestart`."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _lines(what: StationBeginning) -> Iterator[str]:
 
 
 def _unusable(model: Path) -> str | None:
-    """Why the model cannot be used, if it cannot."""
+    """Return why the model cannot be used, if it cannot."""
     try:
         prepare_station(model)
     except ModelError as error:
@@ -66,7 +66,9 @@ def _unusable(model: Path) -> str | None:
 
 
 def _has_draft(url: str) -> bool:
-    """Whether somebody has edited the model in the browser, so that it can be repaired there. No database is made."""
+    """Return whether somebody has edited the model in the browser, so that it can be repaired there. No database is
+    made.
+    """
     try:
         with contextlib.closing(Database.open(url, create=False)) as database:
             database.upgrade()

@@ -30,7 +30,7 @@ Process = Child | subprocess.Popen[bytes]
 
 
 class Program(Protocol):
-    """What a process runs."""
+    """The program that a process runs."""
 
     def start(self, more: Sequence[str], environment: Mapping[str, str], standard_input: int) -> Process:
         """Start it with `more` arguments, and with the end of a pipe as its standard input."""
@@ -133,12 +133,12 @@ class StationProcess:
 
     @property
     def steady(self) -> bool:
-        """Whether it has lived long enough to have been able to run."""
+        """True if it has lived long enough to have been able to run."""
         return self._age >= STEADY
 
     @property
     def lives(self) -> bool:
-        """Whether it runs."""
+        """True if it runs."""
         return self.process is not None and self.process.poll() is None
 
     @property
@@ -162,7 +162,7 @@ class StationProcess:
         self.ended = None if self.process is None else self.process.poll()
 
     def said(self, code: int) -> str:
-        """Why it has ended: what it said last, if anything."""
+        """Return why it has ended: what it said last, if anything."""
         with contextlib.suppress(OSError):
             if self._last_words is not None and (words := self._last_words.read_text(encoding="utf-8").strip()):
                 return words

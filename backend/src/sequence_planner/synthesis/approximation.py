@@ -125,7 +125,7 @@ class Separation:
         return tuple(candidates[each] for each in sorted(chosen))
 
     def over(self, diagrams: Diagrams, states: Function) -> Function:
-        """Which values the variables and flags of `diagrams` have in `states`."""
+        """Return which values the variables and flags of `diagrams` have in `states`."""
         bits = self._diagrams.bits.keys()
         flags = [name for name in diagrams.names if name not in bits]
         kept = [name for name in diagrams.names if name in bits]

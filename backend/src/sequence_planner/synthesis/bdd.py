@@ -83,15 +83,15 @@ class Diagrams:
 
     @property
     def nodes(self) -> int:
-        """How many nodes there are now."""
+        """The number of nodes that there are now."""
         return self._manager.approx_num_inner_nodes()
 
     def bit(self, number: int) -> Function:
-        """Where a bit is set."""
+        """Return where a bit is set."""
         return self._manager.var(number)
 
     def values(self, name: str) -> Values:
-        """Where the variable has each of its values."""
+        """Return where the variable has each of its values."""
         return self._numbered(name, after=False)
 
     def values_after(self, name: str) -> Values:
@@ -112,18 +112,18 @@ class Diagrams:
 
     @staticmethod
     def digit(bits: Sequence[int], bit: int, position: int) -> bool:
-        """Whether `bit` of `bits` is set in the number `position`."""
+        """Return whether `bit` of `bits` is set in the number `position`."""
         return bool(position >> (len(bits) - 1 - bits.index(bit)) & 1)
 
     def conjunction(self, functions: Iterable[Function]) -> Function:
-        """Where all of them hold."""
+        """Return where all of them hold."""
         together = self.true
         for function in functions:
             together &= function
         return together
 
     def disjunction(self, functions: Iterable[Function]) -> Function:
-        """Where one of them holds."""
+        """Return where one of them holds."""
         together = self.false
         for function in functions:
             together |= function
@@ -142,17 +142,17 @@ class Diagrams:
         return self.cube(bit for name in names for bit in self.bits[name])
 
     def exists(self, function: Function, names: Iterable[str]) -> Function:
-        """Where `function` holds for some values of these variables."""
+        """Return where `function` holds for some values of these variables."""
         quantified = self.bits_of(names)
         return function.exists(quantified) if quantified != self.true else function
 
     @cached_property
     def valid(self) -> Function:
-        """Where every variable has one of its values."""
+        """The states where every variable has one of its values."""
         return self.valid_of(reversed(self.names))
 
     def valid_of(self, names: Iterable[str]) -> Function:
-        """Where these have one of their values."""
+        """Return where these have one of their values."""
         return self.conjunction(self.disjunction(self.values(name).values()) for name in names)
 
     def count(self, states: Function) -> int:
@@ -257,7 +257,7 @@ class Diagrams:
         return functions[states.root]
 
     def _by_value(self, node: Function, name: str) -> list[Function]:
-        """What is left of `node`, which tests no variable before this one, at each of its values."""
+        """Return what is left of `node`, which tests no variable before this one, at each of its values."""
         left = [node]
         for bit in self.bits[name]:
             split: list[Function] = []
@@ -371,7 +371,7 @@ def _slid(order: list[int], groups: Groups) -> list[int]:
 
 
 def _cost(arranged: Sequence[int], begin: int, place: list[int], near: Groups) -> int:
-    """How far the groups `near` are stretched with a window from `begin` on arranged so; `place` is changed."""
+    """Return how far the groups `near` are stretched with a window from `begin` on arranged so; `place` is changed."""
     for position, member in enumerate(arranged, begin):
         place[member] = position
     total = 0

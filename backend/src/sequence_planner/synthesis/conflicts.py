@@ -15,7 +15,7 @@ from sequence_planner.synthesis.transition_relation import NodeLimit, Plant, Rea
 
 @dataclass(frozen=True)
 class Meeting:
-    """What two finishes see when they meet: variables as just measured, flags as before.
+    """The values that two finishes see when they meet: variables as just measured, flags as before.
 
     `trace` ends with the tick in which they do; None if that takes too long to find.
     """
@@ -27,7 +27,8 @@ class Meeting:
 def conflicting_finishes(
     automaton: Automaton, names: Sequence[str], abilities: tuple[str, str], variable: str, effort: NodeLimit
 ) -> Meeting | None:
-    """Where two abilities both finish in a reachable state and would write `variable` differently; None if nowhere.
+    """Return where two abilities both finish in a reachable state and would write `variable` differently; None if
+    nowhere.
 
     `names` is a cone of influence of both finishes. Of the supervisor no more is used than that it keeps the station
     out of what specifications over `names` forbid, and any operation may be active at any time, as nothing here decides

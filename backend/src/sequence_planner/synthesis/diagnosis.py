@@ -1,4 +1,4 @@
-"""Why there is no supervisor: what the devices can do from an initial state on, or why rest cannot be reached."""
+"""The reasons why there is no supervisor: what devices can do from an initial state on, or why rest cannot be reached."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from sequence_planner.synthesis.transition_relation import Plant
 
 @dataclass(frozen=True)
 class Unmeetable:
-    """What is wrong and what to do, and lines that tell the `trace`, if one was found in reasonable time."""
+    """A statement of what is wrong and what to do, and lines that tell the `trace`, if one was found in reasonable
+    time.
+    """
 
     message: str
     lines: tuple[str, ...]
@@ -23,7 +25,7 @@ class Unmeetable:
 
 
 def why_unmeetable(plant: Plant, forbidden: Mapping[str, Function]) -> Unmeetable:
-    """Why not all initial states of `plant` are safe, given what each specification forbids.
+    """Return why not all initial states of `plant` are safe, given what each specification forbids.
 
     First a way into a forbidden state without any start is looked for. If there is none, rest cannot be reached.
     """
@@ -101,7 +103,7 @@ def _what_to_do(plant: Plant) -> str:
 
 
 def _barred(plant: Plant, forbidden: Mapping[str, Function], unsafe: Function, begin: int, trace: Trace) -> str:
-    """Where a way to rest, of which the first `begin` steps cannot be prevented, comes to what is not safe."""
+    """Return where a way to rest, of which the first `begin` steps cannot be prevented, comes to what is not safe."""
     diagrams = plant.diagrams
     rest = "a marked state" if plant.automaton.one_at_a_time else "rest"
     for number, step in enumerate(trace.steps[begin:], start=begin + 1):

@@ -151,7 +151,7 @@ class Primes:
         return found
 
     def _freed(self, cube: Cube) -> list[Function]:
-        """What the cube holds without its literal of each variable."""
+        """Return what the cube holds without its literal of each variable."""
         true = self._diagrams.true
         literals = [self._literal(a, cube[a]) if cube[a] != self.whole[a] else true for a in self.axes]
         before = [true]
@@ -164,12 +164,12 @@ class Primes:
         return freed
 
     def _gain(self, freed: Function, wanted: Function) -> int:
-        """How much of `wanted` is in what is left of a cube; less than nothing if that is too large."""
+        """Return how much of `wanted` is in what is left of a cube; less than nothing if that is too large."""
         self.effort.spend(freed)
         return -1 if (freed & self._off).satisfiable() else self._diagrams.count(freed & wanted)
 
     def fits(self, cube: Cube) -> bool:
-        """Whether the cube holds nothing of `off`."""
+        """Return whether the cube holds nothing of `off`."""
         self.effort.spend(self._off)
         return not (self.function(cube) & self._off).satisfiable()
 
@@ -269,7 +269,7 @@ class _Cover:
         self.best = self._irredundant(tuple(found))
 
     def literals(self, cubes: Iterable[Cube]) -> int:
-        """How many the cubes have together."""
+        """Return how many literals the cubes have together."""
         return sum(len(self._primes.restricted(cube)) for cube in cubes)
 
     def improve(self, needed: int) -> None:
@@ -362,7 +362,7 @@ _MOST_LISTED = 4  # values within a range; beyond them its bounds are said
 
 
 def worded(types: Mapping[str, Type], diagrams: Diagrams, cubes: Sequence[Cube], allowed: bool) -> Expression:
-    """Where one of `cubes` holds; or else, if they are not `allowed`, where none of them does."""
+    """Return where one of `cubes` holds; or else, if they are not `allowed`, where none of them does."""
     parts = [tuple(_literals(types, diagrams, cube, allowed)) for cube in cubes]
     if allowed:
         return _either(*(conjunction(*part) for part in parts))
@@ -370,7 +370,7 @@ def worded(types: Mapping[str, Type], diagrams: Diagrams, cubes: Sequence[Cube],
 
 
 def count_literals(expression: Expression) -> int:
-    """How many comparisons, memberships and truth values a person reads."""
+    """Return how many comparisons, memberships and truth values a person reads."""
     match expression:
         case Variable() | Comparison() | Membership():
             return 1
@@ -442,7 +442,7 @@ class Saying:
         self._effort = effort
 
     def shortest(self) -> Expression | None:
-        """Where `on` holds and `off` does not; None if it is too long, or not found."""
+        """Return where `on` holds and `off` does not; None if it is too long, or not found."""
         if not self._on.satisfiable():
             return FALSE
         needed = len(self._separation.names)  # each of them has to be read
@@ -512,7 +512,7 @@ class Saying:
 
     @cached_property
     def _initially(self) -> dict[str, Value]:
-        """What has which value in an initial state, of what tells the sets apart."""
+        """The values in an initial state of what tells the sets apart."""
         plant = self._plant
         state = plant.diagrams.pick(plant.initial)
         assert state is not None
@@ -528,7 +528,7 @@ class Saying:
 
 
 def _length(expression: Expression) -> tuple[int, bool]:
-    """How long it is to read; of two that are alike, a conjunction says one reason after the other."""
+    """Return how long it is to read; of two that are alike, a conjunction says one reason after the other."""
     mixed = isinstance(expression, Or) and any(isinstance(part, And) for part in expression.operands)
     return count_literals(expression), mixed
 
@@ -544,7 +544,8 @@ _MOST_SYNTHESES = 8  # to see for which specifications' sake rest is lost
 
 @dataclass(frozen=True)
 class SupervisorGuard:
-    """Where the supervisor allows some starts, as far as the station can get under it and the written guard holds.
+    """A guard: where the supervisor allows some starts, as far as the station can get under it and the written guard
+    holds.
 
     `starts` are the abilities it is added to: several where they are transitions of one event. `expression` is None
     where no short one was found: then only the states themselves say it, and `blocked` are some conditions wherever one
@@ -609,7 +610,9 @@ def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) ->
 
 
 def _reached(supervision: Supervision) -> Function:
-    """What is reached under the supervisor; where that is too much, what is safe: then guards are longer, and right."""
+    """Return what is reached under the supervisor; where that is too much, what is safe: then guards are longer, and
+    right.
+    """
     try:
         return supervision.reachable(supervised=True, effort=NodeLimit(MOST_EFFORT))
     except TooMuchError:
@@ -639,7 +642,7 @@ def _merged(
 
 
 class _Reasons:
-    """Why starts must wait."""
+    """The reasons why starts must wait."""
 
     def __init__(self, supervision: Supervision) -> None:
         plant, diagrams = supervision.plant, supervision.plant.diagrams

@@ -1,4 +1,4 @@
-"""Whether whatever some steps can do, others can as well: then all that the former lead to, the latter do, too."""
+"""The check whether others can do whatever some steps can: then all that the former lead to, the latter do, too."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from sequence_planner.synthesis.transition_relation import (
 def included(
     diagrams: Diagrams, some: Iterable[TransitionStep], others: Sequence[TransitionStep], states: Function
 ) -> bool:
-    """Whether each of `some`, taken from any of `states`, is one of `others` as well.
+    """Return whether each of `some`, taken from any of `states`, is one of `others` as well.
 
     False also where that is only not seen: a step is looked for among those of its kind that write the same.
     """
@@ -46,7 +46,7 @@ def _is_one_of(diagrams: Diagrams, step: TransitionStep, others: Sequence[Transi
 
 
 def _reacts(diagrams: Diagrams, one: Reaction, other: Reaction, states: Function) -> bool:
-    """Whether `other` can bring about whatever `one` can; what a reaction says nothing of stays as it is."""
+    """Return whether `other` can bring about whatever `one` can; what a reaction says nothing of stays as it is."""
     parts = {part.decides: part.relation for part in one.parts}
     wanted = {part.decides: part.relation for part in other.parts}
     if not parts.keys() <= wanted.keys():

@@ -36,7 +36,7 @@ class Conflict:
 
 
 def minimal_conflict(automaton: Automaton, trace: Trace | None = None) -> Conflict:
-    """What is in conflict in an `automaton` without supervisor. `trace` shows it, and so says where to begin."""
+    """Return what is in conflict in an `automaton` without supervisor. `trace` shows it, and so says where to begin."""
     return _Deletion(automaton).of(trace)
 
 
@@ -74,7 +74,7 @@ class _Deletion:
         yield everything, frozenset()
 
     def _conflicting(self, specifications: frozenset[str], uncontrollable: frozenset[str]) -> bool:
-        """Whether there is no supervisor with these alone; no longer found out after too many syntheses."""
+        """Return whether there is no supervisor with these alone; no longer found out after too many syntheses."""
         self._left -= 1
         if self._left < 0:
             return False

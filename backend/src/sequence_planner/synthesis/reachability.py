@@ -75,7 +75,7 @@ class _Closure:
 
 
 def _branches(function: Function, level: int) -> tuple[Function, Function]:
-    """What is left of it where the bit at `level`, none after its first one, is set, and where it is not."""
+    """Return what is left of it where the bit at `level`, none after its first one, is set, and where it is not."""
     cofactors = function.cofactors()
     return (function, function) if cofactors is None or function.node_level() != level else cofactors
 
@@ -117,7 +117,7 @@ class Tracer:
         return Trace(first, forbidden_by, tuple(self._replayed(first, way[1:])))
 
     def leads(self, goal: Function, begin: Function) -> bool:
-        """Whether some of `begin` leads into `goal`, and that is soon found."""
+        """Return whether some of `begin` leads into `goal`, and that is soon found."""
         return self._layers(goal, begin) is not None
 
     def onward(self, trace: Trace, goal: Function) -> Trace | None:

@@ -49,7 +49,7 @@ class Supervision:
 
     @property
     def possible(self) -> bool:
-        """Whether there is a supervisor: all initial states are safe."""
+        """True if there is a supervisor: all initial states are safe."""
         return self.plant.initial & self.safe == self.plant.initial
 
     def reachable(self, supervised: bool, effort: NodeLimit | None = None) -> Function:
@@ -127,7 +127,7 @@ def supervised(automaton: Automaton) -> Supervision:
 
 
 def supervisor(supervision: Supervision) -> Supervisor:
-    """What is handed on: the safe set, and for each ability where it allows its start."""
+    """Return what is handed on: the safe set, and for each ability where it allows its start."""
     diagrams = supervision.plant.diagrams
     guards: dict[str, StateSet] = {}
     nearness = Nearness(supervision.plant.automaton, diagrams.names)
@@ -161,7 +161,9 @@ def separated(plant: Plant, yes: Function, no: Function, around: Iterable[frozen
 
 
 def alike(one: Automaton, other: Automaton) -> bool:
-    """Whether the safe states of both are the same for certain: they differ at most in what does not bear on these."""
+    """Return whether the safe states of both are the same for certain: they differ at most in what does not bear on
+    these.
+    """
     return _bearing_on_safety(one) == _bearing_on_safety(other)
 
 

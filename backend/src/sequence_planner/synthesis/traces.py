@@ -31,7 +31,7 @@ Valuation = Mapping[str, Value]
 
 
 class StepKind(StrEnum):
-    """What happens in a step."""
+    """The kinds of what happens in a step."""
 
     TICK = "tick"  # steps 1 to 3 of a tick: effects are sensed, abilities finish
     START = "start"

@@ -50,7 +50,7 @@ from sequence_planner.synthesis.bdd import (
 
 
 class Nearness:
-    """What is near to what in `automaton`, among the variables `names`."""
+    """The nearness of things in `automaton`, among the variables `names`."""
 
     def __init__(self, automaton: Automaton, names: Collection[str]) -> None:
         self._automaton = automaton
@@ -93,7 +93,7 @@ class ExpressionReader:
         self.lookup = lookup
 
     def predicate(self, expression: Expression) -> Function:
-        """Where a predicate holds."""
+        """Return where a predicate holds."""
         diagrams = self._diagrams
         match expression:
             case Constant(value):
@@ -119,7 +119,7 @@ class ExpressionReader:
                 raise TypeError(f"{expression} is no predicate of a state")
 
     def values(self, expression: Expression) -> Values:
-        """Where an expression has each of the values that it can have."""
+        """Return where an expression has each of the values that it can have."""
         match expression:
             case Constant(value):
                 return {value: self._diagrams.true}
@@ -153,14 +153,14 @@ _AND = BooleanOperator.AND
 
 
 class TransitionStep(Protocol):
-    """What can happen in one step. It touches no bit above the level `top`."""
+    """A step, with what can happen in it. It touches no bit above the level `top`."""
 
     @property
     def top(self) -> int:
         """The first level that it reads or writes."""
 
     def after(self, states: Function) -> Function:
-        """Where it can lead from `states`."""
+        """Return where it can lead from `states`."""
 
     def before(self, states: Function) -> Function:
         """From where it can lead to `states`."""
@@ -168,7 +168,7 @@ class TransitionStep(Protocol):
 
 @dataclass(frozen=True)
 class BitUpdate:
-    """Where `guard` holds, the bits `written` take the values of `values`."""
+    """An update by which, where `guard` holds, the bits `written` take the values of `values`."""
 
     guard: Function
     values: Function
@@ -176,7 +176,7 @@ class BitUpdate:
     top: int
 
     def after(self, states: Function) -> Function:
-        """Where it leads from `states`."""
+        """Return where it leads from `states`."""
         return states.apply_exists(_AND, self.guard, self.written) & self.values
 
     def before(self, states: Function) -> Function:
@@ -186,7 +186,7 @@ class BitUpdate:
 
 @dataclass(frozen=True)
 class Stutter:
-    """Where `guard` holds, nothing changes."""
+    """A step by which, where `guard` holds, nothing changes."""
 
     guard: Function
     top: int
@@ -210,7 +210,7 @@ class TransitionRelation:
     top: int
 
     def after(self, states: Function) -> Function:
-        """Where it leads from `states`."""
+        """Return where it leads from `states`."""
         return states.apply_exists(_AND, self.relation, self.now).substitute(self.to_now)
 
     def before(self, states: Function) -> Function:
@@ -274,7 +274,7 @@ def _change(
 def _cases(
     diagrams: Diagrams, reader: ExpressionReader, actions: Sequence[Assignment], guard: Function
 ) -> Iterator[tuple[Function, dict[str, Value]]]:
-    """Where which constants are written."""
+    """Yield where which constants are written."""
     if not guard.satisfiable():
         return
     if not actions:
@@ -307,7 +307,7 @@ class Flip:
 
 
 def same(diagrams: Diagrams, one: Values, other: Values) -> Function:
-    """Where two have the same value."""
+    """Return where two have the same value."""
     return diagrams.disjunction(where & other[value] for value, where in one.items() if value in other)
 
 
@@ -322,7 +322,8 @@ class TooMuchError(Exception):
 
 
 class NodeLimit:
-    """What may still be spent: the nodes of all sets from which steps are taken or that are compared, by samples.
+    """The limit of what may still be spent: the nodes of all sets from which steps are taken or that are compared, by
+    samples.
 
     What is spent is spent of the `whole` as well, if it is a part of one.
     """
@@ -364,7 +365,7 @@ class _Limited:
         return self.step.top
 
     def after(self, states: Function) -> Function:
-        """Where it can lead from `states`."""
+        """Return where it can lead from `states`."""
         self.effort.spend(states)
         return self.step.after(states)
 
@@ -379,7 +380,7 @@ class _Limited:
 
 @dataclass(frozen=True)
 class Finish:
-    """Where an ability finishes, and for each variable where it writes it, and which values."""
+    """The finish of an ability: where it finishes, and for each variable where it writes it, and which values."""
 
     guard: Function
     writes: Mapping[str, tuple[Function, Values]]
@@ -426,7 +427,7 @@ class Reaction:
         self.top = diagrams.top([part.relation for part in ordered], [now for now, _ in pairs])
 
     def after(self, states: Function) -> Function:
-        """Where it can lead from `states`."""
+        """Return where it can lead from `states`."""
         for relation, done_with in self._forwards:
             states = states.apply_exists(_AND, relation, done_with)
         return states.substitute(self._to_now)
@@ -487,7 +488,7 @@ class Reaction:
         return found
 
     def disputes(self, one: Finish, other: Finish, name: str) -> Function:
-        """Where both would write the variable, and different values."""
+        """Return where both would write the variable, and different values."""
         (where, values), (other_where, other_values) = one.writes[name], other.writes[name]
         return where & other_where & ~same(self._diagrams, values, other_values)
 
@@ -509,7 +510,7 @@ class Reaction:
         return after
 
     def _computed(self, finished: Mapping[str, Values]) -> Iterator[ReactionPart]:
-        """What finishes write, as relations."""
+        """Yield what finishes write, as relations."""
         for name, values in finished.items():
             becomes = same(self._diagrams, values, self._diagrams.values_after(name))
             yield ReactionPart(becomes & self._diagrams.valid_of((name,)), (name,))
@@ -561,7 +562,7 @@ def _groups(diagrams: Diagrams, effects: Iterable[Effect]) -> list[list[Effect]]
 def _applying(
     reader: ExpressionReader, actions: Sequence[Assignment], guard: Function
 ) -> Iterator[tuple[Function, list[Assignment]]]:
-    """Where which of `actions` are taken."""
+    """Yield where which of `actions` are taken."""
     if not guard.satisfiable():
         return
     if not actions:
@@ -656,7 +657,7 @@ class Plant:
         return self.says((ability.enabled, ability.start_guard))
 
     def says(self, predicates: Iterable[Expression]) -> bool:
-        """Whether `predicates` depend on variables of the plant only."""
+        """Return whether `predicates` depend on variables of the plant only."""
         return read_variables(self.automaton, predicates) <= self.diagrams.bits.keys()
 
     @cached_property
@@ -666,7 +667,7 @@ class Plant:
 
     @cached_property
     def uncontrollable(self) -> list[TransitionStep]:
-        """What can happen without us, faults included."""
+        """The steps that can happen without us, faults included."""
         return self._uncontrollable(self.automaton.effects)
 
     @cached_property

@@ -49,7 +49,7 @@ def check_connections(automaton: Automaton, connections: Connections) -> Iterato
 
 
 def _read(automaton: Automaton) -> set[str]:
-    """What conditions and actions read; that an effect writes a variable is no use of it."""
+    """Return what conditions and actions read; that an effect writes a variable is no use of it."""
     found: set[str] = set()
     for move in every_move(automaton):
         found |= move.reads

@@ -53,7 +53,7 @@ class Point:
 
 
 class Runs:
-    """What is known to be reached in `plant`; `safe` are its safe states, the initial ones among them."""
+    """The states known to be reached in `plant`; `safe` are its safe states, the initial ones among them."""
 
     def __init__(self, plant: Plant, safe: Function) -> None:
         automaton = plant.automaton
@@ -178,7 +178,7 @@ class Runs:
 
 
 def known_values(state: State) -> Valuation:
-    """What is known of a state."""
+    """Return what is known of a state."""
     return {name: value for name, value in state.items() if value is not None}
 
 
@@ -195,7 +195,7 @@ _MOST_OF_TRAP = 1_000_000  # the same for what it adds to a trap
 
 @dataclass(frozen=True)
 class Evidence:
-    """What was found of `automaton` under its `supervisor`, over the variables of `order`.
+    """The evidence found of `automaton` under its `supervisor`, over the variables of `order`.
 
     `reached` has at least what is reached with the supervisor (True) and without, as found with parts of so large a
     `level`. `ways` are states, and more from which some of these can be reached within the former set without faults.
@@ -248,7 +248,7 @@ def joining(states: Function, target: Function, steps: Sequence[TransitionStep])
 
 
 class Again:
-    """What was kept of another model, in the `plant` of this one."""
+    """The evidence kept of another model, in the `plant` of this one."""
 
     def __init__(self, plant: Plant, kept: Evidence) -> None:
         self.kept = kept
@@ -276,7 +276,7 @@ class Again:
                 yield self.states(target), self.states(states) & self._there
 
     def added(self, within: Function) -> Function:
-        """What this model may reach of `within` and the other did not; nothing where the two differ too much."""
+        """Return what this model may reach of `within` and the other did not; nothing where the two differ too much."""
         return self._plant.diagrams.false if self._before is None else within & ~self._there
 
     def traps(self, within: Function) -> Iterator[Function]:
@@ -311,7 +311,7 @@ class Again:
 
     @cached_property
     def _before(self) -> Sequence[TransitionStep] | None:
-        """What the other model can do without faults, in the diagrams of this one; None where they differ too much."""
+        """The steps of the other model without faults, in the diagrams of this one; None where they differ too much."""
         automaton, order, diagrams = self.kept.automaton, self.kept.order, self._plant.diagrams
         domains = {name: automaton.variables[name].type.domain for name in order}
         if {name for name in diagrams.names if name in automaton.variables} != domains.keys():
@@ -325,11 +325,11 @@ class Again:
 
 
 def _is_closed(states: Function, steps: Iterable[TransitionStep], within: Function) -> bool:
-    """Whether no step leads out of `states` within a set."""
+    """Return whether no step leads out of `states` within a set."""
     return not any((step.after(states) & within & ~states).satisfiable() for step in steps)
 
 
 def grown(effort: NodeLimit, kept: Function, steps: Sequence[TransitionStep], within: Function) -> Function:
-    """What is reached, and perhaps more, as far as `kept` has it, and all that steps add to it."""
+    """Return what is reached, and perhaps more, as far as `kept` has it, and all that steps add to it."""
     states = kept & within
     return closed(states, states, NodeLimit(MOST_ADDED, whole=effort).limited(steps), within)

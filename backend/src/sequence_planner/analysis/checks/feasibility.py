@@ -1,4 +1,4 @@
-"""Whether starts and operations are possible, with the supervisor and without it.
+"""Checks whether starts and operations are possible, with the supervisor and without it.
 
 Each answer is about reachable states; a trace leads to where it can be seen.
 """
@@ -34,7 +34,7 @@ class Subject:
 
     @property
     def expressions(self) -> list[Expression]:
-        """What is asked about it."""
+        """The expressions that are asked about it."""
         if self.operation is not None:
             return [self.operation.precondition, self.operation.goal]
         return [condition for ability in self.abilities for condition in (ability.enabled, ability.start_guard)]
@@ -42,7 +42,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class FeasibilityFinding:
-    """What is said of a subject; instances of which the same is said are named together.
+    """A statement about a subject; instances of which the same is said are named together.
 
     What is `relative` is said only if it is so for all instances or for few: parameters choose which instances there
     are. `cause` names the start, or what else happens, that the supervisor prevents; a `consequence` need not be said
@@ -59,7 +59,7 @@ class FeasibilityFinding:
 
 
 class Possibility:
-    """What is possible where nothing leaves the states that are safe, as an inquiry answers."""
+    """The things that are possible where nothing leaves the states that are safe, as an inquiry answers."""
 
     def __init__(self, automaton: Automaton, inquiry: ReachabilityQuery) -> None:
         self._automaton = automaton
@@ -67,7 +67,7 @@ class Possibility:
         self._growth = Growth(automaton, any_measurement=False)
 
     def findings(self, subject: Subject) -> Iterator[FeasibilityFinding]:
-        """What is not possible of `subject`. Raises `TooMuchError`."""
+        """Yield what is not possible of `subject`. Raises `TooMuchError`."""
         if subject.operation is None:
             yield from self._start(subject)
         else:
@@ -101,7 +101,9 @@ class Possibility:
         return None
 
     def _is_news(self, *conditions: Expression) -> bool:
-        """Whether none of these ever holds, by any means, and no other check says so: they look at words and values."""
+        """Return whether none of these ever holds, by any means, and no other check says so: they look at words and
+        values.
+        """
         said = not all(map(self._may_by_its_words, conditions))
         return not said and not any(self._inquiry.may_ever(each) for each in conditions)
 
@@ -127,14 +129,14 @@ class Possibility:
         return FeasibilityFinding("never-allowed", subject, message, trace, cause=_causes([ability.name]))
 
     def _consequence(self, states: Function) -> str:
-        """What comes of `states`, in some of them one thing and in others another."""
+        """Say what comes of `states`, in some of them one thing and in others another."""
         broken, restless = self._inquiry.broken_unasked(states), self._inquiry.unbroken_unasked(states)
         parts = [f"what {_quoted(broken)} forbids"] if broken else []
         parts += ["states from which rest cannot be reached any more"] if restless else []
         return ", or to ".join(parts)
 
     def _after(self, trace: Trace | None) -> str:
-        """Where a trace leaves the safe states."""
+        """Say where a trace leaves the safe states."""
         number = self._leaving(trace)
         if trace is None or number is None:
             return "after states that are not safe"
@@ -148,7 +150,7 @@ class Possibility:
         return f"after states that are not safe: {what}"
 
     def _cause(self, trace: Trace | None) -> tuple[str, ...]:
-        """What leaves the safe states on it."""
+        """Return what leaves the safe states on it."""
         number = self._leaving(trace)
         return () if trace is None or number is None else _causes(trace.steps[number - 1].names)
 
@@ -232,7 +234,7 @@ class Possibility:
         return next((faults[name] for step in steps for name in step.names if name in faults), None)
 
     def _after_a_fault(self, fault: Effect, cause: str) -> str:
-        """What is said where no way without a fault leads there: a person may have meant it."""
+        """Return what is said where no way without a fault leads there: a person may have meant it."""
         abilities = [each for each in self._automaton.abilities.values() if each.resource == fault.resource]
         by_person = bool(abilities) and all(each.human is not None for each in abilities)
         what = "a person has done" if by_person else "there was the fault"
@@ -252,7 +254,7 @@ def _quoted(names: Iterable[str]) -> str:
 
 
 def _causes(names: Iterable[str]) -> tuple[str, ...]:
-    """What happens, for all instances."""
+    """Return what happens, for all instances."""
     return tuple(without_arguments(event_of(name)) for name in names)
 
 

@@ -77,7 +77,7 @@ class SatisfiabilityQuestion:
         return AnyState(lambda name: self._any(self._type(name)))
 
     def sensed(self, before: AnyState) -> AnyState:
-        """What a finish guard sees after `before`: new measured values, and all else as it was."""
+        """Return what a finish guard sees after `before`: new measured values, and all else as it was."""
 
         def made(name: str) -> Symbol:
             variable = self._automaton.variables.get(name)
@@ -150,7 +150,7 @@ class AnyState(dict[str, Symbol]):
         return self[name]
 
     def valuation(self, model: frozenset[int]) -> State:
-        """What has been read of this state, as it is in a solution."""
+        """Return what has been read of this state, as it is in a solution."""
         return {
             name: next((value for value, literal in symbol.literals.items() if _holds(literal, model)), None)
             for name, symbol in self.items()
@@ -171,7 +171,7 @@ def satisfying(automaton: Automaton, predicate: Expression) -> State | None:
 
 
 def differ(automaton: Automaton, one: Expression, other: Expression) -> bool:
-    """Whether there is a state, of any values, in which one of two predicates holds and the other does not.
+    """Return whether there is a state, of any values, in which one of two predicates holds and the other does not.
 
     Raises `UndecidedError`.
     """
@@ -184,7 +184,7 @@ def differ(automaton: Automaton, one: Expression, other: Expression) -> bool:
 
 
 def can_be_asked(automaton: Automaton, *expressions: Expression) -> bool:
-    """Whether `expressions`, and the predicates of the flags that they read, are small enough for a circuit."""
+    """Return whether `expressions`, and the predicates of the flags that they read, are small enough for a circuit."""
     seen: set[str] = set()
     pending = list(expressions)
     while pending:
@@ -207,7 +207,7 @@ Shape = tuple[object, ...]
 
 
 def shape(automaton: Automaton, expression: Expression) -> Shape:
-    """What makes the answer about `expression`: two with the same shape differ in the names of variables alone."""
+    """Return what makes the answer about `expression`: two with the same shape differ in the names of variables alone."""
     numbers: dict[str, int] = {}
 
     def of(part: Expression) -> Shape:
@@ -265,7 +265,7 @@ def check_conflicts(automaton: Automaton) -> Iterator[ModelWarning]:
 
 
 def _one_value(actions: Sequence[Assignment]) -> bool:
-    """Whether all write the same, whatever the state that all of them read."""
+    """Return whether all write the same, whatever the state that all of them read."""
     return all(action.value == actions[0].value for action in actions)
 
 
@@ -415,7 +415,7 @@ class _Reporting:
     def warning(
         self, kind: str, part: ModelCondition, instances: Sequence[ModelCondition], message: str
     ) -> ModelWarning:
-        """What is said of `part`, or of some `instances`."""
+        """Return what is said of `part`, or of some `instances`."""
         some = f"of {listed([each.key for each in instances])}: " if len(self._families[part.family]) > 1 else ""
         where = place(self._automaton, part.key, part.key.rpartition(".")[0])
         return ModelWarning(where, kind, f"{some if instances else ''}{message}")
@@ -441,7 +441,7 @@ def _constant(
 
 
 def _can_hold_and_fail(automaton: Automaton, part: ModelCondition) -> tuple[bool, bool]:
-    """Whether some state satisfies a part, and whether some does not; both where it is too hard to tell."""
+    """Return whether some state satisfies a part, and whether some does not; both where it is too hard to tell."""
     if not can_be_asked(automaton, part.expression):
         return True, True
     question = SatisfiabilityQuestion(automaton)
@@ -455,7 +455,7 @@ def _can_hold_and_fail(automaton: Automaton, part: ModelCondition) -> tuple[bool
 
 
 def _contradiction(automaton: Automaton, part: ModelCondition) -> str:
-    """Which words of a part exclude each other."""
+    """Say which words of a part exclude each other."""
     few: list[tuple[Expression, ...]] = [(each,) for each in conjuncts(part.expression)]
     few += combinations(conjuncts(part.expression), 2)
     for words in few:
@@ -467,7 +467,7 @@ def _contradiction(automaton: Automaton, part: ModelCondition) -> str:
 
 
 def _stuck(growth: Growth, part: ModelCondition) -> tuple[str, str]:
-    """What is said of a part that nothing brings about."""
+    """Return what is said of a part that nothing brings about."""
     lacking = [f"`{print_expression(each)}`" for each in conjuncts(part.expression) if not growth.may(each)]
     what = " and ".join(lacking)
     if growth.any_measurement:

@@ -76,7 +76,7 @@ class FarInquiry(ReachabilityQuery):
         return self._runs.recall(known.runs)
 
     def evidence(self, supervisor: Supervisor) -> Evidence:
-        """What its answers under the `supervisor` rest on."""
+        """Return what its answers under the `supervisor` rest on."""
         within = self.perhaps_reached()  # in the end; no step leads out of it, so what holds of more holds within it
         return Evidence(
             self.plant.automaton,
@@ -196,7 +196,9 @@ class FarInquiry(ReachabilityQuery):
         return found
 
     def _newly_leading(self, goal: Function, known: Function) -> Function:
-        """What an edit has added of states from which `goal` can be brought about; those `known` are from before."""
+        """Return what an edit has added of states from which `goal` can be brought about; those `known` are from
+        before.
+        """
         added, within = self._added & ~known, self.perhaps_reached()
         asked, self.effort = self.effort, NodeLimit(_SOON, whole=self.effort)
         try:
@@ -239,7 +241,7 @@ class FarInquiry(ReachabilityQuery):
         return None
 
     def leads(self, states: Function, goal: Function) -> bool | None:
-        """Whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
+        """Return whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
         if any(not ((states & ~bound) | (bound & goal)).satisfiable() for bound in self._bounds):
             return False
         if Tracer(self.plant, faults=False).leads(goal, states):
@@ -252,7 +254,7 @@ class FarInquiry(ReachabilityQuery):
         return None
 
     def may_ever(self, predicate: Expression) -> bool:
-        """Whether it holds in any state that may be reached by any means."""
+        """Return whether it holds in any state that may be reached by any means."""
         plant, perhaps = self.ever
         if (plant.where(predicate) & perhaps).satisfiable():
             raise TooMuchError  # it may: which it is would have to be found out
@@ -301,7 +303,9 @@ _PLANNING = 10.0  # seconds, for a plan that leads through the work of all opera
 
 @dataclass
 class FarAnswers:
-    """What is not possible, or not known, and what that rests on, for the next time; None if nothing is known."""
+    """The findings of what is not possible, or not known, and what that rests on, for the next time; None if nothing is
+    known.
+    """
 
     findings: list[FeasibilityFinding]
     evidence: Evidence | None
@@ -315,7 +319,7 @@ def from_afar(
     planning: float = _PLANNING,
     known: Evidence | None = None,
 ) -> FarAnswers:
-    """What is not possible of `subjects` under the `supervisor`, or not known, where too much is reached.
+    """Return what is not possible of `subjects` under the `supervisor`, or not known, where too much is reached.
 
     No more than so many seconds are spent on `planning`: what is not known by a plan is found out otherwise. What is
     `known` of the model before an edit is proven again; where that leaves something open, all is found out anew.

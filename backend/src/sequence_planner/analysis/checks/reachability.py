@@ -41,7 +41,8 @@ MOST_TOGETHER = 6  # finishes in one tick
 
 
 def cannot_be(automaton: Automaton, predicates: Sequence[Expression]) -> bool:
-    """Whether it is certain that all `predicates` together are never seen by a finish guard in a reachable state.
+    """Return whether it is certain that all `predicates` together are never seen by a finish guard in a reachable
+    state.
 
     They are read like finish guards: over new measured values, and flags of the tick before.
     """
@@ -77,7 +78,7 @@ def _may(predicate: Expression, state: State) -> bool:
 
 
 def _forbidden(automaton: Automaton, state: State) -> bool:
-    """Whether a specification forbids the state for certain: the supervisor then keeps the station out of it."""
+    """Return whether a specification forbids the state for certain: the supervisor then keeps the station out of it."""
     return any(evaluate(each.forbidden, state) is True for each in automaton.specifications.values())
 
 
@@ -113,7 +114,7 @@ def _written(automaton: Automaton, action: Assignment, state: State) -> set[Valu
 
 @dataclass(frozen=True)
 class Questions:
-    """What is asked of an automaton, whose supervisor keeps to the states that are `safe`."""
+    """The questions asked of an automaton, whose supervisor keeps to the states that are `safe`."""
 
     automaton: Automaton
     expressions: Sequence[Expression]
@@ -167,7 +168,7 @@ class ReachabilityQuery:
         return self.reached(active) & ~self._completing(goal, self.safe)
 
     def leads(self, states: Function, goal: Function) -> bool | None:
-        """Whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
+        """Return whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
         steps = self.limited(self.plant, self.plant.helpful)
         return (states & reaching(self.diagrams, goal, steps)).satisfiable()
 
@@ -200,7 +201,7 @@ class ReachabilityQuery:
         return self.diagrams.disjunction(step.before(self.safe) for step in steps) & self.safe
 
     def forbidden(self) -> dict[str, Function]:
-        """What each specification forbids."""
+        """Return what each specification forbids."""
         return {each.name: self.plant.where(each.forbidden) for each in self.plant.automaton.specifications.values()}
 
     def broken_unasked(self, states: Function) -> list[str]:
@@ -210,7 +211,7 @@ class ReachabilityQuery:
         return [name for name, where in self.forbidden().items() if (where & reached).satisfiable()]
 
     def unbroken_unasked(self, states: Function) -> bool:
-        """Whether from some of `states` on no specification can be broken without any start."""
+        """Return whether from some of `states` on no specification can be broken without any start."""
         broken = self.diagrams.disjunction(self.forbidden().values())
         return (states & ~reaching(self.diagrams, broken, self.effort.limited(self.plant.uncontrollable))).satisfiable()
 
@@ -222,22 +223,22 @@ class ReachabilityQuery:
         return plant, self._closed(plant)
 
     def _closed(self, plant: Plant) -> Function:
-        """What is reached in `plant`, with all that can happen in it."""
+        """Return what is reached in `plant`, with all that can happen in it."""
         return reachable(plant.diagrams, plant.initial, self.limited(plant, plant.uncontrollable))
 
     def may_ever(self, predicate: Expression) -> bool:
-        """Whether it holds in any state that may be reached: also restarted, called off, or with a new product."""
+        """Return whether it holds in any state that may be reached: also restarted, called off, or with a new product."""
         plant, reached = self.ever
         return (plant.where(predicate) & reached).satisfiable()
 
 
 def bits(automaton: Automaton, names: Iterable[str]) -> int:
-    """How many bits there are in the values of `names`."""
+    """Return how many bits there are in the values of `names`."""
     return sum((len(automaton.variables[name].type.domain) - 1).bit_length() for name in names)
 
 
 def _given(automaton: Automaton) -> list[Expression]:
-    """What every inquiry is about: what is safe."""
+    """Return what every inquiry is about: what is safe."""
     rest = TRUE if automaton.rest is None else automaton.rest
     return [*(each.forbidden for each in automaton.specifications.values()), rest]
 

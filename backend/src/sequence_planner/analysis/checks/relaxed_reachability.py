@@ -1,4 +1,4 @@
-"""What a station can ever bring about: a reading of the relaxation that leaves nothing out."""
+"""The things a station can ever bring about: a reading of the relaxation that leaves nothing out."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Growth:
         self._relaxation = Relaxation(automaton, self._first, self._moves)
 
     def may(self, predicate: Expression) -> bool:
-        """Whether `predicate` may ever hold."""
+        """Return whether `predicate` may ever hold."""
         return self._relaxation.may(predicate)
 
     def roots(self, stuck: Sequence[ModelCondition], dead: Collection[str]) -> list[ModelCondition]:

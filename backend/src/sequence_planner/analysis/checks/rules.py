@@ -49,7 +49,7 @@ def check_effects(automaton: Automaton) -> Iterator[ModelWarning]:
 
 
 def _same(automaton: Automaton, one: Effect, other: Effect) -> bool:
-    """Whether the one happens exactly where the other does, however that is written."""
+    """Return whether the one happens exactly where the other does, however that is written."""
     if set(conjuncts(one.guard)) == set(conjuncts(other.guard)):
         return True
     if not can_be_asked(automaton, one.guard, other.guard):
@@ -94,7 +94,7 @@ def check_executing(automaton: Automaton) -> Iterator[ModelWarning]:
 
 
 def _needs_executing(automaton: Automaton, ability: Ability) -> bool:
-    """Whether the finish guard implies that the ability was executing in the tick before."""
+    """Return whether the finish guard implies that the ability was executing in the tick before."""
     guard, flag = ability.finish_guard, ability.flag("executing")
     if guard is None or flag not in variables(guard) or not can_be_asked(automaton, guard):
         return False
@@ -110,7 +110,7 @@ def _needs_executing(automaton: Automaton, ability: Ability) -> bool:
 
 
 def _not_yet(automaton: Automaton, ability: Ability) -> Expression | None:
-    """What of `executing` may be false right after a start, or None if it always holds then."""
+    """Return what of `executing` may be false right after a start, or None if it always holds then."""
     guard = conjunction(ability.enabled, ability.start_guard)
     values = [action.value for action in ability.start_actions]
     if not can_be_asked(automaton, guard, ability.executing, *values):
@@ -223,7 +223,7 @@ def check_specifications(automaton: Automaton) -> Iterator[ModelWarning]:
 
 
 def _forbids(automaton: Automaton, specification: Specification) -> bool:
-    """Whether it does, or is too hard a question."""
+    """Return whether the specification forbids anything, or is too hard a question."""
     forbidden = specification.forbidden
     try:
         return not can_be_asked(automaton, forbidden) or satisfying(automaton, forbidden) is not None
@@ -247,14 +247,14 @@ CONFLICTS = "finishes that conflict"  # looked for last, as that can take long
 
 @dataclass(frozen=True)
 class CheckProgress:
-    """What is being looked for, None at the end, and what has been found since the `CheckProgress` before."""
+    """The thing that is being looked for, None at the end, and what has been found since the `CheckProgress` before."""
 
     pending: str | None
     warnings: tuple[ModelWarning, ...] = ()
 
 
 def looked(automaton: Automaton, connections: Connections | None = None) -> Iterator[CheckProgress]:
-    """What is soon found to be suspicious in a station's automaton; `connections` are those to its topics.
+    """Yield what is soon found to be suspicious in a station's automaton; `connections` are those to its topics.
 
     A plain automaton has neither ticks nor devices, and no conditions of which these checks know the use.
     """

@@ -1,4 +1,4 @@
-"""What the supervisor makes impossible, and what is impossible anyway in the states that can be reached.
+"""Checks for what the supervisor makes impossible, and what is impossible anyway in the states that can be reached.
 
 A supervisor may be as permissive as can be and yet leave nothing to do. So it is asked of each ability whether it can
 ever start, and of each operation whether it can become active, and then be completed (`docs/semantics.md`).
@@ -28,7 +28,7 @@ MOST_TOO_WIDE = 3  # parts with too many variables: then no further ones are loo
 
 
 class SupervisionQuestion:
-    """What is asked of `automaton` under a `supervision` that is possible, and what has been found by now.
+    """The questions asked of `automaton` under a `supervision` that is possible, and what has been found by now.
 
     `evidence` is what answers from afar rest on: of the model before an edit, and after them of this one.
     """
@@ -57,14 +57,14 @@ class SupervisionQuestion:
         self.evidence = answers.evidence
 
     def warnings(self) -> list[ModelWarning]:
-        """What can never be done, by place, with traces; and what is not known."""
+        """Return what can never be done, by place, with traces; and what is not known."""
         return sorted(_warnings(self._automaton, self._subjects, _without_consequences(self._found)))
 
 
 def check_supervision(
     automaton: Automaton, supervision: Supervision, supervisor: Supervisor | None = None
 ) -> list[ModelWarning]:
-    """What can never be done in `automaton` under a `supervision` that is possible, by place, with traces.
+    """Return what can never be done in `automaton` under a `supervision` that is possible, by place, with traces.
 
     What would take too much effort to find out is said not to be known. With its `supervisor` it is then looked at from
     afar, which takes longer.
@@ -77,7 +77,7 @@ def check_supervision(
 
 
 def exactly(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -> Iterator[FeasibilityFinding]:
-    """What is found where all that can be reached is computed, over fewer variables if it must be."""
+    """Yield what is found where all that can be reached is computed, over fewer variables if it must be."""
     try:
         yield from list(_asked(automaton, subjects, safe, NodeLimit(MOST_EFFORT)))
     except TooMuchError:
@@ -87,7 +87,7 @@ def exactly(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -
 def _asked(
     automaton: Automaton, subjects: Sequence[Subject], safe: StateSet, effort: NodeLimit
 ) -> Iterator[FeasibilityFinding]:
-    """What an inquiry about `subjects` says. Raises `TooMuchError`."""
+    """Yield what an inquiry about `subjects` says. Raises `TooMuchError`."""
     inquiry = ReachabilityQuery(
         Questions(automaton, [each for subject in subjects for each in subject.expressions], safe), effort
     )
@@ -110,7 +110,7 @@ def subjects_of(automaton: Automaton) -> Iterator[Subject]:
 
 
 def _in_parts(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -> Iterator[FeasibilityFinding]:
-    """What is found on fewer variables at a time, where that is possible."""
+    """Yield what is found on fewer variables at a time, where that is possible."""
     parts: dict[frozenset[str], list[Subject]] = {}
     too_wide = 0
     for subject in subjects:

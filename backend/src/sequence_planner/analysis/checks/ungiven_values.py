@@ -17,7 +17,7 @@ from sequence_planner.pipelines.stages.support import TransparentStage
 
 
 def check_never_given(automaton: Automaton, pipelines: StationPipelines) -> Iterator[ModelWarning]:
-    """What the last stage that gives a variable leaves out of its values."""
+    """Yield what the last stage that gives a variable leaves out of its values."""
     for node in pipelines.nodes:
         for writing in node.writings:
             stage = next((each for each in reversed(node.chain.stages) if _makes(each, writing.field)), None)
@@ -30,12 +30,12 @@ def check_never_given(automaton: Automaton, pipelines: StationPipelines) -> Iter
 
 
 def _makes(stage: Stage, field: str) -> bool:
-    """Whether the values of a field come from a stage, and do not only pass it."""
+    """Return whether the values of a field come from a stage, and do not only pass it."""
     return field in stage.gives and not isinstance(stage, TransparentStage)
 
 
 def may_give(stage: Stage, field: str, value: Value) -> bool:
-    """Whether a stage gives a value for some record; of a stage of which nobody can say, it may."""
+    """Return whether a stage gives a value for some record; of a stage of which nobody can say, it may."""
     match stage:
         case DiscretiseStage() | MapStage() | MatchNamesStage():
             try:

@@ -19,7 +19,7 @@ def unmeetable(automaton: Automaton, reason: Unmeetable, place: Place) -> ModelW
 
 
 def _in_conflict(automaton: Automaton, conflict: Conflict) -> str:
-    """What would already be enough, as a sentence."""
+    """Say what would already be enough, as a sentence."""
     rest = "marked" if automaton.one_at_a_time else "rest"
     text = f"Already these conflict: {listed(conflict.specifications or (rest,), most=None)}"
     if conflict.uncontrollable:

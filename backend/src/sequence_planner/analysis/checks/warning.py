@@ -33,7 +33,7 @@ class ModelCondition:
 
     @property
     def name(self) -> str:
-        """What tells it from all other parts."""
+        """The name that tells it from all other parts."""
         return f"{self.key}: {self.what}"
 
     @property
@@ -43,7 +43,7 @@ class ModelCondition:
 
     @property
     def repeats_an_argument(self) -> bool:
-        """Whether it is of an instance such as `carry(left, left)`, which is often meant to be impossible."""
+        """True if it is of an instance such as `carry(left, left)`, which is often meant to be impossible."""
         found = re.search(r"\(([^)]*)\)", self.key)
         arguments = found[1].split(", ") if found else []
         return len(set(arguments)) < len(arguments)
@@ -96,7 +96,7 @@ MOST_NAMED = 4  # of several names in a message
 
 @dataclass(frozen=True, order=True)
 class ModelWarning:
-    """Where something is suspicious, a stable name for what it is, and what to do about it.
+    """The place where something is suspicious, a stable name for what it is, and what to do about it.
 
     A `trace` shows how it comes about, where there is one to show.
     """
@@ -111,7 +111,7 @@ class ModelWarning:
 
 
 def place(automaton: Automaton, *names: str) -> Place:
-    """Where the first of `names` that is known was written; else the beginning of the model."""
+    """Return where the first of `names` that is known was written; else the beginning of the model."""
     return next((automaton.places[name] for name in names if name in automaton.places), Place(automaton.name, 1, 1))
 
 

@@ -1,4 +1,4 @@
-"""Which addresses of a provider are asked: by HTTPS, or without it on this machine alone."""
+"""The addresses of a provider that are asked: by HTTPS, or without it on this machine alone."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _WRITTEN = re.compile(r"[!-~]{1,2000}")  # no blanks, nothing that does not show
 
 
 def is_safe(url: str) -> bool:
-    """Whether nobody between can read or change what is said there."""
+    """Return whether nobody between can read or change what is said there."""
     if _WRITTEN.fullmatch(url) is None or "\\" in url:
         return False
     try:

@@ -18,7 +18,7 @@ FLOW_LIFE = 600.0  # seconds in which the provider has to answer
 
 @dataclass(frozen=True)
 class SignInFlow:
-    """What follows from the `token` of one sign-in."""
+    """The values that follow from the `token` of one sign-in."""
 
     token: str
 
@@ -29,26 +29,26 @@ class SignInFlow:
 
     @property
     def state(self) -> str:
-        """What the provider gives back, so that no other page's answer is taken (RFC 6749, 10.12)."""
+        """The value that the provider gives back, so that no other page's answer is taken (RFC 6749, 10.12)."""
         return self._made("state")
 
     @property
     def nonce(self) -> str:
-        """What the ID token repeats, so that none of another sign-in is taken (OpenID Connect Core, 15.5.2)."""
+        """The value that the ID token repeats, so that none of another sign-in is taken (OpenID Connect Core, 15.5.2)."""
         return self._made("nonce")
 
     @property
     def verifier(self) -> str:
-        """What proves that who shows the code has asked for it (RFC 7636)."""
+        """The proof that who shows the code has asked for it (RFC 7636)."""
         return self._made("verifier")
 
     @property
     def challenge(self) -> str:
-        """What the provider is told of the verifier beforehand."""
+        """The value by which the provider is told of the verifier beforehand."""
         return _text(sha256(self.verifier.encode()).digest())
 
     def is_state(self, state: str) -> bool:
-        """Whether an answer belongs to this sign-in, found out in a time that does not tell where it differs."""
+        """Return whether an answer belongs to this sign-in, found out in a time that does not tell where it differs."""
         return hmac.compare_digest(self.state.encode(), state.encode("utf-8", "surrogatepass"))
 
     def _made(self, label: str) -> str:
@@ -62,7 +62,7 @@ def _text(digest: bytes) -> str:
 
 @dataclass(frozen=True)
 class ProviderAnswer:
-    """What the browser brought back from the provider."""
+    """The answer that the browser brought back from the provider."""
 
     state: str
     code: str | None = None

@@ -1,4 +1,4 @@
-"""How a provider is named when the station is started, and what keeps a name from being used.
+"""The options that name a provider when the station is started, and what keeps a name from being used.
 
 The client's secret is read from a file or from the environment: what stands on a command line everybody on the machine
 can read.
@@ -38,7 +38,7 @@ class ProviderOptions:
     others: str = NO_OTHERS
 
     def settings(self, environment: Mapping[str, str]) -> ProviderSettings | None:
-        """What they mean; None without a provider. Raises `ProviderOptionError`."""
+        """Return what they mean; None without a provider. Raises `ProviderOptionError`."""
         if self.issuer is None:
             if self.client is not None or self.secret_file is not None or self.roles:
                 raise ProviderOptionError("--oidc-issuer is missing: it says which provider the others are about")

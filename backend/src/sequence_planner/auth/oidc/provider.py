@@ -34,7 +34,7 @@ def away(why: str) -> IdentityRefused:
 
 
 def unfit(why: str) -> IdentityRefused:
-    """What came from the provider is not taken."""
+    """Return the refusal that says that what came from the provider is not taken."""
     detail = f"What came from the provider does not hold: {why}. Begin to sign in again."
     return IdentityRefused("provider-answer-unfit", "Not signed in", detail, 403)
 
@@ -133,7 +133,7 @@ class UnknownKeyError(Exception):
 
 @dataclass(frozen=True)
 class ExpectedClaims:
-    """What a token must be about."""
+    """The claims that a token must be about."""
 
     issuer: str
     client: str
@@ -210,7 +210,7 @@ def _check(claims: Mapping[str, object], expected: ExpectedClaims, now: float) -
 
 
 def _is_time(claim: object) -> TypeGuard[float]:
-    """Whether it is a number of seconds since the epoch."""
+    """Return whether it is a number of seconds since the epoch."""
     return isinstance(claim, int | float) and not isinstance(claim, bool)
 
 
@@ -234,7 +234,7 @@ class Metadata:
 
 
 def read_metadata(document: dict[str, object], issuer: str) -> Metadata:
-    """What a discovery document says. Raises `IdentityRefused` (`provider-unavailable`) where it cannot be used."""
+    """Return what a discovery document says. Raises `IdentityRefused` (`provider-unavailable`) where it cannot be used."""
     if document.get("issuer") != issuer:
         raise _unusable("it says that it is another issuer than the one that was named")
     methods = document.get("code_challenge_methods_supported")
@@ -254,7 +254,7 @@ def read_metadata(document: dict[str, object], issuer: str) -> Metadata:
 
 
 class DiscoveryCache:
-    """What is known of the provider at `issuer`. What cannot be asked for again stays as it was."""
+    """The things known of the provider at `issuer`. What cannot be asked for again stays as it was."""
 
     def __init__(self, issuer: str, clock: Callable[[], float] = time.monotonic) -> None:
         self._issuer = issuer
@@ -264,11 +264,11 @@ class DiscoveryCache:
 
     @property
     def last(self) -> Metadata | None:
-        """What was said last; nothing is asked for."""
+        """The metadata that was said last; nothing is asked for."""
         return None if self._metadata is None else self._metadata[1]
 
     async def metadata(self) -> Metadata:
-        """What the provider says of itself. Raises `IdentityRefused` (`provider-unavailable`)."""
+        """Return what the provider says of itself. Raises `IdentityRefused` (`provider-unavailable`)."""
         if self._metadata is not None and self._clock() < self._metadata[0] + KEPT:
             return self._metadata[1]
         try:
@@ -329,7 +329,7 @@ class Provider:
         self._known = DiscoveryCache(settings.issuer)
 
     async def address(self, flow: SignInFlow, back: str) -> str:
-        """Where the browser is sent to sign in; it comes back to the address `back`. Raises `IdentityRefused`."""
+        """Return where the browser is sent to sign in; it comes back to the address `back`. Raises `IdentityRefused`."""
         asked_for = {
             "response_type": "code",
             "client_id": self.settings.client,
@@ -344,14 +344,14 @@ class Provider:
         return _with((await self._known.metadata()).authorization, asked_for)
 
     def end_address(self, home: str) -> str | None:
-        """Where one signs out of the provider as well, and then comes to `home`; None where that is not known."""
+        """Return where one signs out of the provider as well, and then comes to `home`; None where that is not known."""
         known = self._known.last
         if known is None or known.end_session is None:
             return None
         return _with(known.end_session, {"client_id": self.settings.client, "post_logout_redirect_uri": home})
 
     async def claims(self, answer: ProviderAnswer, flow: SignInFlow, back: str, now: float) -> dict[str, object]:
-        """What the provider says about who signed in. Raises `IdentityRefused` where that does not hold."""
+        """Return what the provider says about who signed in. Raises `IdentityRefused` where that does not hold."""
         metadata = await self._known.metadata()
         if answer.issuer not in ({self.settings.issuer} if metadata.names_issuer else {self.settings.issuer, None}):
             raise unfit("another provider has answered")
@@ -371,7 +371,7 @@ class Provider:
         return {**await self._more(metadata.userinfo, access, claims["sub"]), **claims}
 
     async def _redeem(self, metadata: Metadata, code: str, flow: SignInFlow, back: str) -> Mapping[str, object]:
-        """What the provider gives for a code."""
+        """Return what the provider gives for a code."""
         form = {
             "grant_type": "authorization_code",
             "code": code,
@@ -405,7 +405,9 @@ class Provider:
             raise unfit("its token is signed with a key that is none of its own") from error
 
     async def _more(self, url: str, access: str, subject: object) -> dict[str, object]:
-        """What the provider says beside the token; it must be about the same person (OpenID Connect Core, 5.3.2)."""
+        """Return what the provider says beside the token; it must be about the same person (OpenID Connect Core,
+        5.3.2).
+        """
         status, said = await asked("GET", url, headers={"Authorization": f"Bearer {access}"})
         if status != 200 or said.get("sub") != subject:
             raise unfit("what it says beside its token is about somebody else, or nothing")
@@ -413,7 +415,7 @@ class Provider:
 
 
 def names_in(claims: Mapping[str, object]) -> tuple[str, ...]:
-    """What somebody may be called, the best first."""
+    """Return what somebody may be called, the best first."""
     found = (claims.get(name) for name in NAMES)
     return tuple(each for each in found if isinstance(each, str) and each)
 

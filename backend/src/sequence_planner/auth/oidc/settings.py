@@ -1,4 +1,4 @@
-"""Which provider people sign in with, and which role the station gives to whom."""
+"""The provider that people sign in with, and the role that the station gives to each."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ProviderSettings:
         return max(having, key=list(Role).index, default=self.others)
 
     def says_groups(self, claims: Mapping[str, object]) -> bool:
-        """Whether the claims say anything about groups."""
+        """Return whether the claims say anything about groups."""
         return _found(claims, self.groups) is not None
 
 

@@ -1,4 +1,4 @@
-"""What a predicate about the state after a transition says about the state before it."""
+"""The part of a predicate about the state after a transition that speaks of the state before it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ _MOST_COMBINATIONS = 1000
 
 
 def enabling_guard(written: Expression, actions: Iterable[Assignment], invariant: Expression) -> Expression:
-    """Where a transition can be taken: its guard holds, each update fits its variable, and the invariant holds after.
+    """Return where a transition can be taken: its guard holds, each update fits its variable, and the invariant holds
+    after.
 
     What the guard says already is not repeated. Parts of the invariant that read nothing written hold as before.
     """

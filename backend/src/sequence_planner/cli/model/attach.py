@@ -27,7 +27,7 @@ LONGEST_CHECK = 10.0  # seconds for what synthesis finds; `check` takes longer
 
 @dataclass(frozen=True)
 class _Answer:
-    """What became of it. With `errors` the model could not be used afterwards, and has not been changed."""
+    """The outcome of attaching it. With `errors` the model could not be used afterwards, and has not been changed."""
 
     topic: FoundTopic
     difference: str

@@ -40,7 +40,7 @@ STAGES = "stages"  # the folder of a model's own Python, of which nobody knows w
 
 
 class Told(Document):
-    """What `check` tells of a model: its findings, and what it is like, for programs and for people."""
+    """The answer of `check` about a model: its findings, and what it is like, for programs and for people."""
 
     findings: list[FindingDocument]
     summary: dict[str, object]
@@ -49,7 +49,7 @@ class Told(Document):
 
 @dataclass(frozen=True)
 class Checked:
-    """What was found in a model that can be used."""
+    """The findings in a model that can be used."""
 
     model: LoadedModel
     findings: list[FindingDocument]
@@ -92,7 +92,7 @@ def check(
 
 
 def _key(model: Path, emulator: bool) -> str | None:
-    """What was checked; None where the same may be found otherwise another time."""
+    """Return a key to what was checked; None where the same may be found otherwise another time."""
     content = None if (model / STAGES).exists() else content_key(model)
     return None if content is None else f"{content}{'-emulator' if emulator else ''}"
 
@@ -104,7 +104,7 @@ def _told_before(of: str | None) -> Told | None:
 
 
 def _told(model: Path, limits: Limits, of: str | None, *, emulator: bool, json: bool) -> Told:
-    """What is found now; it is kept if that is all, and nobody has changed the model meanwhile."""
+    """Return what is found now; it is kept if that is all, and nobody has changed the model meanwhile."""
     from sequence_planner.model.source import ModelError  # noqa: PLC0415
 
     try:

@@ -67,7 +67,7 @@ def _content(value: str) -> object:
 
 
 def _wrong_after(model: Path, file: Path, change: Callable[[str], str]) -> str:
-    """What is wrong with the station after a change, tried on a copy; empty if nothing is."""
+    """Say what is wrong with the station after a change, tried on a copy; empty if nothing is."""
     with TemporaryDirectory() as scratch:
         copy = copytree(model, Path(scratch) / "station", ignore_dangling_symlinks=True)
         edit_file(copy / file, change)

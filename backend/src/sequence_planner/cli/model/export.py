@@ -29,7 +29,7 @@ from sequence_planner.synthesis.supervisor import SynthesisError
 
 
 class Notation(StrEnum):
-    """What a model can be written in."""
+    """A notation that a model can be written in."""
 
     EFA = "efa"
     CIF = "cif"

@@ -69,7 +69,7 @@ def explained(
     circumstances: Circumstances,
     limits: Limits,
 ) -> tuple[FromThese, ...]:
-    """Why none of `states` leads to `goals`, as far as it is found within `limits`."""
+    """Explain why none of `states` leads to `goals`, as far as it is found within `limits`."""
     from sequence_planner.analysis.worker import SynthesisEndedError, told  # noqa: PLC0415
 
     found: list[FromThese] = []
@@ -226,7 +226,9 @@ def plain_document(answer: PlainAnswer, goals: Iterable[Goal], reasons: Sequence
 
 
 def because(reasons: Sequence[FromThese]) -> Iterator[str]:
-    """Why there is no plan at all, line by line; where not for the same reason from all states, of which from which."""
+    """Say why there is no plan at all, line by line; where not for the same reason from all states, of which from
+    which.
+    """
     number = sum(len(each.states) for each in reasons)
     telling = _differing([state for each in reasons for state in each.states])
     for each in reasons:
@@ -501,7 +503,7 @@ def _reasons(
     answer: PlanAnswer | PlainAnswer,
     limits: Limits,
 ) -> tuple[FromThese, ...]:
-    """Why there is no plan at all, in the time that is left."""
+    """Find why there is no plan at all, in the time that is left."""
     if answer.verdict is not Verdict.NONE_AT_ALL:
         return ()
     return explained(automaton, supervisor, states, request.goals, request.circumstances, limits)

@@ -242,7 +242,7 @@ def _condition(name: str, condition: Expression, usual: Expression | None) -> Li
 
 
 def _added(guard: GuardDocument | None, rest: str = "rest") -> Lines:
-    """What the supervisor adds, and the specifications that this comes from."""
+    """Say what the supervisor adds, and the specifications that this comes from."""
     if guard is not None:
         reasons = [*guard.specifications, *([rest] if guard.rest else [])]
         lines = [*guard_lines(guard), f"(because of {', '.join(reasons)})"]

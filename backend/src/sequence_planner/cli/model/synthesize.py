@@ -83,7 +83,7 @@ def described_automaton(
 
 
 def guard_lines(guard: GuardDocument) -> list[str]:
-    """When the supervisor allows a start, for people."""
+    """Say when the supervisor allows a start, for people."""
     if guard.guard is not None:
         return [guard.guard]
     if not guard.blocked:

@@ -43,7 +43,7 @@ Changes = Mapping[str, Value | None]
 
 @dataclass(frozen=True)
 class TickRequest:
-    """What happens in a tick: measured values, effects, and the starts that are wanted, in their order."""
+    """The events of a tick: measured values, effects, and the starts that are wanted, in their order."""
 
     measured: Mapping[str, Value | None] = field(default_factory=dict)
     effects: Sequence[Effect] = ()
@@ -62,7 +62,7 @@ class StartTried:
 
 @dataclass(frozen=True)
 class TickTaken:
-    """What each step of a tick did. Changes are the new values."""
+    """The result of each step of a tick. Changes are the new values."""
 
     sensed: Changes
     finished: tuple[str, ...]
@@ -130,7 +130,7 @@ def _sensed(state: State, request: TickRequest) -> State:
 
 
 def lacking(condition: Expression, state: State) -> Iterable[str]:
-    """What of a condition does not hold, in words."""
+    """Say what of a condition does not hold, in words."""
     for part in conjuncts(condition):
         truth = evaluate(part, state)
         if truth is not True:

@@ -1,4 +1,4 @@
-"""What `journal archive` prints."""
+"""The lines that `journal archive` prints."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ _READ_WHOLE = ("oidc_client_secret_file",)
 
 
 def unfit(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
-    """What `run` would not start with, each with where it was told. Nothing is made, written or upgraded."""
+    """Yield what `run` would not start with, each with where it was told. Nothing is made, written or upgraded."""
     for check in (_model, _endpoint, _together, _provider, _webhooks, _database, _secrets, _folders):
         yield from check(told)
 
@@ -55,7 +55,7 @@ def _model(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
 
 
 def _endpoint(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
-    """Where it listens, by which names, and with what certificate."""
+    """Check where it listens, by which names, and with what certificate."""
     given = {name: each.value for name, each in told.items()}
     endpoint = Endpoint(
         host=str(given.get("host", Endpoint.host)),
@@ -74,7 +74,7 @@ def _endpoint(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
 
 
 def _together(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
-    """What of it contradicts something else of it."""
+    """Yield what of it contradicts something else of it."""
     given = {name: each.value for name, each in told.items()}
     standby = given.get("hot_standby")
     yield from _placed(
@@ -183,7 +183,7 @@ def _folders(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
 
 
 def _unusable_folder(folder: Path) -> str | None:
-    """Why nothing can be written in a folder; None where it can."""
+    """Say why nothing can be written in a folder; None where it can."""
     if not folder.is_dir():
         return f"there is no folder {folder}"
     return None if os.access(folder, os.W_OK | os.X_OK) else f"this user may not write in {folder}"

@@ -132,7 +132,7 @@ def _replay_lines(past: PastView) -> Iterator[str]:
 def _replaying(
     model: StationFolder, database: str | None, archive: Path | None
 ) -> Iterator[tuple[WholeRun, Automaton, Supervisor]]:
-    """What a replay needs; what keeps it from being done is said with exit code 2."""
+    """Give what a replay needs; what keeps it from being done is said with exit code 2."""
     from sequence_planner.cli.analysing import supervisor_of  # noqa: PLC0415
     from sequence_planner.cli.loading import usable_automaton  # noqa: PLC0415
     from sequence_planner.execution.record.codec import HistoryError  # noqa: PLC0415
@@ -266,7 +266,7 @@ def list_archive(model: Model = None, database: DatabaseOption = None, archive: 
 
 
 def _archive_folder(named: str | None, model: Path | None, database: str | None) -> Path | None:
-    """Where what is cut goes to; None where that was said to be nowhere."""
+    """Return where what is cut goes to; None where that was said to be nowhere."""
     if named == NO_ARCHIVE:
         return None
     from sequence_planner.db.location import SqliteFile, address  # noqa: PLC0415

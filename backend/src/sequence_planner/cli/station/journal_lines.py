@@ -1,4 +1,4 @@
-"""What `journal` prints of a station's database."""
+"""The lines that `journal` prints of a station's database."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _PAGE = 1000  # records read at once
 
 
 def verification(database: Database, kept: Path | None, folder: Path | None = None) -> tuple[bool, Sequence[str]]:
-    """Whether a record was changed or is missing, and lines that say so or tell the last records.
+    """Return whether a record was changed or is missing, and lines that say so or tell the last records.
 
     `kept` is a file with a checkpoint that was kept elsewhere, `folder` where the archive is by now. Raises
     `StorageError` if it holds none.

@@ -1,4 +1,4 @@
-"""What of the options of `run` does not go together, or means nothing. Each complaint names the options it is about."""
+"""The options of `run` that do not go together, or mean nothing. Each complaint names the options it is about."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def wrong_together(
     hot_standby: str | None,
     provider: bool,
 ) -> Iterator[str]:
-    """Why a station cannot be run so; of the database and the provider only whether one is named."""
+    """Say why a station cannot be run so; of the database and the provider only whether one is named."""
     if start and not emulator:
         yield "--start is for emulated devices: with real ones a person starts production on the page"
     if demonstration and not emulator:
@@ -38,7 +38,7 @@ def wrong_together(
 
 
 def webhook_targets(hosts: Sequence[str], networks: Sequence[str], loopback: bool) -> tuple[Targets, list[str]]:
-    """Where webhooks may go to, and what is wrong with what was named."""
+    """Return where webhooks may go to, and what is wrong with what was named."""
     wrong: list[str] = []
     found_hosts, found_networks = set(), []
     for each in hosts:

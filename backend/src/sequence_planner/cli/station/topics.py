@@ -42,7 +42,7 @@ def topics(
 
 
 async def _seen(transport: Transport, seconds: float) -> NetworkView:
-    """What is there after so many seconds, without this node itself."""
+    """Return what is there after so many seconds, without this node itself."""
     await asyncio.sleep(seconds)
     endpoints = [each for each in transport.graph() if not each.own]
     ends = [each for each in transport.services() if not each.own] if isinstance(transport, TellsServices) else None

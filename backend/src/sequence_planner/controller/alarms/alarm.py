@@ -312,7 +312,7 @@ class Alarm:
 
     @property
     def state(self) -> AlarmState:
-        """Where it stands."""
+        """The state in which it stands."""
         if self.aside is not None:
             return AlarmState.OUT_OF_SERVICE if self.aside.until is None else AlarmState.SHELVED
         if self.ended is not None:
@@ -321,12 +321,12 @@ class Alarm:
 
     @property
     def over(self) -> bool:
-        """Whether there is nothing more to tell of it."""
+        """True if there is nothing more to tell of it."""
         return self.ended is not None and self.aside is None and self.acknowledged
 
     @property
     def shown(self) -> bool:
-        """Whether it has a place of its own; what is put aside is always in sight as such."""
+        """True if it has a place of its own; what is put aside is always in sight as such."""
         return self.aside is not None or not self.part
 
     def come(self, now: float, lasts: bool) -> None:
@@ -366,7 +366,7 @@ class Alarm:
 
 
 def needs_acknowledgement(cause: Cause) -> bool:
-    """Whether a person has to take note of such an alarm: of a mere notice nobody has to."""
+    """Return whether a person has to take note of such an alarm: of a mere notice nobody has to."""
     return cause.priority is not Priority.LOW
 
 
@@ -404,7 +404,7 @@ class PutAside(BaseModel):
         )
 
     def cause(self, key: str) -> Cause:
-        """What was said of it."""
+        """Return the cause, as what was said of it."""
         return Cause(key, self.priority, self.text, self.consequence, self.action, past=self.past or self.text)
 
     def aside(self, now: Timestamp) -> Suppression:
@@ -431,7 +431,7 @@ def aside_again(kept: Mapping[str, PutAside]) -> dict[str, JsonValue]:
 
 
 def aside_from(content: Mapping[str, JsonValue]) -> dict[str, PutAside]:
-    """What such a record says; nothing where it is of a program that wrote it differently."""
+    """Return what such a record says; nothing where it is of a program that wrote it differently."""
     try:
         return _ALL.validate_python(content.get("aside", {}))
     except ValidationError:

@@ -99,7 +99,7 @@ class DeviceAlarms:
         return Cause(key, priority, f"{text} {titles}", consequence, action, past=f"{past} {titles}")
 
     def _is_early(self, feed: InputTopic, monotonic: float) -> bool:
-        """Whether a silence need not be one yet: as a station begins much is begun beside it.
+        """Return whether a silence need not be one yet: as a station begins much is begun beside it.
 
         One that was heard, and whose node went or broke its promise, is known to be silent.
         """
@@ -203,7 +203,7 @@ class DeviceAlarms:
 
 
 def _are_many(resources: Collection[str], silent: Collection[str], used: Collection[str]) -> bool:
-    """Whether so many of those that are used are silent at once that there is one reason for all."""
+    """Return whether so many of those that are used are silent at once that there is one reason for all."""
     return len(resources) > 1 and (len(silent) == len(used) or len(resources) >= max(_MOST, len(used) / 2))
 
 

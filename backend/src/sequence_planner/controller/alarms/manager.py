@@ -50,7 +50,9 @@ QUIET = 15.0  # seconds for which the cause of such an alarm must be away before
 
 
 class Arrivals:
-    """When the alarms have come, as long as that matters; also those that are gone by now. On the monotonic clock."""
+    """The times at which alarms have come, as long as these matter; also of those that are gone by now. On the
+    monotonic clock.
+    """
 
     def __init__(self) -> None:
         self._times: dict[str, deque[float]] = {}
@@ -97,7 +99,7 @@ class Folding:
         self._part_of: dict[str, str] = {}
 
     def fold(self, causes: Iterable[Cause], alone: Collection[str], monotonic: float) -> Folded:
-        """What is an alarm now. To those that stand `alone` nothing is added."""
+        """Return what is an alarm now. To those that stand `alone` nothing is added."""
         present = {cause.key: cause for cause in causes}
         lingering = self._lingering(present, monotonic)
         present = {key: self._as_before(cause, lingering) for key, cause in present.items()}
@@ -248,7 +250,7 @@ class AlarmRegistry:
         self._take_back(key, life, "unshelved")
 
     def restore(self, key: str) -> None:
-        """What is out of service is told again."""
+        """Tell again what is out of service."""
         life = self._find(key)
         if life.aside is None or life.aside.until is not None:
             raise _refused(
@@ -417,7 +419,7 @@ class AlarmManager(StationAlarms):
         return frozenset() if situation is None or not situation.certain else self._outside.touched(situation)
 
     def _resume(self, moment: Timestamp) -> None:
-        """What was aside before the start is so again."""
+        """Put aside again what was aside before the start."""
         before, self._aside_before = self._aside_before, {}
         for key, each in before.items():
             self._lives.put_aside(key, each.cause(key), each.aside(moment), moment)

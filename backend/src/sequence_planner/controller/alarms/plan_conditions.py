@@ -121,7 +121,7 @@ class PlanAlarms:
             )
 
     def _says(self, names: Collection[str]) -> str:
-        """What is said of these variables."""
+        """Return what is said of these variables."""
         automaton, state = self._execution.automaton, self._execution.state
         told = (each for each in sorted(names) if not is_along(automaton, each, names))
         known = {each: value for each in told if (value := state[each]) is not None}
@@ -172,7 +172,7 @@ class PlanAlarms:
             )
 
     def _waiting_errand(self, monotonic: float) -> Iterator[Cause]:
-        """What a person has taken, and does not go on."""
+        """Yield what a person has taken, and does not go on."""
         execution, errand = self._execution, self._execution.errand
         if errand is None or errand.ability is not None or (since := idle_since(execution, errand)) is None:
             return
@@ -223,7 +223,7 @@ class PlanAlarms:
             yield from self._left_out(plan.answer, follows)
 
     def _needed(self) -> str:
-        """What to do where there is no plan: what is out of service may be all that is missing."""
+        """Say what to do where there is no plan: what is out of service may be all that is missing."""
         automaton, service = self._execution.automaton, self._execution.conduct.service
         resources = [automaton.resources[name] for of, name in service if of is ServiceKind.RESOURCE]
         abilities = [automaton.abilities[name].title for of, name in service if of is ServiceKind.ABILITY]

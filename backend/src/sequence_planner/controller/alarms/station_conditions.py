@@ -152,7 +152,7 @@ class StationAlarms:
             )
 
     def _beginning(self) -> Iterator[Cause]:
-        """Why it stands, until somebody has decided otherwise."""
+        """Yield why it stands, until somebody has decided otherwise."""
         if self._halted is not None and self._execution.mode is not self._begins:
             self._halted = None
         if self._halted is not None:

@@ -1,1 +1,1 @@
-"""What people and systems may ask of the controller, and who answers it."""
+"""Commands and questions that people and systems may put to the controller, and who answers them."""

@@ -134,7 +134,7 @@ class CommandAudit:
 
 
 def entry_of(command: Command, tasks: Callable[[], dict[str, TaskView]] = dict) -> Entry:
-    """What the record says of a command that somebody gives."""
+    """Return what the record says of a command that somebody gives."""
     details = command.model_dump(mode="json", exclude={"actor", "reason", "kind"})
     if isinstance(command, TaskCommand) and (task := tasks().get(command.task)) is not None:
         details |= {"ability": task.ability, "title": task.title}
@@ -208,7 +208,7 @@ class StandingNotes:
         self._looked = float("-inf")
 
     def due(self, now: Timestamp) -> bool:
-        """Whether it is time for another look, which counts as taken."""
+        """Return whether it is time for another look, which counts as taken."""
         if now.monotonic - self._looked < LOOK_EVERY:
             return False
         self._looked = now.monotonic

@@ -27,17 +27,17 @@ class CommandBase(BaseModel):
 
     @property
     def needs_control(self) -> bool:
-        """Whether its actor must be in control."""
+        """True if its actor must be in control."""
         return self.for_control
 
     @property
     def overtaken_by_pause(self) -> bool:
-        """Whether it is void where somebody pauses the station while it waits for its record."""
+        """True if it is void where somebody pauses the station while it waits for its record."""
         return self.needs_control
 
     @property
     def harmless(self) -> bool:
-        """Whether it can only bring devices to rest."""
+        """True if it can only bring devices to rest."""
         return False
 
     @property
@@ -310,7 +310,7 @@ class TryAbility(CommandBase):
 
 
 class StopErrand(CommandBase):
-    """What is carried out is started no further; what is only tried is called off."""
+    """A command to start no more of what is carried out, and to call off what is only tried."""
 
     kind: Literal["stop-errand"] = "stop-errand"
 

@@ -1,4 +1,4 @@
-"""Which session is in control: one at a time, and none after a start of the controller that is no deployment's.
+"""The session in control: one at a time, and none after a start of the controller that is no deployment's.
 
 Whoever acts on what moves devices must be it. Taking it over from somebody else is meant to be seen: the view tells who
 has it, since when, and from whom it was taken.
@@ -18,7 +18,7 @@ class ControlLock:
         self._holder = holder
 
     def view(self) -> ControlView | None:
-        """Who is in control; None for nobody."""
+        """Return who is in control; None for nobody."""
         return self._holder
 
     def take(self, actor: Actor, over: str | None, now: float) -> None:

@@ -127,7 +127,7 @@ class SetService(CommandBase):
 
     @property
     def subject(self) -> str:
-        """What it is."""
+        """The thing that it takes out of service or puts back."""
         return f"{self.of} {self.name}"
 
 
@@ -175,7 +175,7 @@ class TakeControl(CommandBase):
 
 
 class ReleaseControl(CommandBase):
-    """Who is in control gives it up."""
+    """A command by which whoever is in control gives it up."""
 
     kind: Literal["release-control"] = "release-control"
 

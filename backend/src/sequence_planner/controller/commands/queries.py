@@ -1,4 +1,5 @@
-"""What is told only to who asks, and takes some work: each kind of ask with the document that answers it.
+"""Questions whose answers are told only to who asks, and take some work: each kind of ask with the document that
+answers it.
 
 Asking changes nothing at the station. Who asks waits for `patience` seconds at most; what is found later is dropped.
 """
@@ -52,14 +53,14 @@ class AboutPipelines(Query[PipelinesView]):
 
 
 class AboutFlows(Query[FlowsView]):
-    """What has passed the pipelines: all of them, or those `among` these."""
+    """A question: what has passed the pipelines, all of them or those `among` these."""
 
     kind: Literal["about-flows"] = "about-flows"
     among: frozenset[str] | None = None
 
 
 class AskFigures(Query[FiguresView]):
-    """What the controller has counted and timed of itself."""
+    """A question about what the controller has counted and timed of itself."""
 
     patience: ClassVar[float | None] = TOLD_WITHIN
     kind: Literal["ask-figures"] = "ask-figures"
@@ -96,7 +97,7 @@ class AskReset(Query[OfferView]):
 
 
 class AskWhyNot(Query[WhyNotView]):
-    """What is in the way of an ability, an operation, or a goal, whose `name` is its predicate."""
+    """A question about what is in the way of an ability, an operation, or a goal, whose `name` is its predicate."""
 
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-why-not"] = "ask-why-not"
@@ -105,14 +106,14 @@ class AskWhyNot(Query[WhyNotView]):
 
 
 class AskDefinition(Query[AbilityDefinitionView]):
-    """How an ability is defined, and what of that holds now."""
+    """A question about how an ability is defined, and what of that holds now."""
 
     kind: Literal["ask-definition"] = "ask-definition"
     ability: str = Field(max_length=LONGEST_PREDICATE)
 
 
 class AskCorrection(Query[CorrectionPreview]):
-    """What a correction of these estimates would bring about."""
+    """A question about what a correction of these estimates would bring about."""
 
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-correction"] = "ask-correction"
@@ -120,7 +121,7 @@ class AskCorrection(Query[CorrectionPreview]):
 
 
 class AboutWorkMasters(Query[WorkMastersView]):
-    """What jobs consist of."""
+    """A question about what jobs consist of."""
 
     kind: Literal["about-work-masters"] = "about-work-masters"
 

@@ -38,7 +38,9 @@ class WaitingTask:
 
 @dataclass(frozen=True)
 class TaskProblem:
-    """What keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if told."""
+    """An obstacle that keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if
+    told.
+    """
 
     by: str
     since: float

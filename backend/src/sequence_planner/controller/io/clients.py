@@ -62,7 +62,7 @@ class CallCourse:
         return True
 
     def is_due(self, now: float) -> bool:
-        """Whether to call now."""
+        """Return whether to call now."""
         if self._busy:
             return False
         is_time = self.every is not None and (self._begun is None or now - self._begun >= self.every)
@@ -85,7 +85,7 @@ class CallCourse:
 
 
 class Do(Enum):
-    """What is to be done now."""
+    """An instruction about what is to be done now."""
 
     SEND = "send"
     CANCEL = "cancel"
@@ -117,7 +117,7 @@ class GoalCourse:
 
     @property
     def state(self) -> GoalState:
-        """What the variable says."""
+        """The state that the variable says."""
         if self._at_work or self.others is None:
             return self.own
         return self.others
@@ -314,7 +314,7 @@ class GoalClient:
 
 
 def _told(error: Exception) -> str:
-    """What went wrong, in a line."""
+    """Say what went wrong, in a line."""
     return in_a_line(error) if isinstance(error, ValidationError) else str(error)
 
 
@@ -417,7 +417,7 @@ class Clients:
         self.requests[request].clear_override(name, now)
 
     def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
-        """What has passed each edge of each request's pipeline, or of those `among` these."""
+        """Return what has passed each edge of each request's pipeline, or of those `among` these."""
         chosen = ((name, each) for name, each in self.requests.items() if among is None or name in among)
         return {name: running.observed() for name, running in chosen}
 

@@ -50,15 +50,15 @@ class Devices:
 
     @property
     def waiting(self) -> bool:
-        """Whether something was heard and has not been looked at."""
+        """True if something was heard and has not been looked at."""
         return bool(self._inbox)
 
     def heard(self) -> Iterator[list[Sample]]:
-        """What was heard, in parts of which no topic has more than one."""
+        """Yield what was heard, in parts of which no topic has more than one."""
         return self._inbox.parts()
 
     def due(self, is_released: bool) -> float | None:
-        """When time alone makes a difference, on the clock of `time.monotonic`."""
+        """Return when time alone makes a difference, on the clock of `time.monotonic`."""
         dues = (self.feeds.due, self.commander.due if is_released else None)
         return min((due for due in dues if due is not None), default=None)
 
@@ -106,20 +106,20 @@ class Devices:
         self.clients.look(graph)
 
     def strangers(self, node: str) -> list[str]:
-        """What speaks against the station's devices being those of `node` alone, as the network is now."""
+        """Return what speaks against the station's devices being those of `node` alone, as the network is now."""
         return self.network.strangers(self._transport.graph(), node)
 
     def real_devices(self) -> list[str]:
-        """What speaks against these being emulated ones."""
+        """Return what speaks against these being emulated ones."""
         return self.network.others(self._transport.graph(), f"/{EMULATED_DEVICES}")
 
     def obstacles(self) -> tuple[str, ...]:
-        """What keeps every ability from starting."""
+        """Return what keeps every ability from starting."""
         owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
     def flows(self, among: Container[str] | None = None) -> FlowsView:
-        """What has passed the pipelines, or those `among` these."""
+        """Return what has passed the pipelines, or those `among` these."""
         return self._observing.view(self._observed(among), Timestamp.now())
 
     def record(self, pipeline: str) -> RecordView:

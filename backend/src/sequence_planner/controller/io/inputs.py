@@ -59,7 +59,7 @@ class InputErrors:
             report.text, report.last, report.count = text, now, report.count + 1
 
     def settle(self, place: str) -> None:
-        """What came last makes sense."""
+        """Note that what came last makes sense."""
         self._troubled.discard(place)
 
     def current(self, now: float) -> Iterator[tuple[str, str, InputError]]:
@@ -102,11 +102,11 @@ class InputTopic:
 
     @property
     def trouble(self) -> str | None:
-        """What in its last message made no sense."""
+        """The part of its last message that made no sense."""
         return self.running.trouble(self.pipeline.topic.name)
 
     def fresh(self, now: float) -> bool:
-        """Whether the topic has spoken, and within its deadline, and its publishers are still there."""
+        """Return whether the topic has spoken, and within its deadline, and its publishers are still there."""
         deadline = self.pipeline.deadline
         return self.last is not None and not self.abandoned and (deadline is None or now - self.last <= deadline)
 
@@ -145,7 +145,7 @@ class Inputs:
                 self.reports.settle(sample.topic)
 
     def begin_anew(self, name: str, now: float) -> None:
-        """What a service or an action has answered counts no more: its variables are as before any request."""
+        """Disregard what a service or an action has answered: its variables are as before any request."""
         feed = self._all[name]
         feed.is_silent, feed.abandoned, feed.since = True, True, now
         self._forget(name)
@@ -183,16 +183,16 @@ class Inputs:
                 self.reports.note(name, trouble, now)
 
     def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
-        """What has passed each edge of each pipeline, or of those `among` these."""
+        """Return what has passed each edge of each pipeline, or of those `among` these."""
         return self.running.observed(among)
 
     @property
     def due(self) -> float | None:
-        """When `wake` next makes a difference if nothing comes before."""
+        """The time when `wake` next makes a difference if nothing comes before."""
         return self.running.due
 
     def abandon(self, topic: str, why: str = "its publishers have gone") -> None:
-        """What the topic said counts no more: the last publisher has gone, or a promise has been broken."""
+        """Disregard what the topic said: the last publisher has gone, or a promise has been broken."""
         self.topics[topic].abandoned = True
         self.topics[topic].why = why
 
@@ -277,7 +277,7 @@ class Inbox:
         return news
 
     def parts(self) -> Iterator[list[Sample]]:
-        """What waits, in parts of which no topic has more than one; the rest stays when that takes too long."""
+        """Yield what waits, in parts of which no topic has more than one; the rest stays when that takes too long."""
         end = time.monotonic() + LONGEST
         if len(self._waiting) > MOST_WAITING:
             self._pass_over(time.monotonic())

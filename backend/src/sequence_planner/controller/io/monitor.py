@@ -1,4 +1,4 @@
-"""What passes the edges of the pipelines, with rates. Nothing is kept unless somebody asks."""
+"""The traffic on the edges of the pipelines, with rates. Nothing is kept unless somebody asks."""
 
 from __future__ import annotations
 

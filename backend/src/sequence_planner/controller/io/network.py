@@ -32,7 +32,9 @@ Policy = Literal["reliability", "durability", "deadline", "liveliness"]
 
 @dataclass(frozen=True)
 class Mismatch:
-    """What the station has and what an endpoint has; `policy` is of a quality of service, `text` for people."""
+    """A difference between what the station and an endpoint have; `policy` is of a quality of service, `text` for
+    people.
+    """
 
     kind: Literal["type", "definition", "quality", "rival"]
     node: str | None
@@ -74,7 +76,9 @@ def uses(pipelines: StationPipelines, registry: MessageRegistry) -> dict[str, Us
 
 @dataclass(frozen=True)
 class CallUse:
-    """What the station makes of a service or an action: `part` is the name of the pipeline that its answers come by."""
+    """The use that the station makes of a service or an action: `part` is the name of the pipeline that its answers
+    come by.
+    """
 
     part: str
     resource: str
@@ -88,7 +92,7 @@ def call_uses(pipelines: StationPipelines) -> dict[str, CallUse]:
 
 
 def not_understood(end: ServiceEnd) -> str:
-    """What to say of a server that puts the numbers of calls elsewhere than the station does."""
+    """Return what to say of a server that puts the numbers of calls elsewhere than the station does."""
     name, is_action, _ = end.service.partition("/_action/")
     does = "carries out" if is_action else "serves"
     return (
@@ -98,7 +102,7 @@ def not_understood(end: ServiceEnd) -> str:
 
 
 def mismatches(endpoint: NetworkEndpoint, use: Use) -> list[Mismatch]:
-    """What stands between the station and a foreign endpoint on the same topic."""
+    """Return what stands between the station and a foreign endpoint on the same topic."""
     found = []
     if endpoint.direction == use.peer:
         found = [*_of_type(endpoint, use)] or [*_of_quality(endpoint, use)]
@@ -138,12 +142,12 @@ def _rival(endpoint: NetworkEndpoint, use: Use) -> Mismatch:
 
 
 def who(endpoint: NetworkEndpoint) -> str:
-    """Whose endpoint it is."""
+    """Say whose endpoint it is."""
     return endpoint.node or "another node"
 
 
 def worded(quality: QualityOfService, policy: Policy) -> str:
-    """What a quality says of a policy, in ROS 2's words."""
+    """Return what a quality says of a policy, in ROS 2's words."""
     if policy == "reliability":
         return "reliable" if quality.reliable else "best_effort"
     if policy == "durability":
@@ -378,7 +382,8 @@ class NetworkWatch:
         return next(call.resource for call in self._calls.values() if call.part == trouble)
 
     def strangers(self, graph: Sequence[NetworkEndpoint], node: str) -> list[str]:
-        """What speaks against the devices being those of `node` alone: topics it is missing on, and who else is there.
+        """Return what speaks against the devices being those of `node` alone: topics it is missing on, and who else is
+        there.
 
         A node that does not tell its name counts as somebody else; one that only listens to devices does not count.
         """
@@ -387,7 +392,7 @@ class NetworkWatch:
         return [*missing, *self.others(graph, node)]
 
     def others(self, graph: Sequence[NetworkEndpoint], node: str) -> list[str]:
-        """Who but `node` is there to be commanded, or reports as a device does, in words."""
+        """Say who but `node` is there to be commanded, or reports as a device does."""
         return sorted({f"{e.node or 'another node'} is on {e.topic}" for e in self._foreign(graph) if e.node != node})
 
     def _foreign(self, graph: Sequence[NetworkEndpoint]) -> list[NetworkEndpoint]:

@@ -44,7 +44,7 @@ class OutputTopic:
     owed: str | None = None
 
     def news(self, state: State) -> bool:
-        """Whether a variable has changed on which the message depends; from now on `state` is known."""
+        """Return whether a variable has changed on which the message depends; from now on `state` is known."""
         said = tuple([state[name] for name in self.pipeline.variables])
         is_new, self.said = said != self.said, said
         return is_new
@@ -74,7 +74,7 @@ class Outputs:
 
     @property
     def due(self) -> float | None:
-        """When `repeat` next makes a difference because a stage waits for it."""
+        """The time when `repeat` next makes a difference because a stage waits for it."""
         return min((due for c in self.topics.values() if (due := c.running.chain.due) is not None), default=None)
 
     def publish(self, state: State, now: float) -> None:
@@ -110,7 +110,7 @@ class Outputs:
         self._send(command, command.running.clear_override(name, now), now)
 
     def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
-        """What has passed each edge of each pipeline, or of those `among` these."""
+        """Return what has passed each edge of each pipeline, or of those `among` these."""
         chosen = ((name, each) for name, each in self.topics.items() if among is None or name in among)
         return {name: command.running.observed() for name, command in chosen}
 

@@ -63,7 +63,7 @@ class Overrides:
         self._holder(known).clear_override(known.pipeline, known.stage.name, now)
 
     def _holder(self, known: _Known) -> Outputs | Clients | RunningPipelines:
-        """Where the pipeline runs."""
+        """Return where the pipeline runs."""
         if known.pipeline in self._clients.requests:
             return self._clients
         return self._commander if known.is_outgoing else self._feeds.running

@@ -71,7 +71,7 @@ class Beliefs:
         execution.listeners.append(self.hear)
 
     def of(self, name: str) -> BeliefView:
-        """Why an estimate is believed."""
+        """Return why an estimate is believed."""
         return self._beliefs[name]
 
     def document(self) -> dict[str, JsonValue]:
@@ -80,7 +80,7 @@ class Beliefs:
 
     @property
     def unconfirmed(self) -> bool:
-        """Whether there are estimates of which nobody has seen whether they are still true."""
+        """True if there are estimates of which nobody has seen whether they are still true."""
         return any(belief.unconfirmed_since is not None for belief in self._beliefs.values())
 
     def hear(self, heard: Heard) -> None:
@@ -145,7 +145,9 @@ class Beliefs:
         )
 
     def _evidence(self, heard: Heard, guard: Expression, action: Assignment) -> dict[str, Value | None]:
-        """What was measured: the variables that are read, or else those that flags were set by in the tick before."""
+        """Return what was measured: the variables that are read, or else those that flags were set by in the tick
+        before.
+        """
         direct = [*variables(guard), *sorted(reads(action))]
         measured = [name for name in dict.fromkeys(direct) if self._is(name, Kind.MEASURED)]
         if measured:
@@ -189,7 +191,7 @@ def _unmeasured(writer: str, now: Timestamp) -> BeliefView:
 
 
 def _first(name: str, beginning: InitialState | None, before: Mapping[str, BeliefView]) -> BeliefView:
-    """What is known as the execution begins."""
+    """Return what is known as the execution begins."""
     at = 0.0 if beginning is None else beginning.now.epoch
     since = None if beginning is None else beginning.unconfirmed_since
     if beginning is None or name not in beginning.values:
@@ -202,7 +204,7 @@ def _first(name: str, beginning: InitialState | None, before: Mapping[str, Belie
 
 
 def beliefs_from(content: Mapping[str, JsonValue]) -> dict[str, BeliefView]:
-    """What such a record says; nothing where it is of a program that wrote it differently."""
+    """Return what such a record says; nothing where it is of a program that wrote it differently."""
     try:
         return {name: BeliefView.model_validate(written) for name, written in content.items()}
     except ValidationError:
@@ -231,14 +233,16 @@ class Contradictions:
 
 
 def contradictions(automaton: Automaton, known: NeverTogether, state: State) -> Contradictions:
-    """What is wrong in `state` with the estimates, if anything is."""
+    """Return what is wrong in `state` with the estimates, if anything is."""
     if known.fits is not None and (found := _of_all(automaton, known.fits, state)) is not None:
         return found
     return _of_pairs(automaton, known, state)
 
 
 def questions(automaton: Automaton, found: Contradictions, state: State) -> list[QuestionView]:
-    """What to look at; first the variable whose value leaves the fewest hypotheses, whichever it turns out to be."""
+    """Return what to look at; first the variable whose value leaves the fewest hypotheses, whichever it turns out to
+    be.
+    """
     asked: list[tuple[int, QuestionView]] = []
     for name in automaton.names(Kind.ESTIMATED):
         believed = state[name]
@@ -282,7 +286,7 @@ def _of_all(automaton: Automaton, fits: StateSet, state: State) -> Contradiction
 
 
 def _fits(fits: StateSet, state: State) -> bool:
-    """Whether the set holds the state for some values that its unknown variables could have."""
+    """Return whether the set holds the state for some values that its unknown variables could have."""
     pending, seen = [fits.root], set[int]()
     while pending:
         reference = pending.pop()
@@ -357,7 +361,7 @@ class _Priced:
 
     @property
     def least(self) -> float:
-        """What the cheapest cost; infinite if there are none."""
+        """The cost of the cheapest; infinite if there are none."""
         return self._costs[self._states.root]
 
     def members(self) -> Iterator[dict[str, Value]]:
@@ -415,7 +419,7 @@ class RestoredOutputs:
         return [name for name in self.views() if not self._may_pass(name, untold)]
 
     def _may_pass(self, name: str, untold: Collection[str]) -> bool:
-        """Whether nothing reacts for certain, and what is unknown is of resources in `untold`."""
+        """Return whether nothing reacts for certain, and what is unknown is of resources in `untold`."""
         automaton, state = self._execution.automaton, self._execution.state
         for effect in self._readers.get(name, ()):
             if _reaction(automaton, effect, state) is not None:
@@ -461,7 +465,7 @@ def _readers(automaton: Automaton) -> Mapping[str, list[Effect]]:
 
 
 def _reaction(automaton: Automaton, effect: Effect, state: State) -> str | None:
-    """What the effect would change; None where it certainly would change nothing."""
+    """Return what the effect would change; None where it certainly would change nothing."""
     guard = evaluate(effect.guard, state)
     if guard is False:
         return None
@@ -539,7 +543,7 @@ class ConsistencyMonitor:
         self.questions = tuple(each for each in found if each.variable not in execution.conduct.answers)
 
     def contradictions(self, state: State) -> Contradictions:
-        """What of the beliefs in `state` does not fit what is measured there."""
+        """Return what of the beliefs in `state` does not fit what is measured there."""
         if self._known is None:
             return Contradictions()
         return contradictions(self._execution.automaton, self._known, self._evidence(state))

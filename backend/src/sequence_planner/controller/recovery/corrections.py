@@ -47,10 +47,10 @@ _WHY_NONE = {
 
 
 class PlansOnRequest(Protocol):
-    """Whoever plans what people ask for."""
+    """The planner of what people ask for, whoever that is."""
 
     async def answer(self, request: PlanRequest, deadline: float) -> PlanAnswer:
-        """What is found within so many seconds. Raises `CommandRefused`."""
+        """Return what is found within so many seconds. Raises `CommandRefused`."""
         ...
 
 
@@ -112,7 +112,7 @@ class Previewing:
         return {"plan": preview, "goals": list(answer.goals), "left_out": list(answer.left_out)}
 
     def _goals(self, active: frozenset[str]) -> tuple[Goal, ...]:
-        """What would be pursued: what is, as far as it has come, and what becomes active."""
+        """Return what would be pursued: what is, as far as it has come, and what becomes active."""
         pursued, operations = self._execution.pursued.goals, self._execution.automaton.operations
         return tuple(pursued.get(name) or goal_of(operations[name]) for name in sorted(active))
 
@@ -134,7 +134,7 @@ class Previewing:
         )
 
     def _related(self, name: str) -> Iterator[str]:
-        """What is measured that abilities look at before they write the estimate."""
+        """Yield what is measured that abilities look at before they write the estimate."""
         automaton, state = self._execution.automaton, self._execution.state
         guards = [guard for ability in automaton.abilities.values() for guard in _guards(ability, name)]
         read = read_variables(automaton, guards)
@@ -144,7 +144,7 @@ class Previewing:
 
 
 def _guards(ability: Ability, name: str) -> Iterator[Expression]:
-    """What the ability looks at when it writes the variable."""
+    """Yield what the ability looks at when it writes the variable."""
     starts = [action for action in ability.start_actions if target(action) == name]
     finishes = [action for action in ability.finish_actions if target(action) == name]
     if starts:
@@ -191,7 +191,7 @@ class Corrections:
         return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
 
     async def preview(self, values: Mapping[str, GivenValue]) -> CorrectionPreview:
-        """What the correction would bring about. Raises `CommandRefused`."""
+        """Return what the correction would bring about. Raises `CommandRefused`."""
         obstacle = correcting_refused(self._execution)
         return await self._previewing.preview(self._estimates(values), None if obstacle is None else obstacle.detail)
 

@@ -41,7 +41,7 @@ WAITS = {
 
 
 class HindranceKind(StrEnum):
-    """What kind of thing keeps an ability from starting, or an operation or a goal from coming true."""
+    """The kind of thing that keeps an ability from starting, or an operation or a goal from coming true."""
 
     STATION = "station"  # how the station executes: its mode, production, steps, obstacles
     SERVICE = "service"  # it does not take part: offline, out of service, forced, or for restart mode only
@@ -62,7 +62,7 @@ class BlockingCondition:
 
 
 def of_station(execution: Executor) -> Iterator[BlockingCondition]:
-    """What keeps every ability from starting."""
+    """Yield what keeps every ability from starting."""
     conduct = execution.conduct
     texts: list[str] = []
     if conduct.production is not Production.STARTED:
@@ -78,8 +78,8 @@ def of_station(execution: Executor) -> Iterator[BlockingCondition]:
 def of_ability(
     execution: Executor, ability: Ability, feeds: Mapping[str, str], guard: SupervisorGuard | None
 ) -> Iterator[BlockingCondition]:
-    """What keeps this ability from starting. `feeds` names the topic behind each measured variable, `guard` is what the
-    supervisor adds to the written ones.
+    """Yield what keeps this ability from starting. `feeds` names the topic behind each measured variable, `guard` is
+    what the supervisor adds to the written ones.
     """
     barred = [BlockingCondition(HindranceKind.SERVICE, text) for text in _out_of_service(execution, ability, feeds)]
     written = list(_written(execution, ability, feeds))
@@ -115,7 +115,7 @@ def _written(execution: Executor, ability: Ability, feeds: Mapping[str, str]) ->
 
 
 def lacking_text(execution: Executor, part: Expression, unknown: bool, feeds: Mapping[str, str]) -> str:
-    """What a part of a condition waits for, which does not hold or is `unknown`."""
+    """Say what a part of a condition waits for, which does not hold or is `unknown`."""
     topics = awaited(execution, part, feeds) if unknown else []
     return f"a message on {', '.join(topics)}" if topics else print_expression(part)
 
@@ -126,7 +126,7 @@ def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> 
 
 
 def _unwritten(execution: Executor, ability: Ability, guard: SupervisorGuard | None) -> Iterator[BlockingCondition]:
-    """What keeps it from starting where all that is written holds."""
+    """Yield what keeps it from starting where all that is written holds."""
     state = execution.state
     unsupervised = execution.errand is not None and execution.errand.unsupervised
     after = start(execution.automaton, state, ability)
@@ -142,7 +142,7 @@ def _unwritten(execution: Executor, ability: Ability, guard: SupervisorGuard | N
 
 
 def _unsafe(execution: Executor, ability: Ability, after: State, guard: SupervisorGuard | None) -> BlockingCondition:
-    """What the supervisor's guard lacks, and which specification the start would break, at once or later."""
+    """Return what the supervisor's guard lacks, and which specification the start would break, at once or later."""
     kind = HindranceKind.SUPERVISOR
     if guard is not None:
         causes = [execution.automaton.specifications[name].title for name in guard.specifications]
@@ -163,7 +163,9 @@ def _unsafe(execution: Executor, ability: Ability, after: State, guard: Supervis
 
 
 def _nearest(execution: Executor, ability: Ability) -> Expression | None:
-    """What else has to be so for the start to be allowed, in as few variables as can be; None if that is not known."""
+    """Return what else has to be so for the start to be allowed, in as few variables as can be; None if that is not
+    known.
+    """
     automaton, supervisor = execution.automaton, execution.supervisor
     allowed = supervisor.guards.get(ability.name)
     changes = None if allowed is None else allowed.nearest(execution.state)
@@ -265,7 +267,7 @@ MOST_CHANGERS = 20  # abilities that are listed for a variable
 
 
 class TellsBelief(Protocol):
-    """Who knows where an estimate comes from."""
+    """The one who knows where an estimate comes from."""
 
     def of(self, name: str) -> BeliefView:
         """Of an estimated variable."""
@@ -274,8 +276,8 @@ class TellsBelief(Protocol):
 
 @dataclass(frozen=True)
 class ConditionContext:
-    """What is known beside the execution: topics by measured variable, since when a variable has its value, what is
-    believed, and the guards that the supervisor has added, by ability.
+    """Facts beside the execution: topics by measured variable, since when a variable has its value, beliefs, and guards
+    the supervisor has added, by ability.
     """
 
     feeds: Mapping[str, str]
@@ -292,7 +294,7 @@ class Involving:
         self._around = surroundings
 
     def condition(self, hindrance: BlockingCondition) -> ConditionView:
-        """What has to be otherwise, and who could see to that."""
+        """Return what has to be otherwise, and who could see to that."""
         condition, execution = hindrance.expression, self._execution
         names = () if condition is None else responsible(execution.automaton, condition, execution.state)
         involved = [] if condition is None else [self._involved(name, condition) for name in names]
@@ -325,7 +327,7 @@ class Involving:
         return sorted(found, key=lambda changer: not changer.running)[:MOST_CHANGERS]
 
     def _people(self, name: str) -> list[ChangerView]:
-        """What a person could do about it."""
+        """Return what a person could do about it."""
         automaton = self._execution.automaton
         variable = automaton.variables[name]
         resource = variable.resource or ""
@@ -365,7 +367,7 @@ def waits_for(
 
 
 def right_moment(execution: Executor) -> str:
-    """What the next start waits for although it may start."""
+    """Say what the next start waits for although it may start."""
     if execution.errand is None:
         return "the right moment: started now, the rest of the plan would not reach its goals"
     if before := list(dict.fromkeys(_before(execution))):
@@ -374,7 +376,7 @@ def right_moment(execution: Executor) -> str:
 
 
 def _before(execution: Executor) -> Iterator[str]:
-    """What has still to happen, of what the plan has before its next start."""
+    """Yield what has still to happen, of what the plan has before its next start."""
     automaton, state, (_, ticks) = execution.automaton, execution.state, execution.plan.order.rest()
     effects = {effect.name: effect for effect in automaton.effects}
     for tick in ticks:

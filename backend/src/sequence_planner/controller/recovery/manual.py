@@ -66,7 +66,7 @@ class _Request(Immutable):
 
 
 class Approvals:
-    """What waits for a second person at the station of `execution`."""
+    """The commands that wait for a second person at the station of `execution`."""
 
     def __init__(self, execution: Executor, in_control: ControlLock) -> None:
         self._execution = execution
@@ -98,7 +98,7 @@ class Approvals:
             del self._requests[id_]
 
     def approved(self, command: ApproveRequest, moment: Timestamp) -> ApprovedCommand:
-        """What is to be done, in the names of both. Raises `CommandRefused`."""
+        """Return what is to be done, in the names of both. Raises `CommandRefused`."""
         _require_person(command.actor)
         request = self._answerable(command, moment)
         if request.actor.id == command.actor.id:
@@ -121,7 +121,7 @@ class Approvals:
         self._end(command.request, state, moment, command.actor, command.reason)
 
     def view(self, moment: Timestamp) -> dict[str, ApprovalView]:
-        """What waits, and what was over lately."""
+        """Return what waits, and what was over lately."""
         self._look(moment)
         return {
             id_: ApprovalView(
@@ -207,7 +207,7 @@ Tell = Callable[[str, Mapping[str, JsonValue]], None]
 
 
 class WentOn(StrEnum):
-    """How the station went on."""
+    """The way in which the station went on."""
 
     EXECUTES = "executes"  # the ability is under way again, as it was commanded before
     FINISHED = "finished"  # it counts as finished by it
@@ -229,7 +229,7 @@ class Moved:
     on: Timestamp | None = None
 
     def lasts(self, monotonic: float) -> bool:
-        """Whether people are still told of it."""
+        """Return whether people are still told of it."""
         past = self.on is not None and monotonic - self.on.monotonic > STAYS
         return not past and monotonic - self.at.monotonic <= LONGEST
 
@@ -251,7 +251,7 @@ class ByHand:
         execution.listeners.append(self._hear)
 
     def notices(self, monotonic: float) -> list[Moved]:
-        """What people are told of now, the last of each resource."""
+        """Return what people are told of now, the last of each resource."""
         self._moved = {name: moved for name, moved in self._moved.items() if moved.lasts(monotonic)}
         return list(self._moved.values())
 
@@ -348,7 +348,7 @@ class ByHand:
 
 
 def on_its_way(pipelines: StationPipelines) -> dict[str, Collection[Value]]:
-    """What a variable is on its way: between two named values, or a goal before it has come to its end."""
+    """Return what a variable is on its way: between two named values, or a goal before it has come to its end."""
     named = {w.variable: (w.between,) for node in pipelines.nodes for w in node.writings if w.between is not None}
     goals = {name: GOAL_ON_ITS_WAY for use in pipelines.actions.values() for name in use.status.variables}
     return {**named, **goals}
@@ -359,7 +359,7 @@ def _went_on(moved: Moved) -> dict[str, JsonValue]:
 
 
 def _read(ability: Ability) -> frozenset[str]:
-    """What decides whether the ability may start, executes, or has finished."""
+    """Return what decides whether the ability may start, executes, or has finished."""
     finish = () if ability.finish_guard is None else tuple(variables(ability.finish_guard))
     guards = (ability.enabled, ability.start_guard, ability.executing)
     return frozenset((*finish, *(name for guard in guards for name in variables(guard))))
@@ -445,7 +445,7 @@ class Forcing:
         return self._certainly_outside(after) and (moving or not self._certainly_outside(before))
 
     def _certainly_outside(self, state: State) -> bool:
-        """Whether no values of what is unknown make the state a safe one."""
+        """Return whether no values of what is unknown make the state a safe one."""
         return bool(self._execution.supervisor.safe.nearest(state)) or bool(self._violated(state))
 
     def _violated(self, state: State) -> tuple[str, ...]:

@@ -47,7 +47,7 @@ MOST_KEPT = 64  # offers; older ones are gone
 
 
 class CorrectionDesk(Protocol):
-    """Whoever makes corrections."""
+    """The one who makes corrections, whoever that is."""
 
     def carry_out(self, command: CorrectEstimates, moment: Timestamp) -> None:
         """Make it. Raises `CommandRefused`; nothing has changed then."""

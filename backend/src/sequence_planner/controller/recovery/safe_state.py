@@ -33,7 +33,7 @@ class SafeStateDifference:
 
 @dataclass(frozen=True)
 class SafetyStatus:
-    """What is wrong with a state that does not count as safe.
+    """The faults of a state that does not count as safe.
 
     `violated` are specifications, `differences` lead to the nearest safe state in fewest variables, and `awaited` are
     the unknown variables that safety depends on. Without differences the state would be safe for some of their values.
@@ -45,17 +45,17 @@ class SafetyStatus:
 
     @property
     def certain(self) -> bool:
-        """Whether the state is outside whatever the unknown values are."""
+        """True if the state is outside whatever the unknown values are."""
         return bool(self.violated or self.differences)
 
 
 def surely_outside(safe: StateSet, state: State) -> bool:
-    """Whether a state is outside the safe states whatever its unknown values are."""
+    """Return whether a state is outside the safe states whatever its unknown values are."""
     return any(state[name] is not None for name in safe.nearest(state) or ())
 
 
 def leaves(safe: StateSet, before: State, after: State) -> bool:
-    """Whether a change leads out of the safe states, whatever is not heard yet."""
+    """Return whether a change leads out of the safe states, whatever is not heard yet."""
     if surely_outside(safe, after) and not surely_outside(safe, before):
         return True
     return safe.includes(before) and not safe.includes(after)
@@ -73,7 +73,7 @@ class SafeStateMonitor:
 
     @property
     def situation(self) -> SafetyStatus | None:
-        """What is wrong now; None in a state that counts as safe."""
+        """The faults that there are now; None in a state that counts as safe."""
         state = self._execution.state
         key = (self._key(state), frozenset(self._execution.conduct.answers))
         if self._seen is None or self._seen[0] != key:
@@ -82,19 +82,19 @@ class SafeStateMonitor:
 
     @property
     def certain(self) -> bool:
-        """Whether the state is outside whatever the unknown values are."""
+        """True if the state is outside whatever the unknown values are."""
         situation = self.situation
         return situation is not None and situation.certain
 
     @property
     def answer(self) -> WayBackAnswer | str | None:
-        """What is known of the way back from here, or why it cannot be computed; None while it is looked for."""
+        """The answer on the way back from here, or why it cannot be computed; None while it is looked for."""
         if self._answer is None or self._answer[0] != self._key(self._execution.state):
             return None
         return self._answer[1]
 
     def request(self, deadline: float) -> WayBackRequest | None:
-        """What to ask the planner now; None when there is nothing to ask or it would answer the same again."""
+        """Return what to ask the planner now; None when there is nothing to ask or it would answer the same again."""
         key = (self._key(self._execution.state), self._execution.circumstances)
         if key == self._asked or self.situation is None or not self.situation.certain:
             return None
@@ -113,7 +113,7 @@ class SafeStateMonitor:
             self._answer = (self._key(request.state), why)
 
     def describe(self, situation: SafetyStatus) -> str:
-        """What is wrong, for a person to read."""
+        """Say what is wrong, for a person to read."""
         automaton, answer = self._execution.automaton, self.answer
         if situation.violated:
             wrong = f"It violates {_named(automaton, situation.violated)}."
@@ -127,7 +127,7 @@ class SafeStateMonitor:
         return f"The station is outside its safe states. {wrong}{_nearest(automaton, situation.differences)}"
 
     def past(self, situation: SafetyStatus) -> str:
-        """What was wrong, once it is over."""
+        """Say what was wrong, once it is over."""
         named = _named(self._execution.automaton, situation.violated)
         return f"The station was outside its safe states{f': it violated {named}' if named else ''}"
 
@@ -142,7 +142,7 @@ class SafeStateMonitor:
         return names | {each.name for each in situation.differences}
 
     def way(self) -> str:
-        """Which way leads back, for a person to read."""
+        """Say which way leads back, for a person to read."""
         answer = self.answer
         if answer is None:
             return "A way back is being looked for."

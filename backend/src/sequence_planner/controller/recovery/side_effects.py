@@ -1,4 +1,4 @@
-"""What every device changes along with something else, so that nobody has to be told of it too.
+"""Side effects: changes that every device makes along with something else, so that nobody has to be told of them too.
 
 A variable that remembers where a robot has been last is no more than that: it becomes what the pose becomes.
 """
@@ -11,7 +11,7 @@ from sequence_planner.automaton.automaton import Automaton, target
 
 
 def is_along(automaton: Automaton, name: str, others: Collection[str]) -> bool:
-    """Whether nothing gives the variable a value but together with one of the others, which can change alone."""
+    """Return whether nothing gives the variable a value but together with one of the others, which can change alone."""
     return any(_comes_with(automaton, name, other) for other in others)
 
 

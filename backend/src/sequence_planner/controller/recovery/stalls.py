@@ -23,7 +23,9 @@ _MOST_STEPS = 4  # of a device that goes on
 
 
 class Culprits:
-    """What follows from what at the devices of one station: among `effects`, by name, those that are counted on."""
+    """Consequences at the devices of one station, what follows from what: among `effects`, by name, those that are
+    counted on.
+    """
 
     def __init__(self, automaton: Automaton, effects: Mapping[str, Effect]) -> None:
         self._automaton = automaton
@@ -51,7 +53,7 @@ class Culprits:
         return frozenset() if own else frozenset(late)
 
     def has_to_act(self, ability: Ability, state: State) -> bool:
-        """Whether there is something that the ability's own device should do so that a run of it goes on."""
+        """Return whether there is something that the ability's own device should do so that a run of it goes on."""
         own = (self._effects[name] for name in self._led_to(ability))
         return any(each.resource == ability.resource and changes_something(each, state) for each in own)
 
@@ -64,7 +66,7 @@ class Culprits:
         return None
 
     def _ends(self, effect: Effect, earlier: str, state: State) -> bool:
-        """Whether there is nothing to be done by `effect` once the device of the `earlier` one has gone on."""
+        """Return whether there is nothing to be done by `effect` once the device of the `earlier` one has gone on."""
         device = [each for each in self._effects.values() if each.resource == self._effects[earlier].resource]
         due: Effect | None = self._effects[earlier]
         for _ in range(_MOST_STEPS):
@@ -197,7 +199,7 @@ class StallDetector:
         return frozenset(map(self._resource, culprits))
 
     def has_to_act(self, ability: Ability) -> bool:
-        """Whether there is something that the ability's own device should do so that a run of it goes on."""
+        """Return whether there is something that the ability's own device should do so that a run of it goes on."""
         return self._culprits.has_to_act(ability, self._execution.state)
 
     def _most(self, effect: Effect) -> float:

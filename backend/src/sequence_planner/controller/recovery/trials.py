@@ -141,7 +141,7 @@ class Trials:
         self._execution.take_errand(_errand(ability, command, moment), moment)
 
     def refusal(self, ability: Ability) -> CommandRefused | None:
-        """Why it cannot be tried now; None when it can."""
+        """Return why it cannot be tried now; None when it can."""
         execution = self._execution
         if execution.errand is not None:
             return errand_under_way(execution.errand)

@@ -1,4 +1,5 @@
-"""Who can do what while devices are silent or something is out of service: told at once, before a plan is searched for.
+"""The view of who can do what while devices are silent or something is out of service: told at once, before a plan is
+searched for.
 
 It counts on what abilities do, and on what the model says people do by themselves; not on devices that are moved by
 hand, which advice proposes.

@@ -1,4 +1,4 @@
-"""Why not? What is in the way of an ability, an operation or a goal, and who could change it.
+"""Answers to the question why not: what is in the way of an ability, an operation or a goal, and who could change it.
 
 Nothing is computed before somebody asks. All of it but plans is found on the controller's own loop, in a moment.
 """
@@ -45,7 +45,7 @@ class WhyNot:
         self._involving = Involving(execution, surroundings)
 
     async def answer(self, ask: AskWhyNot) -> WhyNotView:
-        """What is in the way. Raises `CommandRefused` for what the station does not have."""
+        """Return what is in the way. Raises `CommandRefused` for what the station does not have."""
         match ask.of:
             case "ability":
                 return self._ability(ask.name)
@@ -74,7 +74,7 @@ class WhyNot:
         return self._view("ability", name, ability.title, summary, found)
 
     def _unplanned(self, name: str) -> Iterable[BlockingCondition]:
-        """Why an ability that may start does not."""
+        """Return why an ability that may start does not."""
         order = self._execution.plan.order.names
         if name not in order:
             reason = self._execution.plan.reason
@@ -102,7 +102,7 @@ class WhyNot:
         return self._view("operation", name, operation.title, summary, lacking)
 
     def _inactive(self, operation: Operation) -> Iterable[BlockingCondition]:
-        """Why it is not active, beside its precondition."""
+        """Return why it is not active, beside its precondition."""
         execution = self._execution
         if operation.name in execution.conduct.out_of(ServiceKind.OPERATION):
             yield BlockingCondition(HindranceKind.SERVICE, f"{operation.title} to be put back in service")
@@ -116,7 +116,7 @@ class WhyNot:
             yield BlockingCondition(HindranceKind.WRITTEN, f"{print_expression(undone)}: its goal holds", undone)
 
     def _progress(self, operation: Operation) -> str:
-        """How far an active operation is."""
+        """Say how far an active operation is."""
         execution, name = self._execution, operation.name
         if execution.errand is not None:
             return f"It waits: {execution.errand.title} is being carried out."

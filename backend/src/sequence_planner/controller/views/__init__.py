@@ -1,1 +1,1 @@
-"""What is shown of a running station."""
+"""The documents that show a running station."""

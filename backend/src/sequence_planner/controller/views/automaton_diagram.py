@@ -127,7 +127,7 @@ class Drawing:
         )
 
     def _allowed(self, ability: Ability) -> bool | None:
-        """Whether the supervisor allows a start, whatever the written guards say."""
+        """Return whether the supervisor allows a start, whatever the written guards say."""
         if self._supervisor is None:
             return None
         after = start(self._automaton, self._state, ability)

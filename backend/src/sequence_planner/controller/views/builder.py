@@ -75,14 +75,14 @@ LONGEST: Final = 0.9  # seconds after which it is shown all the same: how many m
 
 
 class Shown:
-    """What was shown last."""
+    """The view that was shown last."""
 
     def __init__(self) -> None:
         self._last: StationView | None = None
         self._since = 0.0  # on the clock of `time.monotonic`
 
     def is_news(self, view: StationView) -> bool:
-        """Whether it is to be shown, which it then is: else only the time, and when messages came, are others."""
+        """Return whether it is to be shown, which it then is: else only the time, and when messages came, are others."""
         last, now = self._last, time.monotonic()
         if last is not None and now - self._since < LONGEST and _lasting(view) == _lasting(last):
             return False
@@ -131,7 +131,7 @@ _FAILURES = frozenset({"overdue", "still", "given-up"})
 
 
 def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
-    """What the resources are called that do not do what they should, as `alarms` say; people are none of them."""
+    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of them."""
     found: set[str] = set()
     for key, alarm in alarms.items():
         kind, _, name = key.partition(":")
@@ -146,7 +146,7 @@ def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
 
 
 def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[str]) -> StationStanding:
-    """Whether anything starts by itself, while these resources are `silent`."""
+    """Return whether anything starts by itself, while these resources are `silent`."""
     situation = outside.situation
     if execution.production is not Production.STARTED:
         return StationStanding.WAITING
@@ -158,7 +158,7 @@ def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[
 
 
 def errand_view(execution: Executor) -> ErrandView | None:
-    """What is carried out now."""
+    """Return what is carried out now."""
     errand = execution.errand
     if errand is None:
         return None
@@ -175,7 +175,7 @@ def errand_view(execution: Executor) -> ErrandView | None:
 
 
 def last_errand_view(conduct: ExecutionState) -> LastErrandView | None:
-    """How the last one has ended."""
+    """Return how the last one has ended."""
     last = conduct.last_errand
     if last is None:
         return None
@@ -183,7 +183,7 @@ def last_errand_view(conduct: ExecutionState) -> LastErrandView | None:
 
 
 def force_views(conduct: ExecutionState) -> dict[str, ForceView]:
-    """What is forced."""
+    """Return what is forced."""
     return {
         name: ForceView(value=force.value, real=force.real, until=force.until.epoch, by=force.by, why=force.why)
         for name, force in conduct.forces.items()
@@ -191,7 +191,7 @@ def force_views(conduct: ExecutionState) -> dict[str, ForceView]:
 
 
 def service_views(automaton: Automaton, conduct: ExecutionState) -> list[ServiceView]:
-    """What is out of service, since when."""
+    """Return what is out of service, since when."""
     return [
         ServiceView(
             of=each.of,
@@ -252,7 +252,7 @@ _NEXT_MOVES = 2
 
 @dataclass(frozen=True)
 class Doubts:
-    """What a person has to decide or to look at, the last correction, and what waits for a second person."""
+    """The things that a person has to decide or to look at, the last correction, and what waits for a second person."""
 
     undecided: dict[str, UndecidedOutputView]
     questions: list[QuestionView]
@@ -303,7 +303,7 @@ class ViewBuilder:
             self._replaced = (self._execution.plan.replacement, now)
 
     def since(self, name: str) -> float | None:
-        """When a variable was first seen with the value that it has; None before the first tick."""
+        """Return when a variable was first seen with the value that it has; None before the first tick."""
         seen = self._since.get(name)
         return None if seen is None else seen[1]
 
@@ -372,7 +372,7 @@ class ViewBuilder:
     def job_waits(
         self, desk: TaskHandler, alarms: dict[str, AlarmView], controlled: bool, moment: Timestamp
     ) -> dict[str, list[str]]:
-        """What each job waits for that was taken and is neither paused nor over."""
+        """Return what each job waits for that was taken and is neither paused nor over."""
         around, told = self._around(desk, alarms, controlled, moment), (JobState.WAITING, JobState.RUNNING)
         jobs = self._execution.conduct.jobs.under_way
         return {job.id: job_waits_for(self._execution, job, around) for job in jobs if job.state in told}
@@ -574,7 +574,7 @@ def _why(execution: Executor) -> DiagnosisView | None:
 
 
 def _contract(plan: Plan | None) -> Contract | None:
-    """What the plan is: one that is proven to be the shortest, or one that was found soon."""
+    """Return what the plan is: one that is proven to be the shortest, or one that was found soon."""
     if plan is None:
         return None
     return Contract.MINIMAL if plan.minimal_ticks and plan.minimal_starts else Contract.FAST

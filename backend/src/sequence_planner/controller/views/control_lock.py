@@ -1,4 +1,4 @@
-"""Who is in control of a station, as it is shown."""
+"""The one who is in control of a station, as it is shown."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ _MOST_ALARMS = 3
 
 @dataclass(frozen=True)
 class Around:
-    """What is known around an execution now, on the controller's clock `monotonic`.
+    """The knowledge around an execution now, on the controller's clock `monotonic`.
 
     `held_up` names the active operations that cannot be completed while some resources do nothing; `next_waits` is what
     the next start of the plan waits for.
@@ -46,7 +46,7 @@ class Around:
 
 
 def of_running(execution: Executor, job: Job, around: Around | None) -> list[str]:
-    """What a job that has begun waits for; empty only where something is being done that may bring it on.
+    """Return what a job that has begun waits for; empty only where something is being done that may bring it on.
 
     Of the past, without `around`, only what the execution itself knows is told.
     """
@@ -101,7 +101,7 @@ class _Running:
         return overdue(step, self._automaton.abilities[step.ability], self._around.monotonic)
 
     def _concerns(self, ability: str) -> bool:
-        """Whether what an ability does may be for this job: it is, where nothing says that it is for another."""
+        """Return whether what an ability does may be for this job: it is, where nothing says that it is for another."""
         if self._alone:
             return True
         waiting = self._around.held_up({self._automaton.abilities[ability].resource})
@@ -122,7 +122,7 @@ class _Running:
             yield text
 
     def _operations(self) -> Iterator[str]:
-        """What keeps all its operations from being active."""
+        """Yield what keeps all its operations from being active."""
         if self._active or not self._job.under_way:
             return
         operations, jobs = self._automaton.operations, self._execution.conduct.jobs
@@ -140,7 +140,7 @@ class _Running:
             yield from (f"{operations[name].title} of job {job}" for job, name in sorted(awaited))
 
     def _lacking(self, condition: Expression) -> str:
-        """What of a condition does not hold, or all of it where that is not to be told."""
+        """Say what of a condition does not hold, or all of it where that is not to be told."""
         parts = [part for part in conjuncts(condition) if evaluate(part, self._execution.state) is not True]
         return print_expression(conjunction(*parts) if parts else condition)
 
@@ -171,14 +171,14 @@ class _Running:
         yield from (f"an alarm to be dealt with: {alarm.text}" for alarm in urgent[:_MOST_ALARMS])
 
     def _next(self) -> Iterator[str]:
-        """What the next start waits for, where nothing is under way that could bring it about."""
+        """Yield what the next start waits for, where nothing is under way that could bring it about."""
         order = self._execution.plan.order
         if self._active and order.ahead and not order.running and self._around.next_waits:
             title = self._automaton.abilities[order.ahead[0].ability].title
             yield f"{title} to start, which waits for {' and '.join(self._around.next_waits)}"
 
     def _goals(self) -> Iterator[str]:
-        """What is still to come true, where nothing is to be started for it."""
+        """Yield what is still to come true, where nothing is to be started for it."""
         if not self._execution.plan.order.ahead:
             operations = self._automaton.operations
             for name in sorted(self._active):
@@ -195,7 +195,7 @@ def job_views(execution: Executor, jobs: Jobs | None = None, around: Around | No
 
 
 def waits_for(execution: Executor, job: Job, around: Around | None = None) -> list[str]:
-    """What keeps a job as a whole from going on."""
+    """Return what keeps a job as a whole from going on."""
     if job.state is JobState.PAUSED:
         return ["the job to be resumed"]
     if job.state is JobState.WAITING:
@@ -213,7 +213,7 @@ def _awaited(jobs: Jobs, job: Job, operation: str, automaton: Automaton) -> list
 
 
 def why_idle(execution: Executor, operation: str) -> str | None:
-    """What has to come before a job asks for an operation; None where one does, or none has to."""
+    """Say what has to come before a job asks for an operation; None where one does, or none has to."""
     jobs, automaton = execution.conduct.jobs, execution.automaton
     if not jobs.by_order or operation not in automaton.job_operations:
         return None

@@ -1,4 +1,4 @@
-"""What a controller has counted and timed since it began, for those who watch over the station."""
+"""Counts and times that a controller has noted since it began, for those who watch over the station."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from sequence_planner.core.distribution import Distribution
 
 
 class DistributionView(View):
-    """How often something took how long: one of `counts` for each of `bounds` (seconds, at most so long), and a last
+    """Counts of how long something took: one of `counts` for each of `bounds` (seconds, at most so long), and a last
     one for what took longer than all. `seconds` is what it took in all.
     """
 
@@ -22,7 +22,7 @@ class DistributionView(View):
 
 
 class JournalFiguresView(View):
-    """How the run journal keeps up: records that wait to be durable, and how long each did.
+    """Figures on how the run journal keeps up: records that wait to be durable, and how long each did.
 
     While it is `behind` nothing is started: the database refuses records, or has confirmed none for too long.
     """

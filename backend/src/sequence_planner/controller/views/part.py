@@ -1,4 +1,4 @@
-"""What all documents about a running station are made of."""
+"""The parts that all documents about a running station are made of."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""What a person is shown before taking a plan by hand: every start, every correction, and what comes of it."""
+"""The documents that a person is shown before taking a plan by hand: every start, every correction, and what comes of
+it.
+"""
 
 from __future__ import annotations
 

@@ -87,13 +87,13 @@ def end_text(goal: Expression, into_safe: bool) -> str | None:
 
 
 def needs_restart(offer: RecoveryProposal) -> bool:
-    """Whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
+    """Return whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
     ordinary = offer.kind in (OfferKind.GOAL, OfferKind.RESET)
     return offer.restart or offer.unsupervised or bool(offer.corrections) or (offer.errand is not None and not ordinary)
 
 
 def offer_title(automaton: Automaton, offer: RecoveryProposal) -> str:
-    """What is to be done, in one line."""
+    """Say what is to be done, in one line."""
     text = ", then ".join(_parts(automaton, offer)) or "go on as it is"
     if offer.only_if_checked:
         return f"Only if you have checked: {text}"
@@ -154,7 +154,7 @@ def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
 def diagnosis_view(
     diagnosis: Diagnosis, out_of_service: Collection[str], answers: Collection[str] = ()
 ) -> DiagnosisView:
-    """Why something cannot be done, and what would help; resources that do nothing can be `out_of_service`.
+    """Return why something cannot be done, and what would help; resources that do nothing can be `out_of_service`.
 
     Nothing is said otherwise of estimates for which somebody has given `answers`, and what can be done comes first.
     """
@@ -191,7 +191,7 @@ def _changes(changes: Iterable[ValueChange]) -> list[ValueChangeView]:
 
 
 def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused | None:
-    """Why an offer for the present state cannot be taken now; None when it can."""
+    """Return why an offer for the present state cannot be taken now; None when it can."""
     if execution.errand is not None:
         return errand_under_way(execution.errand)
     if offer.physical or offer.online or offer.in_service:
@@ -209,7 +209,7 @@ def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused |
 
 
 def correcting_refused(execution: Executor) -> CommandRefused | None:
-    """Why no correction can be made now; None when one can."""
+    """Return why no correction can be made now; None when one can."""
     if execution.errand is not None:
         return errand_under_way(execution.errand)
     if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
@@ -238,7 +238,7 @@ def require_confirmation(offer: RecoveryProposal, command: TakeErrand) -> None:
 
 
 def _same(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
-    """Whether they are equal, where true is not 1."""
+    """Return whether they are equal, where true is not 1."""
     return one == other and all(type(one[name]) is type(other[name]) for name in one)
 
 
@@ -265,7 +265,7 @@ def no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
 
 
 def read_predicate(automaton: Automaton, text: str) -> Expression:
-    """What `text` means, with all names in full. Raises `CommandRefused`, which names the place."""
+    """Return what `text` means, with all names in full. Raises `CommandRefused`, which names the place."""
     try:
         return resolve_predicate(parse(text), NameScope(automaton.types))
     except ExpressionError as error:

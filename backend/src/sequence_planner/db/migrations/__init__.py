@@ -1,1 +1,1 @@
-"""How the tables have come to be what they are."""
+"""The way in which the tables have come to be what they are."""

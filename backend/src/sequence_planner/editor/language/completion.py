@@ -33,7 +33,7 @@ _FURTHEST = 400  # characters in which a name is looked for
 
 
 class DottedName(NamedTuple):
-    """Where the name begins and ends, and what of it stands before the place."""
+    """The beginning and the end of the name, and what of it stands before the place."""
 
     start: int
     end: int
@@ -52,7 +52,7 @@ def chain_at(text: str, offset: int, temporal: bool = False) -> DottedName:
 
 
 def whole_at(text: str, start: int, temporal: bool = False) -> int:
-    """Where the name or number that begins at `start` ends."""
+    """Return where the name or number that begins at `start` ends."""
     found = _WHOLE.match(text, start)
     if found is None:
         return start
@@ -69,7 +69,7 @@ def word_at(text: str, offset: int) -> Span:
 
 
 def _behind_words(typed: str, temporal: bool) -> str:
-    """What is left of `typed` behind words of the language that stand before a bracket, as in `not(a`."""
+    """Return what is left of `typed` behind words of the language that stand before a bracket, as in `not(a`."""
     head = _matched(typed, 0)
     behind = typed[len(head) :]
     if behind[:1] == "(" and _is_no_name(head, temporal) and ")" not in behind:
@@ -145,7 +145,7 @@ class TextBefore:
     _fitting: dict[str, bool] = field(default_factory=dict, compare=False, repr=False)
 
     def fits(self, word: str) -> bool:
-        """Whether `word` can stand next, if the right words follow."""
+        """Return whether `word` can stand next, if the right words follow."""
         if word not in self._fitting:
             is_action, is_formula = self.kind is FieldKind.ACTION, self.kind is FieldKind.FORMULA
             self._fitting[word] = can_go_on(f"{self.text} {word}", is_action, is_formula)
@@ -161,7 +161,7 @@ class TextBefore:
 
     @cached_property
     def wants_name(self) -> bool:
-        """Whether a name can stand next; where what is before makes no sense, as far as its last word tells."""
+        """True if a name can stand next; where what is before makes no sense, as far as its last word tells."""
         if self._is_broken:
             last = _LAST.search(self.text)
             return last is None or last[1] in _BEFORE_OPERAND or not (last[1][-1].isalnum() or last[1] in ")]}_")
@@ -169,7 +169,7 @@ class TextBefore:
 
     @cached_property
     def wants_target(self) -> bool:
-        """Whether the variable that an action writes can stand next."""
+        """True if the variable that an action writes can stand next."""
         return self.kind is FieldKind.ACTION and not self.text.strip()
 
     def words(self) -> list[str]:
@@ -179,7 +179,7 @@ class TextBefore:
         return self._beginning_words() if self.wants_name else self._joining_words()
 
     def _beginning_words(self) -> list[str]:
-        """What an operand can begin with, beside names."""
+        """Return what an operand can begin with, beside names."""
         expected = self.expected()
         found = ["not"] if self.fits("not") else []
         if expected is None or expected == BOOLEAN:
@@ -191,7 +191,7 @@ class TextBefore:
         return [*found, "("] if self.fits("(") else found
 
     def _joining_words(self) -> list[str]:
-        """What can stand behind an operand."""
+        """Return what can stand behind an operand."""
         begin = self._begin_before(len(self.tokens))
         operand = self._type_before(len(self.tokens))
         if begin and self.tokens[begin - 1].kind == ":=":
@@ -462,7 +462,7 @@ Ranked = tuple[int, Option]
 
 
 def complete(lexicon: Lexicon, field: TextField, text: str, offset: int) -> Completion:
-    """What can be written in `text` at `offset`, in place of the name that is there."""
+    """Return what can be written in `text` at `offset`, in place of the name that is there."""
     if field.kind not in _EXPRESSIONS:
         return complete_choice(lexicon, field, text, offset)
     chain = chain_at(text, offset, field.kind is FieldKind.FORMULA)
@@ -540,7 +540,7 @@ def _numbers(beginning: TextBefore, typed: str) -> Iterator[Ranked]:
 
 
 def _closing(beginning: TextBefore, chain: DottedName) -> Iterator[Option]:
-    """What can stand directly behind a name, with the name."""
+    """Yield what can stand directly behind a name, with the name."""
     for sign in _CLOSERS:
         if beginning.fits(chain.typed + sign):
             yield option(chain.typed + sign, NameKind.KEYWORD)

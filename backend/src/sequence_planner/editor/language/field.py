@@ -18,7 +18,7 @@ Reading = Callable[[Meaning, SourceText, NameScope], object]
 
 
 class FieldKind(StrEnum):
-    """What kind of text stands in a field."""
+    """The kind of text that stands in a field."""
 
     CONDITION = "condition"
     FORMULA = "formula"
@@ -49,7 +49,7 @@ class TextField:
     type: Type | None = None
 
     def prefixes(self, binding: Binding) -> tuple[str, ...]:
-        """What is tried before a bare name, in order, for one choice of the parameters."""
+        """Return what is tried before a bare name, in order, for one choice of the parameters."""
         own = (f"{self.resource}.",) if self.resource else ()
         return (f"{instance_name(self._ability, binding)}.", *own) if self.ability else own
 
@@ -60,7 +60,7 @@ class TextField:
         return (f"{with_arguments(self._ability, map(str, self.parameters))}.", *own) if self.ability else own
 
     def scopes(self, meaning: Meaning) -> Iterator[NameScope]:
-        """What names mean here, for each choice of the parameters."""
+        """Yield what names mean here, for each choice of the parameters."""
         for binding in meaning.declarations.bindings(self.parameters):
             yield meaning.scope(binding, *self.prefixes(binding))
 
@@ -70,7 +70,7 @@ class TextField:
 
 
 def condition(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
-    """What grounding makes of a condition."""
+    """Return what grounding makes of a condition."""
     return meaning.predicate(text, scope)
 
 

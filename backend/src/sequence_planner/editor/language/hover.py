@@ -24,7 +24,7 @@ from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Typ
 
 
 def is_value_at(span: Span, text: str, kind: FieldKind, scope: NameScope) -> bool:
-    """Whether the name there is read as a value; not where the text makes no sense."""
+    """Return whether the name there is read as a value; not where the text makes no sense."""
     try:
         parts = _resolved(text, kind, scope)
     except ExpressionError:
@@ -56,7 +56,7 @@ _MOST_NAMES = 100
 
 @dataclass(frozen=True)
 class Hover:
-    """What stands from `start` to `end` of a text.
+    """The thing that stands from `start` to `end` of a text.
 
     `names` are the full names it has for the choices of the parameters, and `pattern` is all of them at once, with the
     parameters as they are written. `place` is where it is declared, within the station; `part` is the id by which it is
@@ -78,7 +78,7 @@ class Hover:
 
 
 def hover(lexicon: Lexicon, field: TextField, text: str, offset: int) -> Hover | None:
-    """What the name at `offset` is, or None where there is none that means anything."""
+    """Say what the name at `offset` is, or return None where there is none that means anything."""
     if field.kind in (FieldKind.CONDITION, FieldKind.FORMULA, FieldKind.ACTION):
         return _Hovering(lexicon, field, text).at(offset)
     start = len(text) - len(text.lstrip())
@@ -109,7 +109,7 @@ class _Hovering:
         return self._variable(span, name) or (self._value(span) if name.is_word else None)
 
     def choice(self, span: Span) -> Hover | None:
-        """What the whole text is, where that is one name of few."""
+        """Say what the whole text is, where that is one name of few."""
         word = self._text[span.start : span.end]
         match self._field.kind:
             case FieldKind.TYPE | FieldKind.ENUMERATION:

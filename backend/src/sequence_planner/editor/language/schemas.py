@@ -1,4 +1,4 @@
-"""What the page is told about a text while it is written."""
+"""The things that the page is told about a text while it is written."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 
 @dataclass(frozen=True)
 class Family:
-    """What one declaration names: `bolts[…]`, or the flag `robot.move(…).executing`.
+    """The names of one declaration: `bolts[…]`, or the flag `robot.move(…).executing`.
 
     A full name is `name`, its arguments, and `suffix`; `arguments` are the enumerations these are of. `owner` is the
     resource, or None for what belongs to the station, and `indexed` whether brackets are around the arguments.
@@ -391,7 +391,7 @@ def _of_work_master(
 
 
 class Lexicon:
-    """What is declared in a draft, which may be as wrong as drafts are; made when it is first asked for."""
+    """The declarations of a draft, which may be as wrong as drafts are; made when it is first asked for."""
 
     def __init__(self, station: Station, registry: MessageRegistry | None = None) -> None:
         self._written = station
@@ -430,7 +430,7 @@ class Lexicon:
 
     @cached_property
     def family(self) -> Mapping[str, Family]:
-        """What each full name is one of."""
+        """The family that each full name is one of."""
         return {name: family for family in self.families for name in family.instances(self.declarations.enumerations)}
 
     def seen_from(self, resource: str | None) -> tuple[Visible, ...]:
@@ -440,7 +440,7 @@ class Lexicon:
         return self._seen[resource]
 
     def field(self, file: str, path: EntryPath, parameters: Mapping[str, str] | None = None) -> TextField | None:
-        """What stands at an entry of a file of the station, or None where no names stand.
+        """Return what stands at an entry of a file of the station, or None where no names stand.
 
         What the entry belongs to may be new; its `parameters` can then be given, as the enumeration of each.
         """
@@ -462,7 +462,7 @@ class Lexicon:
         return None
 
     def meaning(self, field: TextField, findings: Findings | None = None) -> Meaning:
-        """What texts mean at a field; what is wrong with them is noted in `findings`."""
+        """Return what texts mean at a field; what is wrong with them is noted in `findings`."""
         noted = findings or Findings()
         return Meaning(self.declarations.noting(noted, self._types(field)), noted)
 
@@ -497,7 +497,7 @@ _MOST_FORMS = 2000  # of one family
 
 
 class VisibleNames:
-    """What can be seen from one field."""
+    """The names that can be seen from one field."""
 
     def __init__(self, lexicon: Lexicon, field: TextField) -> None:
         self._lexicon = lexicon
@@ -506,7 +506,7 @@ class VisibleNames:
 
     @cached_property
     def scope(self) -> NameScope:
-        """What names mean, for the first choice of the parameters."""
+        """The meaning of names, for the first choice of the parameters."""
         first = next(self._field.scopes(self._meaning), None)
         return first or self._meaning.scope({}, *self._field.prefixes({}))
 
@@ -550,7 +550,7 @@ class VisibleNames:
                 yield written
 
     def has_parameter(self, form: str) -> bool:
-        """Whether a parameter is among the arguments of a name."""
+        """Return whether a parameter is among the arguments of a name."""
         return any(word in self.parameters for word in re.findall(r"\w+", form))
 
     def _arguments(self, family: Family) -> Iterator[tuple[str, ...]]:

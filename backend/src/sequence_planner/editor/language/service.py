@@ -37,7 +37,7 @@ class TextProblem:
 
 
 class _FoundIn(Findings):
-    """What is found in one text, and nothing of what is found elsewhere meanwhile."""
+    """The findings in one text, and nothing of what is found elsewhere meanwhile."""
 
     def __init__(self, text: SourceText) -> None:
         super().__init__()
@@ -54,7 +54,7 @@ class _FoundIn(Findings):
 
 
 def check(lexicon: Lexicon, field: TextField, text: str) -> tuple[TextProblem, ...]:
-    """What grounding would find in `text` at that field, for every choice of its parameters, each thing once."""
+    """Return what grounding would find in `text` at that field, for every choice of its parameters, each thing once."""
     source = SourceText(text, Place("", 1, 1), text)
     found = _FoundIn(source)
     meaning = lexicon.meaning(field, found)

@@ -63,7 +63,7 @@ _NUMBER = re.compile(r"stage \d+|line \d+|:\d+:\d+")
 
 
 def preview(number: int, graph: DraftPipelines, files: Files, reader: DraftReader, question: Preview) -> PreviewView:
-    """What would be otherwise; `reader` has read `files`, of which `graph` is made."""
+    """Return what would be otherwise; `reader` has read `files`, of which `graph` is made."""
     try:
         after = DraftPipelines(reader.beside().sketch(applied(files, question.edits)))
     except EditError as error:
@@ -86,7 +86,7 @@ def _elsewhere(view: DraftPipelineView) -> str:
 
 
 def new_findings(before: DraftPipelines, after: DraftPipelines) -> list[FindingDocument]:
-    """What is found that was not there before, wherever it stands now."""
+    """Return what is found that was not there before, wherever it stands now."""
     known = Counter(map(_said, all_findings(before)))
     found = []
     for finding in all_findings(after):
@@ -126,7 +126,7 @@ def pipeline_of(graph: DraftPipelines, id_: str) -> DraftPipelineView:
 
 
 def obstacle(graph: DraftPipelines, view: DraftPipelineView) -> str | None:
-    """Why a pipeline cannot be run."""
+    """Say why a pipeline cannot be run."""
     chain = graph.sketch.built.chains.get(view.name)
     if view.id != view.name or chain is None or not chain.is_sound or view.standing is Soundness.UNKNOWN:
         said = [each.message for stage in view.stages for each in stage.findings] or [
@@ -140,7 +140,7 @@ def obstacle(graph: DraftPipelines, view: DraftPipelineView) -> str | None:
 
 
 def run_examples(number: int, graph: DraftPipelines, question: Examples) -> RunsView:
-    """How examples end."""
+    """Tell how examples end."""
     view = pipeline_of(graph, question.pipeline)
     chosen = [index for index, each in enumerate(view.examples) if question.name in (None, each.name)]
     if question.name is not None and not chosen:
@@ -152,7 +152,7 @@ def run_examples(number: int, graph: DraftPipelines, question: Examples) -> Runs
 
 
 def run_example(graph: DraftPipelines, view: DraftPipelineView, index: int) -> RunView:
-    """How an example ends that is written in the draft."""
+    """Tell how an example ends that is written in the draft."""
     document = graph.sketch.documents[view.place.file]
     path: EntryPath = (*view.place.path, "examples", index)
     return run_written(graph, view, content_at(document.content, path), document, path, view.examples[index].place)
@@ -166,7 +166,7 @@ def run_written(
     path: EntryPath,
     place: EntryView | None,
 ) -> RunView:
-    """How an example ends, `content` as it stands or could stand at the `path` of a document."""
+    """Tell how an example ends, `content` as it stands or could stand at the `path` of a document."""
     name = content.get("name") if isinstance(content, dict) else None
     named = None if name is None else str(name)
     try:
@@ -222,7 +222,7 @@ def _tried(graph: DraftPipelines, view: DraftPipelineView, question: Trial) -> R
 def _moments(
     graph: DraftPipelines, view: DraftPipelineView, steps: Sequence[ExampleStepDocument], given: Sequence[Plain | None]
 ) -> Iterator[ExampleMoment]:
-    """What has come by each step. Raises `GivenError`."""
+    """Yield what has come by each step. Raises `GivenError`."""
     sketch = graph.sketch
     bench = bench_of(view.name, sketch.built.pipelines, sketch.automaton, sketch.registry)
     try:
@@ -253,7 +253,7 @@ def _step(
 
 
 def _values(gives: object, came: Plain) -> Iterable[ValueView]:
-    """What came, and what was expected; what is not there came as unknown."""
+    """Return what came, and what was expected; what is not there came as unknown."""
     wanted = {str(key): value for key, value in gives.items()} if isinstance(gives, dict) else {}
     for name in dict.fromkeys((*wanted, *came)):
         expected = plain(wanted.get(name))
@@ -322,7 +322,7 @@ def recorded(graph: DraftPipelines, question: Recording) -> RecordingView:
 def _given(
     graph: DraftPipelines, node: IncomingPipeline | OutgoingPipeline | Flow, first: Mapping[str, JsonValue]
 ) -> dict[str, JsonValue]:
-    """What an example gives, without what is as it is by itself."""
+    """Return what an example gives, without what is as it is by itself."""
     known: dict[str, JsonValue] = {name: value for name, value in first.items() if value is not None}
     match node:
         case Flow(joining=Joining.MERGE):
@@ -346,7 +346,7 @@ def _given(
 
 
 def _not_finite(value: JsonValue | Mapping[str, JsonValue], path: str = "") -> str | None:
-    """Where a message has a number that JSON has not; messages have no unknown values."""
+    """Say where a message has a number that JSON has not; messages have no unknown values."""
     match value:
         case None:
             return path
@@ -373,7 +373,7 @@ def _came(graph: DraftPipelines, name: str, given: Plain | Mapping[str, JsonValu
 def _station(
     node: IncomingPipeline | OutgoingPipeline | Flow, last: Mapping[str, JsonValue] | None
 ) -> dict[str, JsonValue]:
-    """What the station had at the end: variables or other fields that were given, or fields of the message."""
+    """Return what the station had at the end: variables or other fields that were given, or fields of the message."""
     if isinstance(node, OutgoingPipeline):
         # What it puts together are values of `last`, and so JSON.
         return cast("dict[str, JsonValue]", message_of(node, Record(dict(last or {}))))

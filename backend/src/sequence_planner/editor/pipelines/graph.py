@@ -78,7 +78,7 @@ def _with_live_edges(
 
 
 def _is_same(view: DraftPipelineView | None) -> bool:
-    """Whether what comes out of a pipeline runs as the draft has it."""
+    """Return whether what comes out of a pipeline runs as the draft has it."""
     return view is not None and view.edges[-1].live is not None and view.edges[-1].live.same
 
 
@@ -87,7 +87,7 @@ def _beginning(view: DraftPipelineView) -> tuple[object, ...]:
 
 
 def _stage(view: DraftPipelineView, index: int) -> str:
-    """What a stage does, as a text that is another one as soon as it does something else."""
+    """Return what a stage does, as a text that is another one as soon as it does something else."""
     stage = view.stages[index]
     what = (stage.reads, stage.gives) if stage.written is None else stage.written
     return json.dumps([stage.kind, what])
@@ -212,7 +212,7 @@ def sources_of(written: Written) -> Iterator[tuple[str | None, str, EntryPath]]:
 
 
 def joining_of(written: Written) -> Joining | None:
-    """How a flow comes of its sources; None for what is none."""
+    """Return how a flow comes of its sources; None for what is none."""
     if written.part is not Part.FLOW:
         return None
     match at(written.content, "from"):
@@ -296,7 +296,7 @@ class DraftPipelines:
         return found
 
     def _depth(self, id_: str, found: Mapping[str, DraftPipelineView], above: frozenset[str]) -> int:
-        """How many flows a pipeline stands behind."""
+        """Return how many flows a pipeline stands behind."""
         if id_ in above or not found[id_].sources:
             return 0
         behind = (each.pipeline for each in found[id_].sources if each.pipeline in found)
@@ -353,7 +353,7 @@ class DraftPipelines:
     def _built(
         self, written: Written
     ) -> tuple[IncomingPipeline | OutgoingPipeline | Flow | None, ChainBuilding | None]:
-        """What was made of it, unless another of the same name was."""
+        """Return what was made of it, unless another of the same name was."""
         chain = self.sketch.built.chains.get(written.name)
         if chain is None or self._ids[written.name] != written.id:
             return None, None
@@ -426,7 +426,7 @@ class DraftPipelines:
         return next((each for each in found if each is not None), None)
 
     def _findings(self, written: Written) -> list[Finding]:
-        """What is wrong with the pipeline as a whole; what is said of a client is said of its first part."""
+        """Return what is wrong with the pipeline as a whole; what is said of a client is said of its first part."""
         return self._located.take(written.file, written.path)
 
     def _ends(self, node: IncomingPipeline | OutgoingPipeline | Flow | None) -> list[DraftEndView]:
@@ -477,7 +477,7 @@ def type_view(type_: FieldType) -> TypeView:
 
 
 def _label(entry: object, stage: Stage | None) -> str:
-    """What a stage is recognised by among those of its kind: what it gives, as it is written."""
+    """Return what a stage is recognised by among those of its kind: what it gives, as it is written."""
     if isinstance(entry, dict) and entry:
         settings = next(iter(entry.values()))
         named = [at(settings, key) for key in ("variable", "name", "function")]
@@ -522,7 +522,7 @@ def _quality(node: IncomingPipeline | OutgoingPipeline | Flow | None) -> DraftQu
 
 
 def _is_ours(finding: Finding) -> bool:
-    """Whether it may have to do with pipelines."""
+    """Return whether it may have to do with pipelines."""
     return finding.place.file.startswith(("resources/", "messages/"))
 
 

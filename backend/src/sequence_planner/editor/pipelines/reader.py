@@ -51,8 +51,8 @@ _OWN_NAMES = 2  # a section and the name of an entry
 
 @dataclass
 class Pruned:
-    """What is wrong with a document, the lists of stages that are `cut` with the index of the first that is gone, and
-    the entries that are `lost` as a whole.
+    """The faults of a document, the lists of stages that are `cut` with the index of the first that is gone, and the
+    entries that are `lost` as a whole.
     """
 
     findings: list[Finding] = field(default_factory=list)
@@ -268,7 +268,7 @@ def _within(folder: Path, finding: Finding) -> Finding:
 def _resource(
     file: str, document: YamlDocument, cut: dict[tuple[str, EntryPath], int], lost: set[tuple[str, EntryPath]]
 ) -> tuple[ResourceDocument, list[Finding]]:
-    """What a resource says of its pipelines and variables. Of its abilities only their names matter."""
+    """Return what a resource says of its pipelines and variables. Of its abilities only their names matter."""
     content = document.content if isinstance(document.content, dict) else {}
     own = {key: value for key, value in content.items() if key in OURS}
     read, said = pruned(document, own, ResourceDocument)
@@ -295,12 +295,12 @@ def _station(document: YamlDocument) -> StationDocument:
 
 
 def _cut_names(cut: Mapping[tuple[str, EntryPath], int]) -> list[str]:
-    """What pipelines are called of which not all stages can be read."""
+    """Return what pipelines are called of which not all stages can be read."""
     return [pipeline_name(resource_of(file), path) for file, path in cut]
 
 
 def pipeline_name(resource: str, path: EntryPath) -> str:
-    """What a pipeline is called whose stages stand at `path`."""
+    """Return what a pipeline is called whose stages stand at `path`."""
     section, name, part = map(str, path[:3])
     if section == "flows":
         return flow_name(resource, name)

@@ -61,8 +61,8 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Spot:
-    """Where a stage shall stand: the record there, what there is a use for at the end, `open` what of it nothing gives
-    yet (of a message then the rest), and names that are taken. `enumerations` are those of the station.
+    """The place for a stage: its record, what there is a use for at the end, `open` what of it nothing gives yet (of a
+    message then the rest), taken names. `enumerations` are those of the station.
     """
 
     is_incoming: bool
@@ -80,7 +80,7 @@ class Spot:
         return next(each for each in names if each not in self.taken and each not in self.fields)
 
     def type_name(self, type_: FieldType) -> str | None:
-        """How a variable's document writes a type."""
+        """Return how a variable's document writes a type."""
         match type_:
             case BooleanType():
                 return "bool"
@@ -426,7 +426,7 @@ class Trying:
 
     @cached_property
     def _before(self) -> tuple[frozenset[str], Mapping[str, Type]]:
-        """What is found without any change, and the variables that there are with their types."""
+        """The findings without any change, and the variables that there are with their types."""
         findings, variables = self._built(self._station)
         return frozenset(map(_bare, findings)), variables
 
@@ -436,7 +436,7 @@ class Trying:
         return self._station.resources[self._view.resource]
 
     def with_stage(self, index: int, stage: Mapping[str, object], declares: Mapping[str, str]) -> str | None:
-        """Why a stage cannot be inserted there, once these variables are declared; None where it can."""
+        """Say why a stage cannot be inserted there, once these variables are declared; None where it can."""
         try:
             document = StageDocument.model_validate(_placed(stage))
         except ValidationError as error:
@@ -444,7 +444,7 @@ class Trying:
         return self._why_not(self._inserted(index, document), declares)
 
     def with_sources(self, source: object) -> str | None:
-        """Why a flow cannot have this `from`; None where it can."""
+        """Say why a flow cannot have this `from`; None where it can."""
         name = self._view.place.path[1]
         flows = dict(self.document.flows)
         key = next(each for each in flows if each == name)
@@ -484,7 +484,7 @@ class Trying:
         return _STAGE.sub("", (of_stages or new)[0]) if new else None
 
     def _built(self, station: Station) -> tuple[Sequence[str], Mapping[str, Type]]:
-        """What is wrong with a station, as the builder says it, and its variables with their types."""
+        """Return what is wrong with a station, as the builder says it, and its variables with their types."""
         sketch = self._graph.sketch
         cut = [pipeline_name(resource_of(file), path) for file, path in sketch.cut]
         inferred, found = variables_inferred(station, sketch.registry)
@@ -568,7 +568,7 @@ MOST_TRIED = 10  # stages of one kind
 
 
 def fits(number: int, graph: DraftPipelines, question: Fitting) -> FitsView:
-    """What could be put there. Raises `EditError` where nobody can say."""
+    """Return what could be put there. Raises `EditError` where nobody can say."""
     view = pipeline_of(graph, question.pipeline)
     if question.edge >= len(view.edges):
         raise EditError(f"`{view.id}` has {len(view.edges)} edges, counted from 0")
@@ -622,7 +622,7 @@ def _offer(kind: str, spot: Spot, index: int, view: DraftPipelineView, trying: T
 
 
 def _nothing_left(kind: str, spot: Spot) -> str:
-    """Why no stage of a kind can even be tried."""
+    """Say why no stage of a kind can even be tried."""
     if kind == "python":
         return (
             f"no file in the folder `{FOLDER}` on the server has a function whose parameters are fields of this record"
@@ -649,7 +649,7 @@ def _edits(view: DraftPipelineView, index: int, candidate: Candidate) -> list[En
 
 
 def _targets(field: str, spot: Spot, index: int, view: DraftPipelineView, trying: Trying) -> Iterator[TargetView]:
-    """What a field could become under another name."""
+    """Yield what a field could become under another name."""
     for name, type_ in spot.wanted.items():
         pair = {field: name} if spot.is_incoming else {name: field}
         candidate = Candidate({"rename": pair})

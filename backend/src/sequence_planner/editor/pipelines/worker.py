@@ -64,12 +64,12 @@ class PipelineService:
         self._running = Version(folder / "running")
 
     def told(self, asked: DraftQuestion) -> PipelineAnswer | tuple[PipelineAnswer]:
-        """What is answered, in brackets where it is to stay a view. Raises as `answer` does."""
+        """Return what is answered, in brackets where it is to stay a view. Raises as `answer` does."""
         found = self.answer(asked)
         return found if asked.as_json else (found,)
 
     def answer(self, asked: DraftQuestion) -> PipelineAnswer:
-        """What is answered. Raises `EditError` for what is not there, and `BodyError`."""
+        """Return what is answered. Raises `EditError` for what is not there, and `BodyError`."""
         self._draft.take(asked.changed, asked.stages)
         self._running.take(asked.running, asked.stages)
         graph, number = self._draft.graph, asked.number

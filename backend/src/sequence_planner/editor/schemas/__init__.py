@@ -1,1 +1,1 @@
-"""What pages are told of a draft."""
+"""The things that pages are told of a draft."""

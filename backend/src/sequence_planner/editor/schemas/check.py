@@ -1,4 +1,4 @@
-"""What is shown of a check of the draft."""
+"""The things that are shown of a check of the draft."""
 
 from __future__ import annotations
 
@@ -36,7 +36,9 @@ class SummaryView(View):
 
 @dataclass(frozen=True)
 class Hindrance:
-    """Why no station may run a draft: the end of a problem's `type`, a title, and for a person (no full stop) why."""
+    """The reason why no station may run a draft: the end of a problem's `type`, a title, and for a person (no full
+    stop) why.
+    """
 
     slug: str
     title: str
@@ -57,8 +59,8 @@ class CheckView(View):
     analysis: AnalysisDocument | None
 
     def hindrance(self, number: int) -> Hindrance | None:
-        """Why no station may run the draft after its change `number`; None where one may: nothing makes it unusable,
-        and there is a supervisor.
+        """Say why no station may run the draft after its change `number`; None where one may: nothing makes it
+        unusable, and there is a supervisor.
         """
         if self.number == number and self.state is CheckState.FAILED:
             why = f"The draft could not be checked: {self.doing}. Change the draft, then it is checked anew"

@@ -1,4 +1,4 @@
-"""What is shown of the difference between two models, and of whether a running station can take another one."""
+"""The things shown of the difference between two models, and of whether a running station can take another one."""
 
 from __future__ import annotations
 

@@ -152,7 +152,7 @@ MOST_READ, MOST_CHARACTERS = 5000, 50_000_000  # files whose content is remember
 
 
 def marks(draft: Draft) -> dict[str, FileMark]:
-    """How each file of the draft stands, also those that were taken away."""
+    """Tell how each file of the draft stands, also those that were taken away."""
     return {path: _mark(draft, path) for path in sorted(draft.files.keys() | draft.base.keys())}
 
 

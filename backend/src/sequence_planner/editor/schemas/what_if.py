@@ -42,7 +42,8 @@ def transfer(
     *,
     reset: bool = False,
 ) -> TransferView:
-    """What would come of it, with abilities `running` as the `old` model has them; None for one that cannot be used.
+    """Tell what would come of it, with abilities `running` as the `old` model has them; None for one that cannot be
+    used.
 
     Where the station is `reset` it begins as the model says, and nothing of what runs goes on.
     """
@@ -82,7 +83,7 @@ def untransferred(obstacle: str) -> TransferView:
 
 
 def _same(one: Ability | None, other: Ability | None) -> bool:
-    """Whether they are the same but for what people call them."""
+    """Return whether they are the same but for what people call them."""
     return one is not None and other is not None and replace(one, title="") == replace(other, title="")
 
 

@@ -56,7 +56,7 @@ class NameStep(NamedTuple):
 
 
 class Named(NamedTuple):
-    """What a name names: its parts by the step that does, the parameters that the arguments of a step are for, and the
+    """The things a name names: its parts by the step that does, the parameters that a step's arguments are for, and the
     enumeration over which it ranges.
     """
 
@@ -93,7 +93,7 @@ class Naming:
         self._found: dict[tuple[str, str, str | None, bool], Named | None] = {}
 
     def find(self, name: Name, around: TextContext) -> Named | None:
-        """What a name names; nothing where no such name is declared."""
+        """Return what a name names; nothing where no such name is declared."""
         key = (str(name), around.holder, around.resource, around.has_flags)
         if key not in self._found:
             self._found[key] = self._find(_without_places(name), around)
@@ -112,7 +112,7 @@ class Naming:
         return next(fitting, candidates[0] if candidates else None)
 
     def implied(self, steps: tuple[NameStep, ...], around: TextContext) -> Named | None:
-        """What a name that is declared nowhere would name."""
+        """Return what a name that is declared nowhere would name."""
         names = [step.word.text for step in steps]
         if len(names) > 1 and names[0] in self.declared.resources:
             resource = ModelPart("resource", None, names[0])
@@ -161,7 +161,7 @@ class Naming:
             self.gathered.add(value_of(enumeration, str(text)), where, text)
 
     def has(self, enumeration: str, value: str) -> bool:
-        """Whether an enumeration has a value."""
+        """Return whether an enumeration has a value."""
         return value in self.declared.enumerations.get(enumeration, ())
 
     def tie_values(self, enumeration: str | None, why: str) -> None:
@@ -189,7 +189,7 @@ class Naming:
                 yield own._replace(parts={0: ModelPart("resource", None, names[0]), **own.parts})
 
     def _own(self, resource: str, steps: tuple[NameStep, ...], first: int) -> Iterator[Named]:
-        """What the steps from `first` on name in a resource."""
+        """Yield what the steps from `first` on name in a resource."""
         if first >= len(steps):
             return
         name, rest = steps[first].word.text, steps[first + 1 :]
@@ -205,7 +205,7 @@ class Naming:
         return Named({index: part}, (index, parameters), self.declared.enumeration(resource, name))
 
     def _fits(self, named: Named, steps: tuple[NameStep, ...]) -> bool:
-        """Whether there are arguments where there must be some, and nowhere else."""
+        """Return whether there are arguments where there must be some, and nowhere else."""
         at, parameters = named.arguments or (-1, {})
         wanted = [len(parameters) if index == at else 0 for index in range(len(steps))]
         return wanted == [len(step.arguments) for step in steps]
@@ -259,7 +259,7 @@ class _Reading:
         self._where = where
 
     def assignment(self, action: Assignment) -> None:
-        """What it writes, what that becomes, and when."""
+        """Read what it writes, what that becomes, and when."""
         assert isinstance(action.target, Name)
         expected = self._name(action.target, None, writes=True)
         found = self.read(action.value, expected)
@@ -305,7 +305,7 @@ class _Reading:
         return None if named is None else named.enumeration
 
     def _is_value_first(self, left: Expression, right: Expression) -> bool:
-        """Whether the left of a comparison is to be read as a value of what stands on its right."""
+        """Return whether the left of a comparison is to be read as a value of what stands on its right."""
         if not isinstance(left, Name) or not left.is_word or self._is_parameter(left):
             return False  # values are single words
         other = self._found(right)
@@ -385,7 +385,7 @@ class Names:
         return field.enumeration if not text[rest:end].strip() else None
 
     def is_known(self, path: str) -> bool:
-        """Whether a path is of something else than a field of the message."""
+        """Return whether a path is of something else than a field of the message."""
         return self._found(path, False) is not None
 
     def enumeration(self, path: str) -> str | None:

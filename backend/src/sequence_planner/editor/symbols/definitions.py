@@ -86,7 +86,7 @@ _OTHERWISE = {"specification": Manner.FORBIDS, "work_master": Manner.RUNS, "mess
 
 
 def manner_of(part: ModelPart, by: ModelPart | None, path: EntryPath, declared: Declared, *, writes: bool) -> Manner:
-    """How `by`, or the station itself, uses a part at an entry within it; `writes` holds where that gets a value."""
+    """Tell how `by`, or the station itself, uses a part at an entry within it; `writes` holds where that gets a value."""
     if part.kind == "enumeration":
         return Manner.RANGES
     if part.kind in ("value", "parameter", "resource"):
@@ -131,7 +131,7 @@ def _of_pipeline(part: ModelPart, path: EntryPath, *, writes: bool, outgoing: bo
 
 
 def _is_outgoing(by: ModelPart, path: EntryPath, declared: Declared) -> bool:
-    """Whether a stage is of what is sent: a request, a goal, or a topic that somebody else reads."""
+    """Return whether a stage is of what is sent: a request, a goal, or a topic that somebody else reads."""
     if by.kind == "topic":
         return by.name in declared.sent
     return bool(path) and path[0] in ("request", "goal")
@@ -147,7 +147,7 @@ _IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
 def gather(
     content: ModelContent, messages: MessageRegistry | None, word: str | None = None
 ) -> tuple[Declared, Gathered]:
-    """What is named in the files, and where. With `word`, only in expressions that hold it."""
+    """Return what is named in the files, and where. With `word`, only in expressions that hold it."""
     gathered = Gathered()
     declared = Declared(content, messages)
     naming = Naming(declared, gathered)
@@ -233,7 +233,7 @@ class _Walk:
             self._read.condition(entry(document, "local"), at.to("local"), is_formula=True)
 
     def specifications(self, content: object) -> None:
-        """What must never be, in all its forms."""
+        """Go through what must never be, in all its forms."""
         for name, document in pairs(content):
             at = self._whole(ModelPart("specification", None, str(name)), SPECIFICATIONS, name, document)
             for key in ("forbidden", "never", "while"):

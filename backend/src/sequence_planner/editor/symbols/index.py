@@ -99,7 +99,9 @@ def variable_of(resource: str | None, name: str) -> ModelPart:
 
 
 def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
-    """What `part` is called when `old` is called `new`: the same, or with that name, or with an owner of that name."""
+    """Return what `part` is called when `old` is called `new`: the same, or with that name, or with an owner of that
+    name.
+    """
     if part == old:
         return new
     owner = part.owner
@@ -122,7 +124,7 @@ def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
 
 
 def belongs_to(part: ModelPart, whole: ModelPart) -> bool:
-    """Whether `part` is `whole`, or goes with it when it is deleted."""
+    """Return whether `part` is `whole`, or goes with it when it is deleted."""
     return part == whole or following(part, whole, whole._replace(name=f"{whole.name}'")) != part
 
 
@@ -240,7 +242,7 @@ def parameters(written: object) -> Parameters:
 
 
 def is_activity(names: list[str]) -> bool:
-    """Whether a dotted name is that of an operation's activity."""
+    """Return whether a dotted name is that of an operation's activity."""
     return len(names) == 3 and names[0] == OPERATION and names[2] == "active"
 
 
@@ -249,7 +251,8 @@ def is_activity(names: list[str]) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class TextContext:
-    """What names mean around a text: its resource, and the parameters of what it stands in, with their enumerations.
+    """The context of names around a text, for what they mean: its resource, and the parameters of what it stands in,
+    with their enumerations.
 
     `holder` is the owner of these parameters; `has_flags` holds within an ability.
     """

@@ -78,13 +78,15 @@ def bind(stages: Stages, pipeline: Pipeline, file: str) -> None:
 
 
 def _is_of_constants(name: str, enumeration: str | None, pipeline: Pipeline) -> bool:
-    """Whether an outgoing message has constants for the values of a variable: that holds for no field of a stage."""
+    """Return whether an outgoing message has constants for the values of a variable: that holds for no field of a
+    stage.
+    """
     field = (pipeline.fields or {}).get(name)
     return not pipeline.incoming and enumeration is not None and isinstance(field, IntegerRange)
 
 
 def _is_bound(name: str, variable: DeclaredVariable, stages: Stages, pipeline: Pipeline, read: set[str]) -> bool:
-    """Whether a variable is a field of the message, or may be one where nobody knows the message."""
+    """Return whether a variable is a field of the message, or may be one where nobody knows the message."""
     if name in pipeline.ignored or variable.parameters:
         return False
     if pipeline.incoming:
@@ -105,7 +107,7 @@ def _is_bound(name: str, variable: DeclaredVariable, stages: Stages, pipeline: P
 
 
 def _is_made_elsewhere(name: str, stages: Stages, pipeline: Pipeline) -> bool:
-    """Whether the pipeline of another message of the resource makes a variable, or uses it."""
+    """Return whether the pipeline of another message of the resource makes a variable, or uses it."""
     resource = stages.names.naming.declared.resources.get(stages.names.resource)
     for _, topic in pairs(entry(resource, "topics")):
         stages_there = entry(topic, "pipeline")
@@ -180,7 +182,7 @@ def _read_values(names: Names, content: object, where: Where) -> None:
 
 
 def _read_given(names: Names, content: object, where: Where) -> None:
-    """What the sources of a flow give: by alias in a merge, else by name."""
+    """Read what the sources of a flow give: by alias in a merge, else by name."""
     for alias, fields in pairs(content):
         if isinstance(fields, dict):
             own = {
@@ -355,7 +357,7 @@ class PipelineCollector:
             self._naming.link(self._naming.declared.enumeration(resource, name), field.enumeration)
 
     def _source(self, resource: str, written: object, where: Where) -> Fields:
-        """What a source of a flow has at its end."""
+        """Return what a source of a flow has at its end."""
         if not isinstance(written, SourceText):
             return {}
         text = str(written)

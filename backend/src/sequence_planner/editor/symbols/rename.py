@@ -57,7 +57,7 @@ class Usage:
 
 @dataclass(frozen=True)
 class Usages:
-    """What was found, in the order of the files, and in each from above.
+    """The usages that were found, in the order of the files, and in each from above.
 
     `unwritten` are entries that use it though no text in them names it, such as a topic whose message has a field of
     that name: each at the place of its own name. `skipped` are files that cannot be read as YAML, `unread` texts that
@@ -149,7 +149,7 @@ def _answer(content: ModelContent, gathered: Gathered, part: ModelPart, found: I
 
 
 def homes_of(gathered: Gathered) -> dict[tuple[str, EntryPath], Usage]:
-    """Where entries of files are declared, by file and path."""
+    """Return where entries of files are declared, by file and path."""
     return {(each.where.file, each.where.path): usage_of(each) for each in gathered.occurrences if each.declares}
 
 
@@ -317,7 +317,7 @@ def _put(text: SourceText, spans: _Changes) -> str:
 
 
 def _verify(new: str, content: object, changed: Mapping[Place, str]) -> None:
-    """Whether the new text is read as the old content with these changes and no others."""
+    """Check whether the new text is read as the old content with these changes and no others."""
     first = min(changed)
     try:
         found = read_text(new, first.file).content
@@ -409,7 +409,7 @@ def _written(
 
 
 class _Meaning(NamedTuple):
-    """What a model names, in the order of its files."""
+    """The things that a model names, in the order of its files."""
 
     names: Mapping[str, list[tuple[ModelPart, bool]]]
     parts: Counter[ModelPart]

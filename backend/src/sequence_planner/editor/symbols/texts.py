@@ -19,7 +19,7 @@ _DEFINITION = re.compile(r"messages/(\w+/(msg|srv|action)/\w+)\.\2")
 
 
 class ModelContent(Mapping[str, object]):
-    """What the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
+    """The things that the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
 
     `definitions` are those of types of messages, by their files.
     """
@@ -94,7 +94,7 @@ def items(content: object) -> list[object]:
 
 
 def entry(content: object, *names: str) -> object:
-    """What stands in a mapping, and in the mappings in it, under these names; nothing where there is none."""
+    """Return what stands in a mapping, and in the mappings in it, under these names; nothing where there is none."""
     for name in names:
         content = content.get(name) if isinstance(content, dict) else None
     return content

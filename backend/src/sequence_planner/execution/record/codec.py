@@ -28,7 +28,7 @@ OTHER_VERSION: Final = "other-version"  # of the program has written it
 
 
 class HistoryError(Exception):
-    """What is asked of the journal cannot be told; the text says why, and `slug` names the kind for machines."""
+    """A question to the journal that cannot be answered; the text says why, and `slug` names the kind for machines."""
 
     def __init__(self, slug: str, detail: str) -> None:
         super().__init__(slug, detail)
@@ -56,7 +56,7 @@ class UnreadableError(ValueError):
 
 @dataclasses.dataclass(frozen=True)
 class Shape:
-    """How the values of one type are written and read. Reading raises `UnreadableError`."""
+    """The way the values of one type are written and read. Reading raises `UnreadableError`."""
 
     encode: Encode
     decode: Decode
@@ -270,12 +270,12 @@ class Codec:
         return self._shapes.of(form).decode(document)
 
     def happening(self, kind: str, content: Mapping[str, JsonValue]) -> Event:
-        """What a record says that has happened, no tick. Raises `UnreadableError`."""
+        """Return what a record says that has happened, no tick. Raises `UnreadableError`."""
         happening: Event = self.decode(KINDS[kind], content.get("what", {}))
         return happening
 
     def content(self, happening: Event) -> Document:
-        """What a record says of what has happened, no tick."""
+        """Return what a record says of what has happened, no tick."""
         return {"what": self.encode(type(happening), happening)}
 
     def _written(self, expression: Expression) -> JsonValue:
@@ -291,7 +291,7 @@ class Codec:
 
 
 class Senses(Immutable):
-    """What a tick is given, but for when it is."""
+    """The things that a tick is given, but for when it is."""
 
     measured: Mapping[str, Value | None] = {}
     obstacles: tuple[str, ...] = ()
@@ -305,7 +305,7 @@ class TickBook:
         self.senses = senses or Senses()  # of the last tick
 
     def content(self, tick: Ticked) -> Document:
-        """What a record says of a tick, which is the last one from now on."""
+        """Return what a record says of a tick, which is the last one from now on."""
         before, self.senses = self.senses, Senses(dict(tick.measured), tick.obstacles, tick.silent)
         content: Document = {"now": [tick.now.epoch, tick.now.monotonic]}
         if before.measured.keys() != self.senses.measured.keys():
@@ -335,7 +335,7 @@ class TickBook:
 
 
 def _without_deadline(request: PlanRequest) -> PlanRequest:
-    """How long an answer might take is nothing that anything follows from."""
+    """Leave out how long an answer might take, which is nothing that anything follows from."""
     return replace(request, deadline=vars(PlanRequest)["deadline"])
 
 

@@ -233,7 +233,7 @@ class RunRecorder:
         self._now_and_then(epoch)
 
     def _consequences(self, heard: Heard) -> Document:
-        """What is to be known of it where the execution begins again with what it believes now."""
+        """Return what is to be known of it where the execution begins again with what it believes now."""
         found: Document = {}
         if changes := self._changes(heard.before, heard.after):
             found["changes"] = changes
@@ -312,7 +312,7 @@ class RunRecorder:
         }
 
     def _outcome(self, outcome: TickOutcome | None) -> Document:
-        """What a tick did, for people and programs that read the journal.
+        """Return what a tick did, for people and programs that read the journal.
 
         An ability may take its finish actions again with every tick: only the first of them is told.
         """
@@ -341,7 +341,7 @@ def kind_of_happening(happening: object) -> str:
 
 
 def _plan(execution: Executor) -> tuple[str, str, int]:
-    """What is said of the plan, and how often another had taken the place of one."""
+    """Return what is said of the plan, and how often another had taken the place of one."""
     return str(execution.plan.status), execution.plan.reason, execution.plan.replanned
 
 

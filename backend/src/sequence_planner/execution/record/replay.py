@@ -179,7 +179,7 @@ class Player:
                 execution.forget_job(job, by, now)
 
     def _of_another_version(self, why: str) -> HistoryError:
-        """What keeps a record from being done again that another version of the program has written."""
+        """Say what keeps a record from being done again that another version of the program has written."""
         return HistoryError(
             OTHER_VERSION,
             f"{why}. It was written by another version of the program, {self._program}, and this is {VERSION}: "
@@ -244,7 +244,7 @@ def replay(
 
 
 def _start(run: WholeRun, number: int) -> int:
-    """Where to begin. Raises `HistoryError` where there is nothing to begin with."""
+    """Return where to begin. Raises `HistoryError` where there is nothing to begin with."""
     found = run.before(number + 1, 1, _WHOLE) or run.after(0, 1, _WHOLE)
     if not found:
         raise HistoryError("history-gone", "nothing has happened yet: the journal has no record of a run")

@@ -25,8 +25,8 @@ _SHARES = (0.6, 0.7, 1.0)  # of the work that is left, for each of what is minim
 
 @dataclass(frozen=True)
 class Solved:
-    """When the tasks start, in place of the given starts. `bounds` are of weighted tardiness and of the end of all, and
-    `proven` says that both are met.
+    """The starts of the tasks, in place of the given starts. `bounds` are of weighted tardiness and of the end of all,
+    and `proven` says that both are met.
     """
 
     starts: list[int]
@@ -94,7 +94,7 @@ class _Solving:
         return Solved(self._best, (bounds[0], bounds[1]), proven)
 
     def _minimise(self, objective: cp_model.LinearExprT, work: float) -> tuple[float, int]:
-        """How much work it took, and what the objective cannot be below."""
+        """Minimise, and return how much work it took, and what the objective cannot be below."""
         self._model.minimize(objective)
         self._model.clear_hints()  # type: ignore[no-untyped-call]
         for task, start in self._starts.items():
@@ -206,7 +206,7 @@ class _Solving:
         return sum(tardy), makespan, ends
 
     def _constant(self, place: int) -> int:
-        """What the model leaves out: how late jobs are already, which no order changes."""
+        """Return what the model leaves out: how late jobs are already, which no order changes."""
         if place:
             return 0
         jobs = (self._problem.jobs[job] for job in self._jobs)
@@ -264,7 +264,7 @@ def improve(problem: Instance, given: Starts, work: float, remaining: Callable[[
 
 
 def _begin(problem: Instance, starts: Starts, job: int) -> tuple[int, int]:
-    """Where a job stands: those that have begun come first."""
+    """Tell where a job stands: those that have begun come first."""
     found = problem.jobs[job]
     return -1 if found.begun else min((starts[task] for task in found.tasks), default=0), job
 

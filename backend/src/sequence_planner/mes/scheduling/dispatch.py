@@ -178,7 +178,7 @@ def in_order(problem: Instance, starts: Starts, jobs: Iterable[int] | None = Non
 def waits_among(
     works: Sequence[JobWork], schedule: Schedule, jobs: Collection[str] | None = None
 ) -> dict[Step, list[Step]]:
-    """Which operations of these jobs (all: None) wait for which of others of them, and for no more than is needed.
+    """Tell which operations of these jobs (all: None) wait for which of others of them, and for no more than is needed.
 
     Two operations of different jobs with a common resource are worked in the order in which they are expected to start.
     Left out is what follows from the rest and from the order inside the jobs. So one that waits for another through a

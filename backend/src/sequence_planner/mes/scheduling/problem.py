@@ -42,7 +42,8 @@ class WorkOperation:
 
 @dataclass(frozen=True)
 class JobWork:
-    """What is left of a job. `due` and `earliest`, before which it does not begin, are in seconds since the epoch.
+    """The rest that is left of a job. `due` and `earliest`, before which it does not begin, are in seconds since the
+    epoch.
 
     The higher its `priority`, the more it weighs when it is late. One that has `begun` goes on.
     """
@@ -84,7 +85,7 @@ class Schedule:
 
 
 def weight(priority: int) -> int:
-    """How much a second counts that a job of this priority is late."""
+    """Return how much a second counts that a job of this priority is late."""
     return max(priority, 0) + 1
 
 
@@ -133,7 +134,7 @@ class Instance:
     groups: tuple[tuple[int, ...], ...]  # which of the rivals each job is among
 
     def end(self, task: int, start: int) -> int:
-        """When a task ends that starts then."""
+        """Return when a task ends that starts then."""
         end = self.tasks[task].end
         return start + self.tasks[task].length if end is None else end
 
@@ -211,12 +212,12 @@ def cost(problem: Instance, starts: Starts, jobs: Iterable[int] | None = None) -
 
 
 def job_end(problem: Instance, starts: Starts, job: int) -> int:
-    """When a job ends; one of which nothing is left has ended."""
+    """Return when a job ends; one of which nothing is left has ended."""
     return max((problem.end(each, starts[each]) for each in problem.jobs[job].tasks), default=0)
 
 
 def earliest_ends(problem: Instance) -> list[int]:
-    """When each job would end if nothing else were worked: none can end before."""
+    """Return when each job would end if nothing else were worked: none can end before."""
     starts = [0] * len(problem.tasks)
     for job in problem.jobs:
         for task in job.tasks:
@@ -245,7 +246,7 @@ class KnownTimes:
         self._used: dict[str, deque[frozenset[str]]] = defaultdict(lambda: deque(maxlen=REMEMBERED_RUNS))
 
     def seconds(self, operation: str, planned: float | None = None) -> float:
-        """How long it takes: the median of the last runs; before the first as long as is `planned`, or a minute."""
+        """Return how long it takes: the median of the last runs; before the first as long as is `planned`, or a minute."""
         if runs := self._seconds.get(operation):
             return median(runs)
         return UNKNOWN_SECONDS if planned is None else planned
@@ -274,7 +275,7 @@ class KnownTimes:
         return self._known() != before
 
     def hear(self, records: Sequence[RunRecord]) -> None:
-        """What these records tell, which follow on those before."""
+        """Take in what these records tell, which follow on those before."""
         for record in records:
             if record.kind == _BEGUN:
                 self._active.clear()  # the controller has started anew, after a time in which nothing was worked

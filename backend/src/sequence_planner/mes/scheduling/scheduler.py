@@ -92,7 +92,7 @@ def _rolling(
     remaining: Callable[[], float],
     most: int,
 ) -> Schedule:
-    """What comes first, by the best of the rules, searched by itself; what comes then follows as it was.
+    """Search what comes first, by the best of the rules, by itself; what comes then follows as it was.
 
     What is around the search takes the machine, however busy it is, about as long behind it as before it.
     """
@@ -129,7 +129,7 @@ def _in_rows(problem: Instance, rule: Rule) -> list[int]:
 
 
 def _place(problem: Instance, starts: Starts, job: int) -> tuple[int, int]:
-    """Where a job stands in a schedule; those that have begun come first."""
+    """Tell where a job stands in a schedule; those that have begun come first."""
     found = problem.jobs[job]
     return -1 if found.begun else min((starts[task] for task in found.tasks), default=0), job
 
@@ -187,7 +187,7 @@ LATE: Final = 8.0  # seconds; on a busy machine the best that was found comes la
 
 @dataclass(frozen=True)
 class SchedulingQuestion:
-    """What is to be put into an order, as `sequence` is asked."""
+    """The jobs that are to be put into an order, as `sequence` is asked."""
 
     works: tuple[JobWork, ...]
     exclusive: tuple[frozenset[str], ...]

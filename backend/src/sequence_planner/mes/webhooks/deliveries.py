@@ -1,4 +1,4 @@
-"""What is still to be delivered, in the database, so that it is so after whatever has happened to the server.
+"""The deliveries still to be made, in the database, so that they are so after whatever has happened to the server.
 
 An event is taken out only after it was taken by the other end: when the server is killed in between, it is sent again.
 """
@@ -27,7 +27,7 @@ _OF = WEBHOOK_DELIVERIES.c
 
 @dataclass(frozen=True)
 class Pace:
-    """When what failed is tried again: after `first` seconds, then twice as long each time, up to `longest`.
+    """The times when what failed is tried again: after `first` seconds, then twice as long each time, up to `longest`.
 
     Between half of that and all of it is waited, by chance, so that not all come back at once. A webhook as a whole is
     tried again after `longest_hold` at the latest. An event is given up after `attempts`.
@@ -66,7 +66,7 @@ class DeadLetter(BaseModel):
 
 
 def are_any(connection: Connection) -> bool:
-    """Whether there are webhooks."""
+    """Return whether there are webhooks."""
     return connection.execute(select(WEBHOOKS.c.id).limit(1)).first() is not None
 
 
@@ -100,7 +100,7 @@ def queue(connection: Connection, webhook: str, now: float) -> None:
 
 
 def has_new(connection: Connection, webhook: str) -> bool:
-    """Whether there are events that were not looked at for a webhook."""
+    """Return whether there are events that were not looked at for a webhook."""
     position = connection.execute(select(WEBHOOKS.c.position).where(WEBHOOKS.c.id == webhook)).scalar()
     return position is not None and position < events.last(connection)
 

@@ -123,7 +123,7 @@ class Sender:
 
     @cached_property
     def _trust(self) -> ssl.SSLContext:
-        """What this machine trusts, which a company adds its own authority to."""
+        """The authorities that this machine trusts, which a company adds its own to."""
         return ssl.create_default_context()
 
     @cached_property
@@ -268,5 +268,5 @@ class Deliverer:
 
 
 def _waiting(connection: Connection, now: float) -> tuple[bool, list[str]]:
-    """Whether there are webhooks, and those for which there is something to do."""
+    """Return whether there are webhooks, and those for which there is something to do."""
     return deliveries.are_any(connection), deliveries.waiting(connection, now)

@@ -44,7 +44,7 @@ class UnreadableSecretError(Exception):
 
 
 def key_file(place: SqliteFile | PostgresqlServer) -> Path:
-    """Where the key is."""
+    """Return where the key is."""
     checkpoints = signing_key.key_file(place)
     return checkpoints.with_name(checkpoints.name.replace("checkpoint-key", "webhook-key").replace(".pem", ".key"))
 
@@ -240,7 +240,7 @@ def _host(url: str) -> str:
 
 
 def _counts(connection: Connection) -> dict[tuple[str, bool], int]:
-    """How many events wait for each webhook, and how many were given up."""
+    """Return how many events wait for each webhook, and how many were given up."""
     given_up = WEBHOOK_DELIVERIES.c.died.is_not(None)
     grouped = select(WEBHOOK_DELIVERIES.c.webhook, given_up, func.count()).group_by(
         WEBHOOK_DELIVERIES.c.webhook, given_up

@@ -1,5 +1,5 @@
-"""Where webhooks may go: to hosts and networks on a list, by HTTPS; elsewhere than on the public network only where the
-list has the network.
+"""The places where webhooks may go: hosts and networks on a list, by HTTPS; off the public network only where the list
+has the network.
 
 A name is resolved for each delivery, and the addresses that were found are judged and then connected to, so that what a
 name means cannot change in between (DNS rebinding).
@@ -66,7 +66,7 @@ class Targets:
         return sorted(f"[{host}]:{port}" if ":" in host else f"{host}:{port}" for host, port in self.hosts)
 
     def target(self, url: str) -> Target:
-        """What a URL names. Raises `TargetRefused` unless it may be sent to if its address may."""
+        """Return what a URL names. Raises `TargetRefused` unless it may be sent to if its address may."""
         target = _read(url)
         if (target.host, target.port) not in self.hosts and not self.networks:
             raise TargetRefused(_not_listed(target))
@@ -104,7 +104,7 @@ class Targets:
 
 
 def network(written: str) -> Network:
-    """What a network on the list means, as in `10.1.2.0/24`. Raises `TargetRefused`."""
+    """Return what a network on the list means, as in `10.1.2.0/24`. Raises `TargetRefused`."""
     try:
         found = ip_network(written)
     except ValueError:
@@ -115,7 +115,7 @@ def network(written: str) -> Network:
 
 
 def host_and_port(written: str) -> tuple[str, int]:
-    """What `HOST[:PORT]` on the list means; without a port that of HTTPS. Raises `TargetRefused`."""
+    """Return what `HOST[:PORT]` on the list means; without a port that of HTTPS. Raises `TargetRefused`."""
     target = _read(f"https://{written}/")
     if target.path != "/":
         raise TargetRefused(f"{written!r} is no host; write it as in mes.example:8443")
@@ -160,7 +160,7 @@ def _meant(address: Address) -> Address:
 
 
 def _is_literal(host: str, address: Address) -> bool:
-    """Whether the host is written as this address."""
+    """Return whether the host is written as this address."""
     try:
         return ip_address(host) == address
     except ValueError:
@@ -177,7 +177,7 @@ def _is_loopback(address: Address) -> bool:
 
 
 def _is_special(meant: Address) -> bool:
-    """Whether it is no address of a host in a network, or one that must not be reached by mistake."""
+    """Return whether it is no address of a host in a network, or one that must not be reached by mistake."""
     odd = meant.is_loopback or meant.is_link_local or meant.is_multicast or meant.is_unspecified or meant.is_reserved
     return odd or meant in _THIS_HOST
 

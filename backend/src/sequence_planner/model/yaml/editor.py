@@ -101,7 +101,7 @@ class Layout:
         )
 
     def comments_above(self, parent: Node, position: int) -> int:
-        """Where the line of a block's entry begins, or those of the comments directly above it at its column.
+        """Return where the line of a block's entry begins, or those of the comments directly above it at its column.
 
         A comment that begins the file is about the file, and not about its first entry.
         """
@@ -118,17 +118,17 @@ class Layout:
         return top if begin == 0 else begin
 
     def blank_above(self, index: int) -> int:
-        """How many blank lines there are directly above the line that begins at `index`."""
+        """Count the blank lines that there are directly above the line that begins at `index`."""
         above = self.text[:index]
         return max(len(above) - len(above.rstrip("\n")) - 1, 0) if above.strip("\n") else len(above)
 
     def blank_below(self, index: int) -> int:
-        """How many blank lines there are directly below the line that ends at `index`."""
+        """Count the blank lines that there are directly below the line that ends at `index`."""
         below = self.text[index + 1 :]
         return len(below) - len(below.lstrip("\n"))
 
     def _head_end(self, parent: Node) -> int:
-        """Where the line ends in which the name of a mapping or list stands, or -1 for the root."""
+        """Return where the line ends in which the name of a mapping or list stands, or -1 for the root."""
         if parent is self.root:
             return -1
         start = self.line_start(parent.start.index)
@@ -140,16 +140,16 @@ class Layout:
         return self.text.count("\n", 0, index) + 1
 
     def line_start(self, index: int) -> int:
-        """Where the line of a character begins."""
+        """Return where the line of a character begins."""
         return self.text.rfind("\n", 0, index) + 1
 
     def line_end(self, index: int) -> int:
-        """Where the line of a character ends, before its line break."""
+        """Return where the line of a character ends, before its line break."""
         found = self.text.find("\n", index)
         return len(self.text) if found < 0 else found
 
     def skip_properties(self, node: Node) -> int:
-        """Where a node begins behind its anchor and tag."""
+        """Return where a node begins behind its anchor and tag."""
         at = node.start.index
         if node.start.index < node.end.index and (found := _PROPERTIES.match(self.text, at)):
             at = found.end()
@@ -289,7 +289,7 @@ def fold(text: str, column: int, old: Sequence[str] = ()) -> list[str]:
 
 
 def _kept(text: str, old: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Which lines of a folded text can stay above and below those that change."""
+    """Return which lines of a folded text can stay above and below those that change."""
     above: list[str] = []
     while len(above) < len(old) and text.startswith(" ".join([*above, old[len(above)], ""])):
         above.append(old[len(above)])
@@ -666,7 +666,7 @@ def _position(
 
 
 def same(one: object, other: object) -> bool:
-    """Whether two contents are equal, in their types and the order of their entries too."""
+    """Return whether two contents are equal, in their types and the order of their entries too."""
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return list(map(str, one)) == list(map(str, other)) and all(same(one[key], other[key]) for key in one)
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):

@@ -159,7 +159,7 @@ for _versions, _name, _pattern, _firsts in implicit_resolvers:
 
 
 def _tag(text: str) -> str:
-    """What an unquoted text means in YAML 1.2, by ruamel.yaml's own table."""
+    """Return what an unquoted text means in YAML 1.2, by ruamel.yaml's own table."""
     for tag, pattern in _PLAIN.get(text[:1], ()):
         if pattern.match(text):
             return tag

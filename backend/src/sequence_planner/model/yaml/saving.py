@@ -17,7 +17,7 @@ _LINE = re.compile(r"[^\n]*\n|[^\n]+")
 
 
 def digest(path: Path) -> str:
-    """What `edit_file` can be told to expect: changes whenever the file does."""
+    """Return what `edit_file` can be told to expect: changes whenever the file does."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 

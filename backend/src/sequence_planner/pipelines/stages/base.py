@@ -1,4 +1,4 @@
-"""What a stage is: a description, checked when the station is loaded, and its course while the station runs.
+"""The nature of a stage: a description, checked when the station is loaded, and its course while the station runs.
 
 A stage reads some fields of a record and gives some; all others pass through it. Descriptions are immutable and
 shared; what must be remembered from record to record is in the `StageInstance` that `begin` makes. No stage looks at a
@@ -25,13 +25,13 @@ class StageInstance(Protocol):
 
     @property
     def due(self) -> float | None:
-        """When `wake` is to be called if nothing comes before; None: not at all."""
+        """The moment when `wake` is to be called if nothing comes before; None: not at all."""
 
     def take(self, record: Record, now: float) -> Record | None:
-        """What goes on because of a record, which may be changed in place; None when it is held back or dropped."""
+        """Return what goes on because of a record, which may be changed in place; None when it is held back or dropped."""
 
     def wake(self, now: float) -> Record | None:
-        """What goes on because time has passed."""
+        """Return what goes on because time has passed."""
 
 
 class Stage(Protocol):
@@ -43,7 +43,7 @@ class Stage(Protocol):
 
     @property
     def place(self) -> Place:
-        """Where it was written."""
+        """The place where it was written."""
 
     @property
     def reads(self) -> frozenset[str]:
@@ -82,7 +82,7 @@ class Overriding(Protocol):
 
     @property
     def override(self) -> Override | None:
-        """What is set now."""
+        """The override that is set now."""
 
     def set_override(self, fields: Mapping[str, object], now: float, actor: str) -> Record | None:
         """Set these fields; returns the last record with them. Raises ValueError for what the bounds do not allow."""

@@ -215,7 +215,7 @@ def confine() -> list[str]:
 
 
 def _threads() -> int:
-    """How many threads this user has."""
+    """Count the threads that this user has."""
     found, user = 0, os.getuid()
     with contextlib.suppress(OSError), os.scandir("/proc") as processes:
         for each in processes:

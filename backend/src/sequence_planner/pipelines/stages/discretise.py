@@ -30,13 +30,13 @@ class Regions(Protocol):
 
     @property
     def axes(self) -> int:
-        """How many numbers say a place."""
+        """The number of numbers that say a place."""
 
     def find(self, numbers: Numbers) -> str | None:
         """The region in which `numbers` are."""
 
     def holds(self, name: str, numbers: Numbers, margin: float) -> bool:
-        """Whether `numbers` are in that region, widened by `margin`."""
+        """Return whether `numbers` are in that region, widened by `margin`."""
 
     def inside(self, name: str) -> Numbers | None:
         """Numbers in that region, and `find` says so; None when there are none."""
@@ -54,7 +54,7 @@ def numbers_of(raw: object, axes: int) -> Numbers | None:
 
 
 def distance(one: Numbers, other: Numbers) -> float:
-    """How far they are apart on the axis on which they are furthest apart."""
+    """Return how far they are apart on the axis on which they are furthest apart."""
     return max(abs(a - b) for a, b in zip(one, other, strict=True))
 
 
@@ -72,7 +72,7 @@ class Points:
 
     @property
     def axes(self) -> int:
-        """How many numbers say a place."""
+        """The number of numbers that say a place."""
         return len(next(iter(self.points.values())))
 
     def nearest(self, numbers: Numbers) -> str:
@@ -85,7 +85,7 @@ class Points:
         return name if self.holds(name, numbers, 0.0) else None
 
     def holds(self, name: str, numbers: Numbers, margin: float) -> bool:
-        """Whether `numbers` are within the tolerance of that point, widened by `margin`."""
+        """Return whether `numbers` are within the tolerance of that point, widened by `margin`."""
         return distance(self.points[name], numbers) <= self.tolerance + margin
 
     def inside(self, name: str) -> Numbers | None:
@@ -123,7 +123,7 @@ class Ranges:
         return next((name for name in self.ranges if self.holds(name, numbers, 0.0)), None)
 
     def holds(self, name: str, numbers: Numbers, margin: float) -> bool:
-        """Whether the number is in that range, widened by `margin`."""
+        """Return whether the number is in that range, widened by `margin`."""
         least, greatest = self.ranges[name]
         (number,) = numbers
         return (least is None or least - margin <= number) and (greatest is None or number <= greatest + margin)
@@ -367,7 +367,7 @@ def _regions(document: DiscretiseDocument, field: FieldType, context: Context) -
 
 
 def _fit(context: Context, name: SourceText, values: Coordinates, field: FieldType) -> bool:
-    """Whether points have as many coordinates as the field has numbers, and no two are the same."""
+    """Check whether points have as many coordinates as the field has numbers, and no two are the same."""
     element = field.element if isinstance(field, ListType) else field
     if not is_numeric(element):
         context.found(name.place, f"`{name}` must be an array of numbers, or a number, and is {field}")
@@ -412,7 +412,7 @@ def _ranges(ranges: Mapping[SourceText, Bounds], context: Context) -> Ranges | N
 
 
 def _overlap(one: Bounds, other: Bounds) -> bool:
-    """Whether two ranges have more than one number in common."""
+    """Return whether two ranges have more than one number in common."""
     least = max((bound for bound in (one[0], other[0]) if bound is not None), default=None)
     greatest = min((bound for bound in (one[1], other[1]) if bound is not None), default=None)
     return least is None or greatest is None or least < greatest

@@ -28,7 +28,7 @@ from sequence_planner.pipelines.stages.support import (
 
 
 def is_same(one: object, other: object) -> bool:
-    """Whether two values are the same; `True` is not the number 1."""
+    """Return whether two values are the same; `True` is not the number 1."""
     return one == other and isinstance(one, bool) == isinstance(other, bool)
 
 
@@ -51,7 +51,7 @@ class MapStage(ImmediateStage):
 
     @property
     def gives(self) -> Mapping[str, FieldType]:
-        """What it is mapped to."""
+        """The target that it is mapped to."""
         return {self.target: self.target_type}
 
     def apply(self, record: Record) -> None:
@@ -63,7 +63,7 @@ class MapStage(ImmediateStage):
             record.troubles.append(f"{self.source} is {shown(value)}, to which no value of {self.target} is given")
 
     def meaning(self, value: object) -> object:
-        """What `value` becomes."""
+        """Return what `value` becomes."""
         return next((meant for key, meant in self.pairs if is_same(key, value)), self.otherwise)
 
     def backwards(self, values: dict[str, object]) -> None:
@@ -88,7 +88,9 @@ class Row:
     gives: tuple[object, ...]
 
     def applies(self, given: tuple[object, ...]) -> bool | None:
-        """Whether the row applies; None where that depends on something unknown. A None in `when` fits everything."""
+        """Return whether the row applies; None where that depends on something unknown. A None in `when` fits
+        everything.
+        """
         undetermined = False
         for wanted, value in zip(self.when, given, strict=True):
             if wanted is None:
@@ -126,7 +128,7 @@ class TableStage(ImmediateStage):
             record.troubles.append(f"no row of the table fits {shown(list(given))} for {names}")
 
     def meaning(self, given: tuple[object, ...]) -> tuple[object, ...] | None:
-        """What the targets are; None where no row applies, or that depends on something unknown."""
+        """Return what the targets are; None where no row applies, or that depends on something unknown."""
         for row in self.rows:
             applies = row.applies(given)
             if applies is not False:
@@ -182,7 +184,7 @@ def build_map(document: MapDocument, context: Context) -> MapStage | None:
 
 
 def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
-    """Whether two of the keys are the same value, such as `1` and `1.0`; a finding for each."""
+    """Check whether two of the keys are the same value, such as `1` and `1.0`; a finding for each."""
     first: dict[object, SourceText] = {}
     twins = [
         (text, other)

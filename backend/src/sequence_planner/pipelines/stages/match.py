@@ -37,7 +37,7 @@ _RECOGNISES: Mapping[Way, Callable[[str, str], bool]] = {
 
 @dataclass(frozen=True)
 class MatchStage(ImmediateStage):
-    """Whether a text contains, begins with, ends with or equals another; letters count as written."""
+    """A test whether a text contains, begins with, ends with or equals another; letters count as written."""
 
     field: FieldPath
     variable: str
@@ -52,7 +52,7 @@ class MatchStage(ImmediateStage):
 
     @property
     def gives(self) -> Mapping[str, FieldType]:
-        """Whether it is recognised."""
+        """The variable that says whether it is recognised."""
         return {self.variable: BOOLEAN}
 
     def apply(self, record: Record) -> None:
@@ -133,7 +133,7 @@ class MemberStage(ImmediateStage):
 
     @property
     def gives(self) -> Mapping[str, FieldType]:
-        """Whether it contains the item."""
+        """The variable that says whether it contains the item."""
         return {self.variable: BOOLEAN}
 
     def apply(self, record: Record) -> None:

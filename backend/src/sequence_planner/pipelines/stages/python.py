@@ -95,7 +95,7 @@ class FunctionProcess:
             raise OwnStageError(f"cannot be loaded: {error}") from None
 
     def call(self, arguments: Mapping[str, object], deadline: float) -> object:
-        """What the function returns. Raises `OwnStageError` if it raises, or gives no answer in time."""
+        """Return what the function returns. Raises `OwnStageError` if it raises, or gives no answer in time."""
         return self._exchange(json.dumps(arguments).encode() + b"\n", deadline).get("gives")
 
     def kill(self) -> None:
@@ -172,7 +172,7 @@ class FunctionProcess:
 
 
 def _environment() -> dict[str, str]:
-    """What Python and its libraries go by, and nothing that tells of the station."""
+    """Return what Python and its libraries go by, and nothing that tells of the station."""
     return {name: value for name, value in os.environ.items() if name in _PASSED or name.startswith(_PASSED_STARTS)}
 
 
@@ -210,7 +210,7 @@ class PythonWorker:
         threading.Thread(target=self._work, daemon=True, name=f"stage {function}").start()
 
     def ask(self, arguments: Mapping[str, object], deadline: float) -> Future[object]:
-        """What the function returns for these arguments; its exception is an `OwnStageError`.
+        """Return what the function returns for these arguments; its exception is an `OwnStageError`.
 
         The deadline counts from when the process can be asked.
         """
@@ -353,7 +353,7 @@ class PythonStage:
             raise NotInvertibleError(f"{self.function} cannot be read backwards: give its values in another way")
 
     def call_arguments(self, record: Record) -> dict[str, object]:
-        """What the function is called with; a value that is not of its type is unknown, and that is a trouble."""
+        """Return what the function is called with; a value that is not of its type is unknown, and that is a trouble."""
         found: dict[str, object] = {}
         for argument in self.arguments:
             value = argument.path.get(record.values)
@@ -481,7 +481,7 @@ def _has_function(path: Path, document: PythonDocument, context: Context) -> boo
 
 
 def _takes(function: ast.FunctionDef, document: PythonDocument, context: Context) -> bool:
-    """Whether the function can be called with exactly what the stage reads."""
+    """Check whether the function can be called with exactly what the stage reads."""
     arguments = function.args
     named = [argument.arg for argument in (*arguments.args, *arguments.kwonlyargs)]
     without_default = arguments.args[: len(arguments.args) - len(arguments.defaults)] + [
@@ -515,7 +515,7 @@ def _argument(name: SourceText, text: SourceText, context: Context) -> Argument 
 
 
 def _readable(given: FieldType, wanted: FieldType) -> bool:
-    """Whether values of the one type may be of the other."""
+    """Return whether values of the one type may be of the other."""
     if isinstance(given, ListType) and isinstance(wanted, ListType):
         lengths = {given.length, wanted.length} - {None}
         return len(lengths) <= 1 and _readable(given.element, wanted.element)

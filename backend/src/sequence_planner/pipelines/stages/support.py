@@ -33,7 +33,7 @@ from sequence_planner.pipelines.stages.base import NotInvertibleError, StageInst
 
 @dataclass(frozen=True)
 class Context:
-    """Where a stage stands.
+    """The place of a stage.
 
     `is_incoming` holds for incoming topics and flows. `fields` are those of the record before the stage. `wanted` are
     the names for which there is a use at the end, with their types: the measured variables of the resource without its
@@ -199,7 +199,7 @@ class TransparentStage:
         return record
 
     def backwards(self, values: dict[str, object]) -> None:
-        """What it gives is what it reads."""
+        """Leave the values as they are: what it gives is what it reads."""
 
 
 def again(record: Record) -> Record:
@@ -226,14 +226,14 @@ def narrowest(context: Context, path: FieldPath, type_: FieldType) -> FieldType:
 
 
 def are_alike(one: FieldType, other: FieldType) -> bool:
-    """Whether a value of the one type may be one of the other."""
+    """Return whether a value of the one type may be one of the other."""
     if isinstance(one, IntegerRange) or isinstance(other, IntegerRange):
         return is_numeric(one) and is_numeric(other)
     return type(one) is type(other) or (is_textual(one) and is_textual(other))
 
 
 def place_of(values: Iterable[object], otherwise: Place) -> Place:
-    """Where the first text among `values` stands."""
+    """Return where the first text among `values` stands."""
     return next((value.place for value in values if isinstance(value, SourceText)), otherwise)
 
 
@@ -284,7 +284,7 @@ def passing(context: Context, names: Iterable[SourceText]) -> tuple[Passing, ...
 
 
 def only(context: Context, place: Place, incoming: bool, kind: str, instead: str = "") -> bool:
-    """Whether the stage is of the right direction; a finding when it is not."""
+    """Check whether the stage is of the right direction; a finding when it is not."""
     if context.is_incoming is not incoming:
         use = f"; use `{instead}` here" if instead else ""
         context.found(place, f"`{kind}` is for {'incoming' if incoming else 'outgoing'} topics{use}")

@@ -47,13 +47,13 @@ from sequence_planner.pipelines.stages.support import (
 
 @dataclass(frozen=True)
 class Bounds:
-    """Which values are allowed: the numbers `between` two, or one of `among`."""
+    """The values that are allowed: the numbers `between` two, or one of `among`."""
 
     between: tuple[float, float] | None = None
     among: tuple[object, ...] = ()
 
     def allow(self, type_: FieldType, value: object) -> bool:
-        """Whether a field of `type_` may be given `value`."""
+        """Return whether a field of `type_` may be given `value`."""
         if not fits(type_, value):
             return False
         if self.between is None:
@@ -61,7 +61,7 @@ class Bounds:
         return isinstance(value, int | float) and self.between[0] <= value <= self.between[1]
 
     def described(self, type_: FieldType) -> str:
-        """What a field of `type_` may be given, for people."""
+        """Say, for people, what a field of `type_` may be given."""
         if self.between is None:
             return f"one of {', '.join(map(as_written, self.among))}"
         kind = "an integer" if isinstance(type_, IntegerRange) else "a number"
@@ -109,7 +109,7 @@ class OverrideCourse:
 
     @property
     def due(self) -> float | None:
-        """When what is set expires."""
+        """The time at which what is set expires."""
         return None if self.override is None else self.override.until
 
     def take(self, record: Record, now: float) -> Record:
@@ -317,7 +317,7 @@ class LimitCourse:
 
     @property
     def due(self) -> float | None:
-        """When the record held back may go."""
+        """The time at which the record held back may go."""
         return None if self._held is None else self._free
 
     def take(self, record: Record, now: float) -> Record | None:

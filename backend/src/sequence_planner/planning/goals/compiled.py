@@ -45,11 +45,11 @@ class CompiledGoals:
         self._numbers: dict[str, int] = {}
 
     def progress(self, goals: Iterable[Goal]) -> CompiledProgress:
-        """How far `goals` have come, none of them reached."""
+        """Return how far `goals` have come, none of them reached."""
         return tuple(sorted((self._number(goal), goal.at) for goal in goals))
 
     def missing(self, progress: CompiledProgress, state: State) -> CompiledProgress:
-        """What is left without the goals that are met already; with a formula, none is before the next step 3."""
+        """Return what is left without the goals that are met already; with a formula, none is before the next step 3."""
         goals = self._compiled
         return tuple(
             (number, at)
@@ -58,7 +58,7 @@ class CompiledGoals:
         )
 
     def settled(self, progress: CompiledProgress, state: State) -> CompiledProgress | None:
-        """What is left after step 3 has led to `state`; None when a goal can never be reached any more."""
+        """Return what is left after step 3 has led to `state`; None when a goal can never be reached any more."""
         missing: list[tuple[int, int]] = []
         for number, at in progress:
             goal = self._compiled[number]

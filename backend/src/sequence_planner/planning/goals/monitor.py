@@ -35,7 +35,7 @@ class TooManyStatesError(Exception):
 
 
 class Choice(Immutable):
-    """Where a step goes depends on a predicate: on whether it is certainly true, certainly false, or unknown."""
+    """A step that goes where a predicate decides: by whether it is certainly true, certainly false, or unknown."""
 
     predicate: Expression
     true: Decision
@@ -61,7 +61,7 @@ class Monitor(Immutable):
         return _monitor_decided(self.steps[state], position)
 
     def satisfied(self, state: int, position: Valuation) -> bool:
-        """Whether what remains in `state` is satisfied by `position` as the last one."""
+        """Return whether what remains in `state` is satisfied by `position` as the last one."""
         return _monitor_decided(self.ends[state], position) == 1
 
     @cached_property

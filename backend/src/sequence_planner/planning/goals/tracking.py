@@ -1,4 +1,4 @@
-"""How far goals are reached on a symbolic run: what is carried from tick to tick besides the state."""
+"""Progress of goals on a symbolic run: what is carried from tick to tick besides the state."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Tracker:
         return {following: self._circuit.disjunction(each) for following, each in ways.items()}
 
     def _decided(self, decision: Decision, position: SymbolicState) -> Mapping[int, int]:
-        """Where a decision leads, each with the literal that says so."""
+        """Return where a decision leads, each with the literal that says so."""
         circuit = self._circuit
         if not isinstance(decision, Choice):
             return {decision: circuit.TRUE}

@@ -160,7 +160,7 @@ def _before(abilities: Mapping[str, Ability]) -> dict[str, dict[str, None]]:
 
 
 class _Guard:
-    """What a guard asks of variables, one by one."""
+    """The demands of a guard on variables, one by one."""
 
     def __init__(self, guard: Expression) -> None:
         self.reading: dict[str, list[Expression]] = defaultdict(list)  # parts by the variables that they read
@@ -170,7 +170,7 @@ class _Guard:
         self.equalities = tuple(equalities(guard))
 
     def excludes(self, name: str, value: Value) -> bool:
-        """Whether it cannot hold while the variable `name` has that value."""
+        """Return whether it cannot hold while the variable `name` has that value."""
         return any(evaluate(part, PartialState({name: value})) is False for part in self.reading.get(name, ()))
 
 
@@ -217,7 +217,7 @@ def part_of(
 
 
 def _read(part: Automaton, supervisor: Supervisor) -> Iterator[str]:
-    """What its abilities and effects read, and what the supervisor reads of them."""
+    """Yield what its abilities and effects read, and what the supervisor reads of them."""
     yield from supervisor.safe.names
     for ability in part.abilities.values():
         for predicate in (ability.enabled, ability.start_guard, ability.finish_guard or TRUE):
@@ -261,7 +261,7 @@ def _with_flags(automaton: Automaton, names: Iterable[str]) -> set[str]:
 
 
 def _idle(action: Assignment, state: State) -> bool:
-    """Whether the action leaves the variable as it is in `state`; what is unknown stays so."""
+    """Return whether the action leaves the variable as it is in `state`; what is unknown stays so."""
     value = state[target(action)]
     return value is None or action.value == Constant(value)
 
@@ -342,7 +342,7 @@ class Outline(Immutable):
 
 
 class _Work:
-    """What has been begun on a task: the parts of the automaton still to be tried, and the one that is being tried."""
+    """The work begun on a task: the parts of the automaton still to be tried, and the one that is being tried."""
 
     def __init__(self, task: PlanningTask, longest: int, parts: Iterator[Automaton]) -> None:
         self.task = task
@@ -461,7 +461,7 @@ class Projection:
         return move.writes | read_variables(self._automaton, (move.guard, *values, *conditions))
 
     def _ending(self, move: Transition) -> frozenset[str]:
-        """What comes after a start in any case."""
+        """Return what comes after a start in any case."""
         if move.phase is not Phase.START:
             return frozenset()
         return frozenset(map(target, self._automaton.abilities[move.name.removesuffix(".start")].finish_actions))
@@ -497,7 +497,7 @@ _LONGER_THAN_PARTS = 1.5  # than the longest of its parts a plan may be
 
 
 class _GoalWork:
-    """What has been done of a task, from where its runs begin: the plans up to now for its goals, in their order."""
+    """The work done on a task, from where its runs begin: the plans up to now for its goals, in their order."""
 
     def __init__(
         self, first: Outline, task: PlanningTask, goals: Goals, begun: ReferenceRun, order: CausalOrder

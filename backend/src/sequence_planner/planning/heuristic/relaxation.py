@@ -47,7 +47,7 @@ class Permission:
         self._kept: tuple[int, list[_Branches], dict[int, bool]] | None = None
 
     def may(self, move: Transition, possible: Mapping[str, set[Value | None]]) -> bool:
-        """Whether `move` may be taken from a safe state and lead to one, as far as `possible` values tell."""
+        """Return whether `move` may be taken from a safe state and lead to one, as far as `possible` values tell."""
         if move.phase is not Phase.START or self._safe.root == EVERYTHING or self._left < 0:
             return True
         return self._may_be_safe(possible, self._written(move, possible)) and self._may_be_safe(possible, {})
@@ -65,7 +65,9 @@ class Permission:
         return written
 
     def _may_be_safe(self, possible: Mapping[str, set[Value | None]], written: Mapping[str, Set[Value | None]]) -> bool:
-        """Whether a safe state may have `written` values, or else `possible` ones; of an unknown variable every one."""
+        """Return whether a safe state may have `written` values, or else `possible` ones; of an unknown variable every
+        one.
+        """
         possibly, known = self._at_hand(possible)
         axes = list(possibly)
         deepest = -1  # below it nothing is written, so that it is as it was for other moves
@@ -169,7 +171,7 @@ def counted_on(automaton: Automaton, circumstances: Circumstances) -> tuple[Tran
 
 
 class Relaxation:
-    """What each variable and flag may become from `first`, where each has some values already, by permitted `moves`."""
+    """The values that each variable and flag may get from `first`, where each has some already, by permitted `moves`."""
 
     def __init__(
         self,
@@ -215,7 +217,7 @@ class Relaxation:
                 waiting.update(dict.fromkeys(now))
 
     def may(self, predicate: Expression, truth: bool = True) -> bool:
-        """Whether some choice of possible values may give `predicate` the value `truth`."""
+        """Return whether some choice of possible values may give `predicate` the value `truth`."""
         key = (id(predicate), truth)
         if key in self._true:
             return True
@@ -291,7 +293,7 @@ class Relaxation:
         return values is None or bool(values & options if truth else values - options - {None})
 
     def _values(self, expression: Expression) -> set[Value | None] | None:
-        """What `expression` may be; None when there are too many combinations to say."""
+        """Return what `expression` may be; None when there are too many combinations to say."""
         match expression:
             case Constant(value):
                 return {value}

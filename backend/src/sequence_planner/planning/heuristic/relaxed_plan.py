@@ -196,7 +196,7 @@ class RelaxedPlan:
         return min((option for option in options if option is not None), default=None, key=_cost)
 
     def _values(self, expression: Expression) -> list[tuple[Value, _Support]]:
-        """What `expression` may be, each with what it takes."""
+        """Return what `expression` may be, each with what it takes."""
         match expression:
             case Constant(value):
                 return [(value, (0, ()))]
@@ -337,14 +337,14 @@ def _brought(actions: Iterable[Assignment]) -> Iterator[MissingFact]:
 
 
 class _Missing:
-    """What expressions miss in one state."""
+    """The facts that expressions miss in one state."""
 
     def __init__(self, automaton: Automaton, state: State) -> None:
         self._automaton = automaton
         self._state = state
 
     def of_action(self, action: Assignment, guard: Expression) -> list[MissingFact]:
-        """What an action misses, and the guard of its transition besides."""
+        """Return what an action misses, and the guard of its transition besides."""
         facts = [(name, None) for name in variables(action.value)]
         if action.condition is None:
             return facts + self.of(guard, True)

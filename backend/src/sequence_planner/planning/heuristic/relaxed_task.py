@@ -33,7 +33,7 @@ from sequence_planner.language.types import Value
 
 
 class RuleKind(Enum):
-    """What a rule with a cost stands for."""
+    """The kind of thing that a rule with a cost stands for."""
 
     EFFECT = auto()
     FINISH = auto()
@@ -64,7 +64,7 @@ class RelaxedGraph:
 
     @property
     def nodes(self) -> int:
-        """How many nodes there are."""
+        """The number of nodes there are."""
         return len(self.readers)
 
     def node(self) -> int:
@@ -411,7 +411,7 @@ class RelaxedTask(RelaxedPredicates):
         self.graph.rule(needs, tuple(always), operator)
 
     def _written(self, action: Assignment) -> Iterator[tuple[list[int], Value]]:
-        """What an action can write, each with what it takes for that."""
+        """Yield what an action can write, each with what it takes for that."""
         domain = self._automaton.variables[target(action)].type.domain
         condition = [] if action.condition is None else self._needs(action.condition)
         if isinstance(action.value, Constant):

@@ -147,7 +147,7 @@ _MOST_WAITS = 40  # in one leap
 
 
 def leap(space: Space, position: RunPosition, steps: Iterable[RelaxedStep]) -> tuple[RunPosition, tuple[Move, ...]]:
-    """Where `position` gets when the relaxed plan's starts are taken as they can be, and what happens meanwhile."""
+    """Return where `position` gets when the relaxed plan's starts are taken as they can be, and what happens meanwhile."""
     moves: list[Move] = []
     starts = {step.operator[1]: step for step in steps if step.operator[0] is RuleKind.START}
     effects = [step.operator[1] for step in steps if step.operator[0] is RuleKind.EFFECT]
@@ -180,7 +180,7 @@ def _start(space: Space, position: RunPosition, steps: Sequence[RelaxedStep]) ->
     variables = Counter(name for step in ready for name, _ in step.needs)
 
     def threats(step: RelaxedStep) -> int:
-        """How many facts that others need it takes away."""
+        """Return how many facts that others need it takes away."""
         own = dict(step.needs)
         return sum(
             variables[name] - needed[name, value] - (name in own and own[name] != value) for name, value in step.brings
@@ -355,7 +355,7 @@ class _Search:
         return self._estimator.estimate(position.run.values, goals)
 
     def _moves(self, position: RunPosition, estimate: Estimate) -> Iterator[tuple[Move, int, bool]]:
-        """What can be done, how unlikely it is to be needed, and whether the relaxed plan has it."""
+        """Yield what can be done, how unlikely it is to be needed, and whether the relaxed plan has it."""
         helpful = {step.operator for step in estimate.steps}
         effects = tuple(name for kind, name in helpful if kind is RuleKind.EFFECT)
         if position.begun:

@@ -29,7 +29,7 @@ Values = dict[str, Value | None]
 
 
 class _Start(Immutable):
-    """What a start of a plan needs, reads and does; `written` is what it wrote in the plan."""
+    """The needs, reads and actions of a start of a plan; `written` is what it wrote in the plan."""
 
     name: str
     guard: Function
@@ -49,7 +49,7 @@ class Elimination:
         self._guards = {a.name: conjunction(a.enabled, a.start_guard) for a in automaton.abilities.values()}
 
     def suits(self, order: Sequence[str]) -> bool:
-        """Whether the trials mean what they say: nothing but the variables decides, and only the end counts."""
+        """Return whether the trials mean what they say: nothing but the variables decides, and only the end counts."""
         names = set(self._goal_reads).union(() if self._safe is None else self._safe.names)
         for name in set(order):
             names.update(self._reads(name))
@@ -71,7 +71,9 @@ class Elimination:
         return tuple(start.name for start in plan)
 
     def _without(self, plan: Sequence[_Start], left_out: int, base: Mapping[str, Value | None]) -> list[_Start] | None:
-        """What follows the start that is left out from the state `base` before it, if the goals still are reached."""
+        """Return what follows the start that is left out from the state `base` before it, if the goals still are
+        reached.
+        """
         planned: Values = {**base, **plan[left_out].written}
         current: Values = dict(base)
         different = {name for name in plan[left_out].written if current[name] != planned[name]}

@@ -23,7 +23,7 @@ from sequence_planner.planning.problem import PlanTick
 
 
 class Interference:
-    """What each ability of an automaton touches and reads, with the effects that it sets off."""
+    """The things that each ability of an automaton touches and reads, with the effects that it sets off."""
 
     def __init__(self, automaton: Automaton) -> None:
         self._automaton = automaton
@@ -36,7 +36,7 @@ class Interference:
         self._footprint = lru_cache(maxsize=None)(self._found)
 
     def between(self, one: str, other: str) -> bool:
-        """Whether it can matter which of the two starts first."""
+        """Return whether it can matter which of the two starts first."""
         return self._between(one, other)
 
     def _compared(self, one: str, other: str) -> bool:

@@ -1,4 +1,4 @@
-"""What is still possible while some resources and abilities are absent, told at once and without a search.
+"""Possibilities left while some resources and abilities are absent, told at once and without a search.
 
 It is a relaxation (`relaxation`), so what it calls impossible is; what it does not may be so all the same.
 """
@@ -17,7 +17,7 @@ from sequence_planner.planning.heuristic.relaxed_plan import RelaxedPlan
 
 
 class Absent(Immutable):
-    """What starts nothing: all abilities of `resources`, and some `abilities` of others."""
+    """The parts that start nothing: all abilities of `resources`, and some `abilities` of others."""
 
     resources: frozenset[str] = frozenset()
     abilities: frozenset[str] = frozenset()
@@ -42,7 +42,7 @@ class StillPossible(Immutable):
 
 
 class Remaining:
-    """What can still become of `state` while `absent`; abilities for restart mode may start.
+    """The values that can still come of `state` while `absent`; abilities for restart mode may start.
 
     Faults happen as well: the model says with them what people may do by themselves. What is unknown of the resources
     that are `silent` stays so; of others it may be anything, as it may be known in the next moment.
@@ -79,7 +79,7 @@ class Remaining:
         return StillPossible(tuple(by), tuple(self._written(found)))
 
     def _written(self, moves: Iterable[Transition]) -> Iterator[tuple[str, Value]]:
-        """What the faults among them write, where that is said."""
+        """Yield what the faults among them write, where that is said."""
         for move in moves:
             for action in move.actions if move.fault else ():
                 if isinstance(action.value, Constant):
@@ -87,7 +87,7 @@ class Remaining:
 
 
 def _goals(operation: Operation, active: bool) -> tuple[Expression, ...]:
-    """What has to come true for it: one that is not active begins with its precondition."""
+    """Return what has to come true for it: one that is not active begins with its precondition."""
     return (operation.goal,) if active else (operation.precondition, operation.goal)
 
 

@@ -60,14 +60,16 @@ _ALL = StateSet((), ())
 
 
 class Localised(Immutable):
-    """What is seen, and for each oracle the variables it speaks for. States outside the safe set are not told apart."""
+    """The part that is seen, and for each oracle the variables it speaks for. States outside the safe set are not told
+    apart.
+    """
 
     automaton: Automaton
     supervisor: Supervisor
     oracles: Mapping[str, frozenset[str]]
 
     def state(self, state: State) -> State:
-        """What is seen of `state`; oracles say anything."""
+        """Return what is seen of `state`; oracles say anything."""
         return synchronise(self.automaton, {name: state.get(name, False) for name in self.automaton.types})
 
     def order(self, order: Iterable[Ability]) -> tuple[Ability, ...]:
@@ -82,7 +84,7 @@ def localised(automaton: Automaton, supervisor: Supervisor, kept: frozenset[str]
 
 
 def localisable(automaton: Automaton, state: State, goals: Goals) -> bool:
-    """Whether questions about runs from `state` can be answered so.
+    """Return whether questions about runs from `state` can be answered so.
 
     Unknown values decide too much, and formulas count the positions of runs, also those at which nothing seen happens.
     """
@@ -160,11 +162,11 @@ class _Localiser:
         return any(target(action) in self._kept for action in actions)
 
     def visible(self, expression: Expression) -> bool:
-        """Whether nothing is read that is not seen."""
+        """Return whether nothing is read that is not seen."""
         return self._seen.issuperset(variables(expression))
 
     def kept(self, name: str) -> bool:
-        """Whether the variable is seen."""
+        """Return whether the variable is seen."""
         return name in self._kept
 
     def inlined(self, name: str) -> Expression | None:
@@ -226,7 +228,7 @@ class _Place:
 
 
 def _projected(states: StateSet, kept: frozenset[str]) -> StateSet:
-    """What `states` allow for some value of the variables that are not kept."""
+    """Return what `states` allow for some value of the variables that are not kept."""
     hidden = frozenset(states.names) - kept
     return _complement(_complement(states).for_all(hidden)) if hidden else states
 
@@ -369,7 +371,7 @@ class ConcretePlan(Immutable):
         return state
 
     def _kept_from(self, ability: Ability, state: State) -> Iterable[str]:
-        """What may keep `ability` from its start."""
+        """Return what may keep `ability` from its start."""
         guard = conjunction(ability.enabled, ability.start_guard)
         if not holds(guard, state):
             return self._denied(guard, state)
@@ -407,7 +409,8 @@ class VariableSelection:
         self._supervisor = supervisor
 
     def first(self, asked: Iterable[Expression]) -> Names:
-        """What the questions `asked` read, with what the supervisor speaks of besides; where it matters, that decides.
+        """Return what the questions `asked` read, with what the supervisor speaks of besides; where it matters, that
+        decides.
 
         Where it says nothing, and there is little to see, all of it.
         """
@@ -439,7 +442,7 @@ class VariableSelection:
 
     @cached_property
     def _supervised(self) -> Names:
-        """What starts are kept from by the supervisor."""
+        """The variables by which the supervisor keeps starts from being taken."""
         names = (guard.names for guard in self._supervisor.guards.values())
         return frozenset[str]().union(*names) & self._automaton.variables.keys()
 

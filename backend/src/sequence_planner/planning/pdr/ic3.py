@@ -229,7 +229,7 @@ class Frames:
         return ChoiceStep(cube, tuple(effects), tuple(starts), needed, following)
 
     def _begins(self, cube: Cube) -> bool:
-        """Whether a run can begin in `cube`, which is not empty."""
+        """Return whether a run can begin in `cube`, which is not empty."""
         if not self._outside.isdisjoint(cube):
             return False
         return not self._relation.free_flags or self._inquiry.solves([*self._beginning, *cube])
@@ -282,7 +282,7 @@ class Decision(Immutable):
 
 
 class ReachabilityQuestion(Immutable):
-    """Whether the goals of `task` can be reached from `state`, or one like it with any values of `free`."""
+    """The question whether the goals of `task` can be reached from `state`, or one like it with any values of `free`."""
 
     automaton: Automaton
     supervisor: Supervisor
@@ -349,7 +349,7 @@ class ReachabilityQuestion(Immutable):
         return (*(goal.predicate for goal in self.task.goals), *self.task.circumstances.avoid)
 
     def _related(self, kept: frozenset[str]) -> tuple[Localised, Relation]:
-        """What is seen through the variables `kept`, and its tick."""
+        """Return what is seen through the variables `kept`, and its tick."""
         seen = localised(self.automaton, self.supervisor, kept)
         state = seen.state(self.state)
         order = self.orders.part(seen, self.task, self.budget)
@@ -450,7 +450,8 @@ class Reachability:
         return proof
 
     def decide(self, task: PlanningTask, budget: Budget, free: frozenset[str] = frozenset()) -> Decision:
-        """Whether the goals can be reached from a state like that of `task`, with any values of the variables `free`.
+        """Decide whether the goals can be reached from a state like that of `task`, with any values of the variables
+        `free`.
 
         A plan has a tick at least: the goals count after step 3. Flags are synchronised with values that are free.
         Raises `SpentError`.

@@ -89,7 +89,7 @@ class _Pairs:
         self._together({fact for fact in facts if fact not in excluded})
 
     def invariant(self) -> tuple[Cube, ...] | None:
-        """What is never together, as far as the goals are excluded by it."""
+        """Return what is never together, as far as the goals are excluded by it."""
         relation, inquiry = self._relation, self._inquiry
         for question in range(_MOST_QUESTIONS):
             apart = self._apart.values()
@@ -176,7 +176,7 @@ class SecondSolver:
         pysolvers.cadical153_add_cl(self._handle, clause)
 
     def solve(self, assumptions: Sequence[int], budget: Budget) -> bool:
-        """Whether the clauses can be satisfied under `assumptions`. Raises `SpentError`."""
+        """Return whether the clauses can be satisfied under `assumptions`. Raises `SpentError`."""
         while True:
             budget.require()
             pysolvers.cadical153_cbudget(self._handle, _AT_ONCE)
@@ -189,7 +189,7 @@ class SecondSolver:
 
 
 class CertificateError(Exception):
-    """What was given as a proof proves nothing; the message says which step fails."""
+    """An alleged proof that proves nothing; the message says which step fails."""
 
 
 def check(
@@ -226,7 +226,7 @@ def _without_need_of_the_rest(
     orders: Orders,
     open_: frozenset[str],
 ) -> bool:
-    """Whether the proof is one for the part of the automaton that it speaks of, and so for all of it."""
+    """Return whether the proof is one for the part of the automaton that it speaks of, and so for all of it."""
     if not localisable(automaton, task.state, task.goals):
         return False
     names = {literal.name for clause in proof.invariant for literal in clause} & automaton.types.keys()
@@ -336,7 +336,7 @@ class _Check:
 
 
 def _values(state: SymbolicState, progress: Mapping[Goal, Progress]) -> dict[str, Symbol]:
-    """What clauses can speak of."""
+    """Return what clauses can speak of."""
     values = dict(state)
     for goal, made in progress.items():
         values[f"goal.{goal.name}.reached"] = Symbol({False: -made.reached, True: made.reached})

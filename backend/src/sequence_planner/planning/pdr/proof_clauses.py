@@ -1,4 +1,4 @@
-"""What the clauses of a proof say of a state in which goals have come so far."""
+"""Meaning of a proof's clauses: what they say of a state in which goals have come so far."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def asserted(state: State, goals: Goals) -> Mapping[str, Value | None]:
 
 
 def is_met(literal: Literal, values: Mapping[str, Value | None]) -> bool:
-    """Whether the literal is true of these values."""
+    """Return whether the literal is true of these values."""
     return (values[literal.name] == literal.value) is literal.equal
 
 
 def satisfies(values: Mapping[str, Value | None], clauses: Iterable[Clause]) -> bool:
-    """Whether the values satisfy all clauses."""
+    """Return whether the values satisfy all clauses."""
     return all(any(is_met(literal, values) for literal in clause) for clause in clauses)
 
 

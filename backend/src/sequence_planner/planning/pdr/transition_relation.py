@@ -33,7 +33,7 @@ Cube = tuple[int, ...]
 
 
 class _Clauses:
-    """Where the circuit writes; everything is handed to solvers at once."""
+    """The place that the circuit writes to; everything is handed to solvers at once."""
 
     def __init__(self) -> None:
         self.all: list[list[int]] = []
@@ -115,11 +115,11 @@ class Relation:
 
     @property
     def choices(self) -> list[int]:
-        """What decides a tick besides the state."""
+        """The choices that decide a tick besides the state."""
         return [*self.effects.values(), *(choice for _, choice in self.starts), *(bit for _, bit in self.oracles)]
 
     def state(self, model: Sequence[int]) -> list[int]:
-        """What a model of the clauses says of the state.
+        """Return what a model of the clauses says of the state.
 
         Of a variable of several values that are the ones it does not have: so it can be left open which others it has.
         """
@@ -144,13 +144,13 @@ class Relation:
         return tuple(self._meaning(-literal) for literal in cube)
 
     def values(self, model: Sequence[int]) -> dict[str, Value]:
-        """What a model of the clauses says of the state."""
+        """Return what a model of the clauses says of the state."""
         true = set(model)
         said = (self._meaning(bit if bit in true else -bit) for bit in self.bits)
         return {literal.name: literal.value for literal in said if literal.equal}
 
     def includes(self, cube: Cube, state: State) -> bool:
-        """Whether `state` is in `cube`, whatever has been reached."""
+        """Return whether `state` is in `cube`, whatever has been reached."""
         met = ((literal > 0, self.meanings[abs(literal)]) for literal in cube)
         return all((state[each.name] == each.value) is true for true, each in met if each.name in state)
 
@@ -236,7 +236,7 @@ class TickQueries:
 
     @property
     def worn(self) -> bool:
-        """Whether a new one would be quicker."""
+        """True if a new one would be quicker."""
         return self._passed >= _MOST_PASSING
 
     def fresh(self) -> int:
@@ -261,7 +261,7 @@ class TickQueries:
         return self._current
 
     def solves(self, assumptions: Sequence[int]) -> bool:
-        """Whether the assumptions can hold together."""
+        """Return whether the assumptions can hold together."""
         self._budget.require()
         pysolvers.minisat22_cbudget(self._handle, _AT_ONCE)
         answer: bool | None = pysolvers.minisat22_solve_lim(self._handle, assumptions, 0, 0)

@@ -1,4 +1,4 @@
-"""What an engine is asked, and what it finds: several of them stand behind one interface."""
+"""Questions to an engine, and what it finds: several of them stand behind one interface."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Finding(Immutable):
 
     @property
     def decided(self) -> bool:
-        """Whether there is nothing more to find for a fast plan."""
+        """True if there is nothing more to find for a fast plan."""
         return self.plan is not None or self.proof is not None or self.exhausted
 
 
@@ -53,7 +53,7 @@ class Engine(Protocol):
 
     @property
     def name(self) -> str:
-        """What answers say it was."""
+        """The name by which answers say that it was this one."""
 
     def solve(self, task: PlanningTask, budget: Budget) -> Finding:
-        """What is found before the budget is spent; nothing, when the engine is none for such a task."""
+        """Return what is found before the budget is spent; nothing, when the engine is none for such a task."""

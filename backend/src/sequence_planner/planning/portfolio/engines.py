@@ -1,4 +1,4 @@
-"""Which engines there are, where each of them works, and how several take turns in one thread."""
+"""The engines there are, where each of them works, and how several take turns in one thread."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Factory = Callable[[Automaton, Supervisor], Engine]
 
 
 class EngineReport(Immutable):
-    """What an engine has found in one turn; with `trouble` it failed at that, and found nothing."""
+    """The finding of an engine in one turn; with `trouble` it failed at that, and found nothing."""
 
     engine: str
     finding: Finding
@@ -162,7 +162,7 @@ class Engines:
         patience: Callable[[], float] = lambda: inf,
         without: Set[str] = frozenset(),
     ) -> Iterator[EngineReport]:
-        """What they find, turn by turn, until each but those `without` has given up or the budget is spent.
+        """Yield what they find, turn by turn, until each but those `without` has given up or the budget is spent.
 
         No turn is longer than `patience` has seconds when it begins. An engine that fails is made anew for the next
         task: what it has learnt could be wrong.

@@ -54,7 +54,7 @@ class Escalation:
             self._race = self._rest = None
 
     def _has_more(self, engines: Engines, attempt: PlanningAttempt) -> bool:
-        """Whether it is worth while to ask lanes, after the engines had their turns here.
+        """Return whether it is worth while to ask lanes, after the engines had their turns here.
 
         A plan that could be better is not: whoever follows it can wait.
         """

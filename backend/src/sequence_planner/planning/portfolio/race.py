@@ -34,7 +34,7 @@ from sequence_planner.process.worker import (
 
 
 class LaneModel(Immutable):
-    """What the process of a lane works with: `memory` is the most it may use for data, in bytes."""
+    """The things that the process of a lane works with: `memory` is the most it may use for data, in bytes."""
 
     automaton: Automaton
     supervisor: Supervisor
@@ -174,7 +174,7 @@ class _Runner:
                     self._replace("has ended")
 
     def _look(self, number: int) -> None:
-        """Whether it has come back from the task of that number."""
+        """Check whether it has come back from the task of that number."""
         with self._lock:
             self._timer = None
             if self._back < number:

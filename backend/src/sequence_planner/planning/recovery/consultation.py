@@ -183,7 +183,7 @@ class RecoverySearch:
                     yield self.making.offer(kind, errand.end, then, acts, errand, operation)
 
     def without_goals(self) -> Iterator[RecoveryProposal]:
-        """Where nothing else helps: errands after which some goals are given up."""
+        """Yield, for where nothing else helps, errands after which some goals are given up."""
         for dead in self._dead_ends:
             some = self.some(dead.end)
             if some is not None and (some[2].goals or dead.errand.walk.unsupervised or self._was_outside):

@@ -52,13 +52,13 @@ def stalled_effects(automaton: Automaton, state: State, resources: Iterable[str]
 
 
 def changes_something(effect: Effect, state: State) -> bool:
-    """Whether the effect can happen, and then something is different."""
+    """Return whether the effect can happen, and then something is different."""
     written = effect_writes(effect, state) or {}
     return any(state[name] != value for name, value in written.items())
 
 
 def stalls(automaton: Automaton, state: State, names: frozenset[str]) -> frozenset[Stall]:
-    """What it is that does not happen now."""
+    """Tell what it is that does not happen now."""
     return frozenset(_stall(automaton, state, effect) for effect in automaton.effects if effect.name in names)
 
 
@@ -289,7 +289,7 @@ class Errands:
         return walked(self._automaton, self._prover.supervisor, here, ticks)
 
     def _done(self, abilities: Iterable[Ability], written: dict[str, Value]) -> Expression:
-        """What the abilities have written is so, and none of them is under way any more."""
+        """Say that what the abilities have written is so, and none of them is under way any more."""
         running = (ability.flag("executing") for ability in abilities)
         return self._all_of([*written.items(), *((name, False) for name in running)])
 

@@ -103,7 +103,7 @@ class Making:
         )
 
     def _helps(self, act: Act) -> bool:
-        """Whether it is done where something is wrong, as far as that is known: at a device that does nothing, or whose
+        """Return whether it is done where something is wrong, if that is known: at a device that does nothing, or whose
         abilities were given up.
         """
         circumstances, variables = self._here.circumstances, self._automaton.variables
@@ -113,7 +113,7 @@ class Making:
         return any(name in self._awaited or variables[name].resource in given_up for name, _ in act.values)
 
     def restarts(self, ticks: Iterable[PlanTick]) -> bool:
-        """Whether restart abilities start."""
+        """Return whether restart abilities start."""
         return any(self._automaton.abilities[name].restart for tick in ticks for name in tick.starts)
 
     def claims(self, corrections: Iterable[ValueChange]) -> tuple[str, ...]:
@@ -129,7 +129,7 @@ class Making:
         return changes_between(self._automaton, changed, finish(self._automaton, changed).state, Kind.ESTIMATED)
 
     def at_rest(self, end: RecoverySituation) -> bool:
-        """Whether it is a safe rest state in which no device has still to follow what it was told."""
+        """Return whether it is a safe rest state in which no device has still to follow what it was told."""
         rest, state = self._automaton.rest, end.state
         if (rest is not None and not holds(rest, state)) or not self._prover.is_safe(state):
             return False

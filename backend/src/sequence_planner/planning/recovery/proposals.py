@@ -62,7 +62,7 @@ def _begins(predicate: Expression, before: State, after: State) -> bool:
 
 
 def all_equal(automaton: Automaton, values: Iterable[tuple[str, Value]]) -> Expression:
-    """Whether all of these variables and flags have these values."""
+    """Return the condition that all of these variables and flags have these values."""
     return conjunction(*(_equals(Variable(name, automaton.types[name]), value) for name, value in values))
 
 
@@ -87,7 +87,7 @@ WEIGHTS = {
 
 
 class OfferKind(StrEnum):
-    """What an offer asks for, besides what production does then."""
+    """The things an offer asks for, besides what production does then."""
 
     REPLAN = "replan"  # nothing: production goes on as it is
     RESTART = "restart"  # an errand in restart mode
@@ -108,7 +108,7 @@ class ValueChange(Immutable):
 
 
 class ProposalEffort(Immutable):
-    """What an offer costs. `seconds` is how long its errand and then its plan are estimated to take."""
+    """The cost of an offer. `seconds` is how long its errand and then its plan are estimated to take."""
 
     changes: int = 0
     physical: int = 0  # what a person does at devices; one such act can change several measured variables
@@ -165,13 +165,13 @@ class RecoveryProposal(Immutable):
 
     @property
     def only_if_checked(self) -> bool:
-        """Whether it says that work is done which nobody has done."""
+        """True if it says that work is done which nobody has done."""
         return bool(self.claims)
 
     @property
     def rank(self) -> tuple[bool, int, bool, float]:
-        """What comes first is least: what devices or people do before what is only said, what is done where something
-        is wrong before what is done elsewhere, then what takes less.
+        """The rank, least first: what is done before what is only said, done where something is wrong before elsewhere,
+        then what takes less.
 
         What says that work is done comes last, whatever it takes.
         """
@@ -193,7 +193,7 @@ class Advice(Immutable):
 
 
 def expected_seconds(automaton: Automaton, ticks: Iterable[PlanTick]) -> float:
-    """How long a plan takes when each device needs the middle of the time its effects are declared with."""
+    """Estimate how long a plan takes when each device needs the middle of the time its effects are declared with."""
     takes = {effect.name: (effect.shortest + effect.longest) / 2 for effect in automaton.effects}
     return sum(max((takes[name] for name in tick.effects), default=0.0) for tick in ticks)
 
@@ -215,7 +215,7 @@ LIKELY = _FAULT  # acts of this rank, or a lower one, are tried before anything 
 
 
 class ActKind(StrEnum):
-    """Where something is changed."""
+    """The place where something is changed."""
 
     ESTIMATE = "estimate"  # in what is believed
     DEVICE = "device"  # measured variables, at a device
@@ -286,7 +286,7 @@ class Options:
                     yield Act(ActKind.DEVICE, name, tuple(sorted(values, key=str)), rank)
 
     def _passes(self, values: dict[str, Value], state: State) -> bool:
-        """Whether devices change one of the values by themselves then."""
+        """Return whether devices change one of the values by themselves then."""
         after = {**state, **values}
         for effect, changed in self._effects:
             if not effect.fault and not changed.isdisjoint(values):
@@ -308,8 +308,8 @@ class Options:
         *,
         awaited: bool,
     ) -> None:
-        """What `effect` writes where it gives `name` this value, be it enabled or not. One that is `awaited` has not
-        come for so long that its ability was given up.
+        """Add what `effect` writes where it gives `name` this value, be it enabled or not. One that is `awaited` has
+        not come for so long that its ability was given up.
         """
         written = effect_writes(effect, state)
         if written is not None and written.get(name) == value:
@@ -360,7 +360,7 @@ class Options:
             yield Act(ActKind.SERVICE, ability, (), _EXPECTED)
 
     def _meanwhile(self, state: State, names: frozenset[str]) -> Iterator[tuple[dict[str, Value], int]]:
-        """What an effect on nothing but `names`, or a hand, may have brought about while nobody heard of it."""
+        """Yield what an effect on nothing but `names`, or a hand, may have brought about while nobody heard of it."""
         for effect, changed in self._effects:
             written = writes(effect.actions, state) if changed <= names else None
             if written is None or not all(self._can_be(name, value) for name, value in written.items()):
@@ -388,7 +388,7 @@ Acts = tuple[Act, ...]
 
 
 class Changes:
-    """What situations acts lead to at one station."""
+    """The situations that acts lead to at one station."""
 
     def __init__(self, automaton: Automaton) -> None:
         self._automaton = automaton
@@ -417,7 +417,7 @@ class Changes:
 
 
 def kind_of(acts: Iterable[Act]) -> OfferKind:
-    """What an offer of nothing but these acts is."""
+    """Return what an offer of nothing but these acts is."""
     estimates = {act.kind is ActKind.ESTIMATE for act in acts}
     if len(estimates) == 2:
         return OfferKind.COMBINED
@@ -425,7 +425,7 @@ def kind_of(acts: Iterable[Act]) -> OfferKind:
 
 
 def returns(acts: Iterable[Act]) -> bool:
-    """Whether a resource comes back."""
+    """Return whether a resource comes back."""
     return any(act.kind is ActKind.RETURN for act in acts)
 
 
@@ -445,7 +445,7 @@ def sets(acts: Sequence[Act], size: int) -> Iterator[Acts]:
 
 
 def is_possible(here: RecoverySituation, after: RecoverySituation, impossible: frozenset[Pairing]) -> bool:
-    """Whether no pair of values comes together that never does, unless it is so already."""
+    """Return whether no pair of values comes together that never does, unless it is so already."""
 
     def together(situation: RecoverySituation) -> frozenset[Pairing]:
         state = situation.state

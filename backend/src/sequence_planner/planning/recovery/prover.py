@@ -42,7 +42,7 @@ class ProofFinding(Immutable):
 
     @property
     def decided(self) -> bool:
-        """Whether there is nothing more to find out."""
+        """True if there is nothing more to find out."""
         return self.plan is not None or self.refuted
 
 
@@ -81,11 +81,11 @@ class Prover:
             self.find(PlanningTask(state, goals, ORDINARY, Contract.FAST), Budget.seconds(_PREPARING))
 
     def is_safe(self, state: State) -> bool:
-        """Whether the state is certainly in the safe set."""
+        """Return whether the state is certainly in the safe set."""
         return self.supervisor.safe.includes(state)
 
     def is_refuted(self, task: PlanningTask) -> bool:
-        """Whether what is known already says that there is no plan."""
+        """Return whether what is known already says that there is no plan."""
         unknown = _unknown(task.state)
         return any(each.unknown == unknown and _covers(each, task) for each in self._refuted)
 
@@ -116,7 +116,7 @@ class Prover:
         return ProofFinding(attempt.plan, attempt.plan is None and attempt.proof is not None)
 
     def _relaxes(self, task: PlanningTask) -> bool:
-        """Whether the delete relaxation leaves the goals possible; else it is a proof, which is kept.
+        """Return whether the delete relaxation leaves the goals possible; else it is a proof, which is kept.
 
         Mostly there is a plan as long as nothing is missing, and that is found sooner.
         """
@@ -136,7 +136,7 @@ class Prover:
         return plan if course is None else course.plan
 
     def accepts(self, task: PlanningTask, plan: Plan) -> bool:
-        """Whether a plan replays on the reference tick; one that does is known from now on."""
+        """Return whether a plan replays on the reference tick; one that does is known from now on."""
         course = self._acceptance.course(task, plan)
         if course is None:
             return False
@@ -150,7 +150,8 @@ class Prover:
 
 
 def _covers(refuted: _Refuted, task: PlanningTask) -> bool:
-    """Whether a proof is one for `task` too: it asks for no less, no more may happen, and the invariant holds at first.
+    """Return whether a proof is one for `task` too: it asks for no less, no more may happen, and the invariant holds at
+    first.
 
     The proof says nothing of where the automata of formulas are, but by its clauses.
     """

@@ -20,7 +20,8 @@ Pairing = tuple[str, Value, str, Value]  # a variable and a value, and another w
 
 
 class AdviceRequest(Immutable):
-    """How to get back to work on `goals`, those of the active operations, until `deadline` seconds have passed.
+    """A request for a way back to work on `goals`, those of the active operations, until `deadline` seconds have
+    passed.
 
     The advisor decides itself where restart abilities may start. Effects that are `stalled` should have happened by
     now, and are not counted on as long as nothing changes for them; those that are `explained` would not have to, had

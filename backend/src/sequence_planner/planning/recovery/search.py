@@ -196,16 +196,16 @@ class FewestActs:
                 late.append(each)
 
     def _helps(self, each: _Changed) -> bool:
-        """Whether a person has done what a device should have done by itself."""
+        """Return whether a person has done what a device should have done by itself."""
         acts = (act for act in each.acts if act.kind is ActKind.DEVICE)
         return any(name in self._consultation.awaited for act in acts for name, _ in act.values)
 
     def _is_elsewhere(self, acts: Acts) -> bool:
-        """Whether it is done at devices of which nothing is known to be wrong, nor about to happen."""
+        """Return whether it is done at devices of which nothing is known to be wrong, nor about to happen."""
         return any(act.kind is ActKind.DEVICE and (act.rank > LIKELY or len(acts) > 1) for act in acts)
 
     def _is_passing(self, acts: Acts) -> bool:
-        """Whether it would not stay, and there is something that does."""
+        """Return whether it would not stay, and there is something that does."""
         return _passes(acts) and self._number[_way(acts)] > 0
 
     def _offer(self, each: _Changed, plan: Plan | None) -> RecoveryProposal:
@@ -220,12 +220,12 @@ class FewestActs:
         return offer
 
     def _is_given(self, each: _Changed) -> bool:
-        """Whether an offer found meanwhile asks for less, or for the same in other words."""
+        """Return whether an offer found meanwhile asks for less, or for the same in other words."""
         about = {(act.kind, act.name, dict(act.values).get(act.name)) for act in each.acts}
         return any({(act.kind, act.name, dict(act.values).get(act.name)) for act in f} <= about for f in self._found)
 
     def _combined(self, dead: list[_Changed]) -> Iterator[RecoveryProposal]:
-        """Where nothing has helped so far, an errand after the acts."""
+        """Yield, where nothing has helped so far, an errand after the acts."""
         number = 0
         for each in dead:
             if self._consultation.helped and number in (0, _MOST_COMBINED):

@@ -91,7 +91,7 @@ class BoundedModelChecking:
 
 
 def _counts_positions(formula: Expression) -> bool:
-    """Whether a formula speaks of the next position, so that one more start can decide it, whatever it writes."""
+    """Return whether a formula speaks of the next position, so that one more start can decide it, whatever it writes."""
     match formula:
         case UnaryTemporal("X" | "N", _):
             return True
@@ -108,7 +108,7 @@ _MOST = 0.7  # of the variables; beyond, nothing is gained
 
 
 class _Part:
-    """What is seen of the automaton through its variables `kept`, and a search in it."""
+    """The part of the automaton that is seen through its variables `kept`, and a search in it."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, kept: frozenset[str]) -> None:
         self._seen = localised(automaton, supervisor, kept)

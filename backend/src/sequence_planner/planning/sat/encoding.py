@@ -169,7 +169,7 @@ class Encoding:
         return SymbolicTick({}, {}, starts, state, [(earlier[-1] if earlier else Circuit.FALSE, end)], earlier)
 
     def _permitted(self, ability: Ability, state: SymbolicState) -> int:
-        """Whether the supervisor allows a start in a safe state in which nothing is unknown."""
+        """Return whether the supervisor allows a start in a safe state in which nothing is unknown."""
         guard = self._guards.get(ability.name)
         return Circuit.TRUE if guard is None else self.reading.member(guard, state)
 
@@ -180,7 +180,7 @@ class Encoding:
     def start(
         self, ability: Ability, state: SymbolicState, published: SymbolicState, choice: int
     ) -> tuple[int, SymbolicState]:
-        """Whether `ability` may start in a safe `state`, and the state after it where `choice` is true."""
+        """Return whether `ability` may start in a safe `state`, and the state after it where `choice` is true."""
         writes, determined = self._writing.writes(ability.start_actions, state)
         after = self._writing.applied(
             state, {n: Write(self._circuit.both(choice, w.where), w.value) for n, w in writes.items()}

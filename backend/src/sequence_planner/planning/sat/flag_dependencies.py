@@ -1,4 +1,4 @@
-"""Which flags follow which variables."""
+"""Flags and the variables that they follow."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class _Flat:
             self._add([*clause])
 
     def replaced(self, gate: int, parts: tuple[int, ...]) -> bool:
-        """Whether `gate` stands in so few clauses that it has been replaced in them."""
+        """Return whether `gate` stands in so few clauses that it has been replaced in them."""
         having, negated = self._having[gate], self._having[-gate]
         if len(having) > 1 or len(negated) > 1:
             return False
@@ -88,5 +88,5 @@ class _Flat:
 
 
 def _meets(clause: Clause, parts: Iterable[int]) -> bool:
-    """Whether any of `parts` is in `clause` already, in whichever sense."""
+    """Return whether any of `parts` is in `clause` already, in whichever sense."""
     return any(part in clause or -part in clause for part in parts)

@@ -21,7 +21,7 @@ Succession = Sequence[Sequence[int] | None]
 
 
 class Singly(NamedTuple):
-    """How starts are taken one at a time: which after which, and what they ask for, if anybody knows it already."""
+    """The way starts are taken one at a time: which after which, and what they ask for, if anybody knows it already."""
 
     succession: Succession = ()
     starts: Starts | None = None

@@ -155,7 +155,7 @@ class SoughtPlans(Immutable):
 
     @classmethod
     def of(cls, task: PlanningTask) -> SoughtPlans:
-        """What is asked by a task."""
+        """Return what is asked by a task."""
         return cls(task.state, task.goals, task.circumstances, task.bound, task.contract)
 
     def reached(self, unrolling: Unrolling, length: int) -> list[int]:
@@ -223,7 +223,7 @@ class Search:
 
     @property
     def ticks(self) -> int:
-        """How many have been asked about."""
+        """The number of ticks that have been asked about."""
         return 0 if self._unrolling is None else len(self._unrolling.ticks)
 
     def finishing(self, plan: Plan) -> frozenset[str]:

@@ -15,7 +15,7 @@ from sequence_planner.process.gc_tuning import collection_put_off
 
 
 class _Progress:
-    """What has been found of a task: the `best` plan, and that none has up to `searched` ticks."""
+    """The findings on a task so far: the `best` plan, and that none has up to `searched` ticks."""
 
     def __init__(self, task: PlanningTask) -> None:
         self.task = task
@@ -29,7 +29,7 @@ class _Progress:
 
     @property
     def finding(self) -> Finding:
-        """What of it is found; of a plan, none has fewer ticks than there are said to be searched."""
+        """The part of it that is found; of a plan, none has fewer ticks than there are said to be searched."""
         if self.best is None:
             return Finding(searched=self.searched)
         proven = self.searched >= len(self.best.ticks) - 1

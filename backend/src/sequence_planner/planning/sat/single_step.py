@@ -67,7 +67,7 @@ class SingleStep:
         return Choices(starts, earlier, {**state, **{name: self._after(state, name, w) for name, w in writing.items()}})
 
     def _ask(self, choice: int, symbol: Symbol, domains: Domains, name: str, values: Some) -> None:
-        """Where the choice is made, the variable has one of `values`."""
+        """Require that, where the choice is made, the variable has one of `values`."""
         domain = domains.values[name]
         refused = [symbol.literal(value) for n, value in enumerate(domain) if not values >> n & 1]
         if 2 * len(refused) <= len(domain):
@@ -108,7 +108,9 @@ class SingleStep:
         return after
 
     def _write(self, choice: int, written: Written, state: SymbolicState, after: Symbol) -> None:
-        """Where the choice is made, the variable has the value that is written, and there is one in its domain."""
+        """Require that, where the choice is made, the variable has the value that is written, and there is one in its
+        domain.
+        """
         circuit = self._circuit
         if written.source is None:
             circuit.require(-choice, *(after.literal(value) for _, value in written.becomes or ()))

@@ -18,7 +18,7 @@ from sequence_planner.process.budget import Budget
 
 
 class ClauseSink(Protocol):
-    """Where clauses go."""
+    """The place where clauses go."""
 
     def add_clause(self, clause: list[int], /) -> object:
         """Add one clause."""
@@ -174,7 +174,7 @@ class Solver:
         pysolvers.glucose41_setphases(self._handle, literals)
 
     def solve(self, assumptions: Sequence[int], budget: Budget, soon: bool = False) -> bool | None:
-        """Whether the clauses can be satisfied under `assumptions`; None when the budget is spent before.
+        """Return whether the clauses can be satisfied under `assumptions`; None when the budget is spent before.
 
         Or, with `soon`, when it takes much longer than most questions do.
         """

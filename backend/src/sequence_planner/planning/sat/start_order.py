@@ -119,7 +119,7 @@ class StartPairs:
         self._second: dict[tuple[str, str], tuple[int, SymbolicState]] = {}
 
     def order_matters(self, one: str, other: str) -> bool:
-        """Whether in some safe state `one` then `other` can start, and the other way round not, or differently."""
+        """Return whether in some safe state `one` then `other` can start, and the other way round not, or differently."""
         first_now, _ = self._started(one)
         second_then, end = self._both(one, other)
         if Circuit.FALSE in (first_now, second_then):
@@ -143,7 +143,9 @@ class StartPairs:
         return self._first[name]
 
     def _both(self, one: str, other: str) -> tuple[int, SymbolicState]:
-        """Whether `other` can start after `one`, and what they have written then; either order of a pair needs both."""
+        """Return whether `other` can start after `one`, and what they have written then; either order of a pair needs
+        both.
+        """
         if (one, other) not in self._second:
             then, end = self._start(other, self._started(one)[1])
             self._second[one, other] = then, {name: end[name] for name in self._written(one, other)}
@@ -291,7 +293,9 @@ class Sweep:
         return [pair for pair in found if not self._shown(pair, starts)]
 
     def _shown(self, pair: tuple[str, str], starts: Starts) -> bool:
-        """Whether the texts alone show that there is no need to take the second after the first rather than before."""
+        """Return whether the texts alone show that there is no need to take the second after the first rather than
+        before.
+        """
         one, other = (starts[name] for name in pair)
         if one.excludes(other) or (self._known and one.undone_by(other)):
             return True

@@ -173,7 +173,7 @@ class Reading:
 
 
 class _Member:
-    """Whether states are in one set; of a state that differs little from the last one little is read anew."""
+    """The membership of states in one set; of a state that differs little from the last one little is read anew."""
 
     def __init__(self, states: StateSet, circuit: Circuit) -> None:
         self._states = states
@@ -248,7 +248,7 @@ class SymbolicWriter:
         self._reading = Reading(circuit)
 
     def writes(self, actions: Iterable[Assignment], state: SymbolicState) -> tuple[Writes, int]:
-        """What `actions` write, and the literal that says nothing about it is undetermined."""
+        """Return what `actions` write, and the literal that says nothing about it is undetermined."""
         writes: Writes = {}
         determined: list[int] = []
         for action in actions:

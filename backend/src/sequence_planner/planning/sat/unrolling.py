@@ -215,7 +215,7 @@ def _no_two_values(symbols: Iterable[Symbol]) -> Iterator[list[int]]:
 
 
 def _read_before_synchronising(automaton: Automaton) -> set[str]:
-    """What effects and finishes read, flags as the tick before left them."""
+    """Return what effects and finishes read, flags as the tick before left them."""
     found: set[str] = set()
     for effect in automaton.effects:
         found.update(variables(effect.guard), *map(reads, effect.actions))

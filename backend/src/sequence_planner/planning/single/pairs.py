@@ -45,7 +45,7 @@ class _Outcome(NamedTuple):
 
 
 class _Start(NamedTuple):
-    """What a start asks for, what it may write, and the values of variables that it does not write in any case."""
+    """The demands of a start, what it may write, and the values of variables that it does not write in any case."""
 
     asked: tuple[_Asked, ...]
     outcomes: tuple[_Outcome, ...]
@@ -53,7 +53,7 @@ class _Start(NamedTuple):
 
 
 class _Work:
-    """What has been noted for a task so far, and the starts that it may matter to."""
+    """The notes made for a task so far, and the starts that they may matter to."""
 
     def __init__(self, task: PlanningTask, noted: list[Facts], waiting: set[int]) -> None:
         self.task = task
@@ -70,7 +70,7 @@ class PairProver:
     name = NAME
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, starts: Starts | None = None) -> None:
-        """What the supervisor allows is not looked at: nothing more than can be proven without it is."""
+        """Leave aside what the supervisor allows: nothing more than can be proven without it is."""
         self._demands = starts or Starts(automaton, supervisor)
         self._facts = [(name, value) for name, each in automaton.variables.items() for value in each.type.domain]
         self._number = {fact: number for number, fact in enumerate(self._facts)}
@@ -111,7 +111,7 @@ class PairProver:
         return Finding(proof=Proof(NAME, tuple(self._clauses(work.noted))))
 
     def _in_vain(self, work: _Work, wanted: Iterable[tuple[_Asked, ...]], state: State) -> bool:
-        """Whether all that is noted for another task, where the goals can be, holds for `state` too, at least."""
+        """Return whether all that is noted for another task, where the goals can be, holds for `state` too, at least."""
         there = sum(1 << self._number[name, value] for name in self._own if (value := state[name]) is not None)
         inside = all(there & ~work.noted[number] == 0 for number in _bits(there))
         return inside and all(_beside(work.noted, each, self._all) for each in wanted)
@@ -146,7 +146,7 @@ class PairProver:
                         work.waiting |= self._readers[other]
 
     def _results(self, noted: list[Facts], start: _Start) -> Iterator[tuple[int, Facts]]:
-        """What `start` writes, with all that can be there beside it."""
+        """Yield what `start` writes, with all that can be there beside it."""
         before = _beside(noted, start.asked, self._all)
         if not before:
             return
@@ -184,7 +184,7 @@ class PairProver:
             yield _Outcome(self._number[name, value], others, (*asked, *where))
 
     def _asked(self, predicate: Expression) -> Iterator[_Asked]:
-        """What the parts of a conjunction ask for that read one variable; others may ask for more."""
+        """Yield what the parts of a conjunction ask for that read one variable; others may ask for more."""
         for part in conjuncts(predicate):
             alone = self._demands.domains.asked(part)
             if alone is not None:

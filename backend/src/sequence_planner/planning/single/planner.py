@@ -68,7 +68,7 @@ class Separately:
         return self._engine.name
 
     def solve(self, task: PlanningTask, budget: Budget) -> Finding:
-        """What the engine finds, the starts of each tick one after the other; each could have had its own."""
+        """Return what the engine finds, the starts of each tick one after the other; each could have had its own."""
         finding = self._engine.solve(task, budget)
         plan = None if finding.plan is None else one_by_one(name for _, name in starts_of(finding.plan.ticks))
         if plan is not None and len(plan.ticks) > task.longest:
@@ -104,7 +104,7 @@ class _WithFlags(Separately):
         self._flags = dict.fromkeys(flags, True)
 
     def solve(self, task: PlanningTask, budget: Budget) -> Finding:
-        """What the engine finds in the state with its flags."""
+        """Return what the engine finds in the state with its flags."""
         return super().solve(replace(task, state={**task.state, **self._flags}), budget)
 
 
@@ -132,7 +132,7 @@ Values = tuple[Value | None, ...]
 
 
 class Rest(NamedTuple):
-    """What is left of a plan; `minimal` if no plan from there has fewer starts."""
+    """The rest of a plan; `minimal` if no plan from there has fewer starts."""
 
     order: tuple[str, ...]
     minimal: bool
@@ -156,7 +156,7 @@ class Way:
         self._starts = starts
 
     def far(self, number: int, state: State) -> int:
-        """How many other values the rest of the plan, from so many starts on, asks for.
+        """Return how many other values the rest of the plan, from so many starts on, asks for.
 
         With none it leads from `state` to the goals that are missing there on the way.
         """
@@ -359,7 +359,7 @@ class SinglePlanner:
         return PlainAnswer(verdict, (), False, searched, seconds, attempt.engine)
 
     def _accepts(self, task: PlanningTask, plan: Plan) -> bool:
-        """Whether the starts of `plan`, one by one, lead to the goals by the steps of the automaton."""
+        """Return whether the starts of `plan`, one by one, lead to the goals by the steps of the automaton."""
         taken = self._taken(task, _order(plan))
         if taken is None or len(plan.starts) > task.longest:
             return False
@@ -379,7 +379,7 @@ class SinglePlanner:
 
 
 def _enough(attempt: PlanningAttempt) -> bool:
-    """Whether what the contract asks for is known: of as many ticks there are as many starts."""
+    """Return whether what the contract asks for is known: of as many ticks there are as many starts."""
     plan = attempt.plan
     return attempt.answered or (plan is not None and plan.minimal_ticks)
 

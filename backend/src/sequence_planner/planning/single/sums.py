@@ -32,7 +32,7 @@ class Sums:
     name = NAME
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, starts: Starts | None = None) -> None:
-        """What the supervisor allows is not looked at: nothing more than can be proven without it is."""
+        """Leave aside what the supervisor allows: nothing more than can be proven without it is."""
         self._names = tuple(automaton.abilities)
         self._starts = starts or Starts(automaton, supervisor)
         self._values: dict[str, dict[Value, Row]] = {}
@@ -62,7 +62,7 @@ class Sums:
         return Finding(exhausted=excluded)
 
     def _excluded(self, predicate: Expression, state: State, rows: list[Row], pause: Callable[[], object]) -> bool:
-        """Whether no state with the sums of `state` satisfies the parts of a conjunction that read one variable."""
+        """Return whether no state with the sums of `state` satisfies the parts of a conjunction that read one variable."""
         asked: dict[str, Some] = {}
         for part in conjuncts(predicate):
             if (alone := self._starts.domains.asked(part)) is not None:
@@ -104,7 +104,7 @@ class Sums:
         return bounds
 
     def _changes(self, pause: Callable[[], object]) -> list[Row]:
-        """What spans all differences that starts can make."""
+        """Return what spans all differences that starts can make."""
         rows: dict[tuple[tuple[int, int], ...], Row] = {}
         for name in self._names:
             pause()
@@ -125,7 +125,7 @@ class Sums:
         yield first
 
     def _differences(self, demands: Demands, written: Written) -> list[Row]:
-        """What it can make of the columns of a variable."""
+        """Return what it can make of the columns of a variable."""
         values, domains = self._values[written.name], self._starts.domains
         before = domains.some(written.name, demands.asked.get(written.name, -1))
         if written.source == written.name and written.becomes is not None:

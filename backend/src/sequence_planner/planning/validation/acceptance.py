@@ -40,7 +40,7 @@ _KEPT = 1000  # sets of variables that have changed
 
 
 class ReferenceTick:
-    """What all runs of one automaton under one supervisor have in common."""
+    """The things that all runs of one automaton under one supervisor have in common."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._flags = FollowingFlags(automaton)
@@ -127,11 +127,11 @@ class ReferenceRun:
         return tuple(name for name in dict.fromkeys(effects) if self._changes(name) is not None)
 
     def may_start(self, name: str) -> bool:
-        """Whether its guards hold; the supervisor and what it would revert may still keep it."""
+        """Return whether its guards hold; the supervisor and what it would revert may still keep it."""
         return start_guard_holds(self._tick.automaton.abilities[name], self.values)
 
     def has_started(self, name: str) -> bool:
-        """Whether what its start writes is so already."""
+        """Return whether what its start writes is so already."""
         written = writes(self._tick.automaton.abilities[name].start_actions, self.values)
         return written is not None and all(self.values[each] == value for each, value in written.items())
 
@@ -195,7 +195,7 @@ class ReferenceRun:
         return written if changes else None
 
     def _finished(self) -> Writes:
-        """What step 2 writes: of two abilities that would write different values neither does."""
+        """Return what step 2 writes: of two abilities that would write different values neither does."""
         for name in self._finishers:
             ability = self._tick.automaton.abilities[name]
             self._due.pop(name, None)
@@ -245,7 +245,7 @@ class ReferenceRun:
 
 
 class Waypoint(Immutable):
-    """Where a plan leads through: after step 3 of a tick, by its number, and so many of its starts."""
+    """A place that a plan leads through: after step 3 of a tick, by its number, and so many of its starts."""
 
     tick: int
     starts: int
@@ -285,7 +285,7 @@ class Acceptance:
         return last[2]
 
     def accepts(self, task: PlanningTask, plan: Plan) -> bool:
-        """Whether the ticks of `plan`, exactly as they are written, are a run that the task asks for."""
+        """Return whether the ticks of `plan`, exactly as they are written, are a run that the task asks for."""
         return self.course(task, plan) is not None
 
     def course(self, task: PlanningTask, plan: Plan) -> AcceptedRun | None:
@@ -329,7 +329,7 @@ class Acceptance:
         return len(plan.ticks) <= task.longest and all(self._counted_on(task, tick) for tick in plan.ticks)
 
     def _counted_on(self, task: PlanningTask, tick: PlanTick) -> bool:
-        """Whether the circumstances allow that this happens and that this starts, each of it once."""
+        """Return whether the circumstances allow that this happens and that this starts, each of it once."""
         effects = [self._tick.effects.get(name) for name in tick.effects]
         abilities = [self._automaton.abilities.get(name) for name in tick.starts]
         offline, bars = task.circumstances.offline, task.circumstances.bars
@@ -385,7 +385,7 @@ def tightened(acceptance: Acceptance, task: PlanningTask, plan: Plan, budget: Bu
 
 
 def _next(pending: list[_Move], helpful: Iterable[str]) -> _TighteningNode | None:
-    """Where the next move leads that can be taken."""
+    """Return where the next move leads that can be taken."""
     while pending:
         node, name = pending.pop()
         after = _waited(node, helpful) if name is None else _started(node, name)

@@ -89,7 +89,7 @@ class Moments:
         return None if progress is None else PlanMoment(run, published, progress)
 
     def everything(self, run: CompiledRun) -> Writes:
-        """What a largest set of effects writes that can happen now, earlier ones first."""
+        """Return what a largest set of effects writes that can happen now, earlier ones first."""
         possible: Mapping[str, Writes] = run.effects()
         if self._absent:
             possible = {name: changes for name, changes in possible.items() if name not in self._absent}
@@ -103,7 +103,7 @@ class Moments:
         return together
 
     def possible(self, run: CompiledRun, effects: Iterable[str]) -> Writes:
-        """What those of `effects` write that can happen now, earlier ones first."""
+        """Return what those of `effects` write that can happen now, earlier ones first."""
         together: Writes = {}
         for name in effects:
             written = None if name in self._absent else run.effect(name)
@@ -112,7 +112,7 @@ class Moments:
         return together
 
     def together(self, run: CompiledRun, effects: Iterable[str]) -> Writes | None:
-        """What all of `effects` write now, or None if one cannot happen or two are incompatible."""
+        """Return what all of `effects` write now, or None if one cannot happen or two are incompatible."""
         together: Writes = {}
         for name in effects:
             written = None if name in self._absent else run.effect(name)
@@ -180,7 +180,7 @@ class Lookahead:
     def exactly(
         self, run: CompiledRun, published: State, goals: Iterable[Goal], now: Sequence[str], ticks: Sequence[PlanTick]
     ) -> bool:
-        """Whether the starts `now`, then `ticks` as they are written, reach `goals`. See `Replay.exactly`."""
+        """Return whether the starts `now`, then `ticks` as they are written, reach `goals`. See `Replay.exactly`."""
         present = self._moments.present(run, published, goals)
         key = (_key(present, tuple(now)), tuple(ticks))
         if key not in self._exact:
@@ -210,7 +210,8 @@ class Lookahead:
         order: Sequence[str],
         ticks: Sequence[PlanTick],
     ) -> bool:
-        """Whether a start that leads from `before` to `after` leaves `order` able to reach what then are the `goals`.
+        """Return whether a start that leads from `before` to `after` leaves `order` able to reach what then are the
+        `goals`.
 
         See `Replay.may_go_on`.
         """
@@ -223,7 +224,8 @@ class Lookahead:
     def as_written(
         self, run: CompiledRun, published: State, goals: Iterable[Goal], order: Sequence[str], ticks: Sequence[PlanTick]
     ) -> bool:
-        """Whether `order` reaches `goals` when what `ticks` have happens in its turn, unless it has happened already.
+        """Return whether `order` reaches `goals` when what `ticks` have happens in its turn, unless it has happened
+        already.
 
         A start that has to wait comes as soon as it may. So a plan that somebody has seen and taken is carried out as
         it was written, whatever else happens meanwhile: by people who take their time, and by devices beside it.

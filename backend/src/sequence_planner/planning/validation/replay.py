@@ -49,7 +49,7 @@ class Replay(Immutable):
     def exactly(
         self, state: State, published: State, goals: Iterable[Goal], now: Sequence[str], ticks: Sequence[PlanTick]
     ) -> bool:
-        """Whether the starts `now` in the tick under way, then `ticks` as they are written, reach `goals`.
+        """Return whether the starts `now` in the tick under way, then `ticks` as they are written, reach `goals`.
 
         `state` is one after step 3 or a start; `published` has the outputs as last published.
         """
@@ -67,7 +67,8 @@ class Replay(Immutable):
         return current is not None and not current[1]
 
     def eagerly(self, state: State, published: State, goals: Iterable[Goal], order: Sequence[str]) -> bool:
-        """Whether `order`, each start taken now or later, reaches `goals` when all that can happen happens at once.
+        """Return whether `order`, each start taken now or later, reaches `goals` when all that can happen happens at
+        once.
 
         `state` is one after step 3 or a start; `published` has the outputs as last published.
         """
@@ -76,7 +77,7 @@ class Replay(Immutable):
     def still_reaches(
         self, state: State, published: State, goals: Iterable[Goal], order: Sequence[str], ticks: Sequence[PlanTick]
     ) -> bool:
-        """Whether there is still a timing, of ours or of the environment, in which `order` reaches `goals`.
+        """Return whether there is still a timing, of ours or of the environment, in which `order` reaches `goals`.
 
         `ticks` is the rest of the plan as it was made, which holds the last of `order`.
         """
@@ -93,7 +94,8 @@ class Replay(Immutable):
         order: Sequence[str],
         ticks: Sequence[PlanTick],
     ) -> bool:
-        """Whether a start that leads from `before` to `after` leaves `order` able to reach what then are the `goals`.
+        """Return whether a start that leads from `before` to `after` leaves `order` able to reach what then are the
+        `goals`.
 
         As long as something can still happen by itself, a start that needs a device to be slow is not taken.
         """
@@ -149,7 +151,7 @@ class Replay(Immutable):
         return state, goals
 
     def _allowed(self, state: State) -> bool:
-        """Whether nothing that shall be avoided holds in `state`, or is left open by unknown values."""
+        """Return whether nothing that shall be avoided holds in `state`, or is left open by unknown values."""
         return all(evaluate(avoided, state) is False for avoided in self.circumstances.avoid)
 
     @property

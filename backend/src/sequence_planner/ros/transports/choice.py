@@ -1,4 +1,4 @@
-"""Which transport a station runs on.
+"""The choice of the transport that a station runs on.
 
 `auto` takes rclpy where ROS 2 is installed, since it speaks every vendor's DDS and its security, and DDS from PyPI
 anywhere else. Neither is imported before it is chosen: a machine needs only the one it uses. That ROS 2 lies on the

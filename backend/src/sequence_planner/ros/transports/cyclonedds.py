@@ -193,7 +193,7 @@ class CycloneServices:
         return [end.reader.guid for end in ends], [end.writer.guid for end in ends]
 
     def has_client(self, service: str, type_name: str) -> bool:
-        """Whether the service has been called before."""
+        """Return whether the service has been called before."""
         return (service, type_name) in self._clients
 
     def add_client(self, service: str, type_name: str) -> None:

@@ -80,7 +80,7 @@ class MemoryEndpoint:
 
 @dataclass(eq=False)
 class Server:
-    """Who answers the requests to a service."""
+    """A server that answers the requests to a service."""
 
     owner: Participant
     service: str
@@ -130,7 +130,7 @@ _SERVER_POLL = 0.01  # seconds between two looks for a server
 
 
 class MemoryNetwork(Members):
-    """What transports join to meet one another."""
+    """The network that transports join to meet one another."""
 
     def join(self, registry: MessageRegistry, node_name: str, loop: asyncio.AbstractEventLoop) -> MemoryTransport:
         """Return a new transport on this network; raises ValueError for a bad node name."""

@@ -276,7 +276,7 @@ __all__ = [
 
 
 class ServiceClass(Protocol):
-    """What rosidl generates for a service."""
+    """The class that rosidl generates for a service."""
 
     Request: type
     Response: type

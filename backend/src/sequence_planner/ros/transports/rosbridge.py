@@ -62,7 +62,7 @@ _lock = threading.Lock()
 
 @dataclass(frozen=True)
 class Events:
-    """What is called, on roslibpy's thread: when there is a connection, with each frame, and when there is none."""
+    """The functions called on roslibpy's thread: when there is a connection, with each frame, and when there is none."""
 
     opened: Callable[[], None]
     frame: Callable[[bytes], None]
@@ -118,7 +118,7 @@ class RosbridgeClient:
 
     @property
     def connected(self) -> bool:
-        """Whether there is a connection."""
+        """True if there is a connection."""
         return self._protocol is not None
 
     def send(self, message: Mapping[str, object]) -> bool:

@@ -1,4 +1,4 @@
-"""What can be wrong with a message: its definition, its name, a value put into it, or the bytes received."""
+"""The things that can be wrong with a message: its definition, its name, a value put into it, or the bytes received."""
 
 from __future__ import annotations
 

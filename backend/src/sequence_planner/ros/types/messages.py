@@ -192,7 +192,7 @@ def _array(items: list[object], field: FieldType) -> np.ndarray:
 
 
 def _is_array(value: object) -> TypeGuard[np.ndarray]:
-    """Whether it is one; where numpy was never imported there are none."""
+    """Return whether it is one; where numpy was never imported there are none."""
     np = sys.modules.get("numpy")
     return np is not None and isinstance(value, np.ndarray)
 

@@ -36,17 +36,17 @@ class ServiceType:
 
     @property
     def request(self) -> str:
-        """What a client sends."""
+        """The message that a client sends."""
         return f"{self.type_name}_Request"
 
     @property
     def response(self) -> str:
-        """What a server answers."""
+        """The message that a server answers."""
         return f"{self.type_name}_Response"
 
     @property
     def event(self) -> str:
-        """What says that a call happened."""
+        """The message that says that a call happened."""
         return f"{self.type_name}_Event"
 
 
@@ -58,17 +58,17 @@ class ActionType:
 
     @property
     def goal(self) -> str:
-        """What is to be done."""
+        """The message that says what is to be done."""
         return f"{self.type_name}_Goal"
 
     @property
     def result(self) -> str:
-        """What came of it."""
+        """The message that says what came of it."""
         return f"{self.type_name}_Result"
 
     @property
     def feedback(self) -> str:
-        """How it is going."""
+        """The message that says how it is going."""
         return f"{self.type_name}_Feedback"
 
     @property

@@ -1,4 +1,4 @@
-"""How ROS 2 describes a type to who asks for it (REP 2016), and back.
+"""The way in which ROS 2 describes a type to who asks for it (REP 2016), and back.
 
 A description holds the fields of the type and of all types within it, which is what its hash is made of; so whoever
 knows the hash can tell a true description from any other. It has no constants, and its defaults are not used here.

@@ -277,14 +277,14 @@ async def take_branch(request: Request, number: Number, body: BranchBody) -> Bra
 
 
 async def looked_back(request: Request, number: int) -> MomentView:
-    """How the station was right after a record. Raises `ProblemFound`."""
+    """Return how the station was right after a record. Raises `ProblemFound`."""
     found = await _asked(request, LookBack(number), LOOKING_BACK)
     assert isinstance(found, MomentView)
     return found
 
 
 async def _read(identity: IdentityService, archive: Archive, work: Callable[[WholeRun], T]) -> T:
-    """What `work` reads of the run. Raises `ProblemFound` where that is in a file that cannot be read."""
+    """Return what `work` reads of the run. Raises `ProblemFound` where that is in a file that cannot be read."""
     try:
         return await identity.read(lambda connection: work(WholeRun(connection, archive)))
     except ArchiveError as error:

@@ -328,7 +328,7 @@ async def command_job_order(
 
 
 def desk_of(request: Request) -> OrderService:
-    """What knows how orders stand at the station."""
+    """Return what knows how orders stand at the station."""
     desk: OrderService = request.app.state.order_desk
     return desk
 
@@ -631,7 +631,7 @@ class OrderOfWorkDesk:
         await self._tell(view)
 
     async def _times(self, view: StationView) -> KnownTimes:
-        """How long operations take, as far as the run's journal tells by now."""
+        """Return how long operations take, as far as the run's journal tells by now."""
         # Also of abilities that have come with another model since.
         self._resources.update((name, ability.resource) for name, ability in view.abilities.items())
         known = self._known

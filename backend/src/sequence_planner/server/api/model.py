@@ -294,7 +294,7 @@ async def attach(body: AttachmentBody, request: Request, identity: Identity, act
 
 
 async def _tried(shop: Workshop, transport: str, body: AttachmentBody) -> tuple[dict[str, Any], list[Edit]]:
-    """What the command says of a copy of the draft, and what it has changed there."""
+    """Return what the command says of a copy of the draft, and what it has changed there."""
     draft = await shop.open()
     with tempfile.TemporaryDirectory(prefix="sequence-planner-attach-") as scratch:
         folder = LocalPath(scratch) / "model"
@@ -331,7 +331,7 @@ def _arguments(model: LocalPath, transport: str, body: AttachmentBody) -> list[s
 
 
 async def _run(arguments: list[str]) -> dict[str, Any]:
-    """What the command says."""
+    """Return what the command says."""
     command = [sys.executable, "-m", "sequence_planner.cli", "attach", *arguments]
     process = await asyncio.create_subprocess_exec(*command, stdout=PIPE, stderr=PIPE, env=environment())
     try:

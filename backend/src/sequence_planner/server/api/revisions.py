@@ -213,7 +213,7 @@ async def _files(shop: Workshop, version: str) -> Files:
 
 
 async def _to_fit(shop: Workshop, view: StationView, simulation: Simulation) -> tuple[object, ...]:
-    """What `tasks.fitted` is asked about."""
+    """Return what `tasks.fitted` is asked about."""
     draft = await shop.open()
     present = {name: variable.value for name, variable in view.variables.items()}
     running = [name for name, ability in view.abilities.items() if ability.running_since is not None]
@@ -231,7 +231,7 @@ async def _past(request: Request, number: int) -> dict[str, Value | None]:
 
 
 async def _found(name: str, *arguments: object) -> Response:
-    """What a task of the workshop finds."""
+    """Return what a task of the workshop finds."""
     text = await worked("told", name, *arguments)
     assert isinstance(text, str)
     return found(text)

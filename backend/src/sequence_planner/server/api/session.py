@@ -113,7 +113,7 @@ async def begin_session(request: Request, response: Response, token: str, signed
 
 
 async def answered(request: Request, signed_in: SignedIn | None) -> SessionAnswer:
-    """What the browser is told where `signed_in` is its session."""
+    """Return what the browser is told where `signed_in` is its session."""
     state = request.app.state
     watch = (await bearer_of(request, Credentials(watch=credentials(request).watch))).watch
     answer = SessionAnswer(
@@ -256,7 +256,7 @@ def _provider(office: IdentityService) -> ProviderSignIn:
 
 
 def _back(request: Request) -> str:
-    """Where the provider sends the browser back to, by the name by which the station was opened."""
+    """Return where the provider sends the browser back to, by the name by which the station was opened."""
     settings: Settings = request.app.state.settings
     return f"{settings.scheme}://{request.headers['host'].lower()}{BACK}"
 

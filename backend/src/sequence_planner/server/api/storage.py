@@ -152,7 +152,7 @@ def backups_answer(shelf: Shelf, looked: LookedAtBackups, recorded: Recorded, bu
 
 
 def busy_answer(busy: Busy) -> BackupBusyAnswer:
-    """What is done just now."""
+    """Return what is done just now."""
     return BackupBusyAnswer(doing=busy.doing, file=busy.file, begun=busy.begun, by=busy.by.name, step=busy.step)
 
 
@@ -218,7 +218,7 @@ backups_router = interface(
 
 
 async def _backup_desk(request: Request) -> BackupService:
-    """Who looks after backups. Raises `ProblemFound` where there are none."""
+    """Return who looks after backups. Raises `ProblemFound` where there are none."""
     found: BackupService | None = request.app.state.backups
     if found is None:
         if request.app.state.settings.demonstration:
@@ -506,7 +506,7 @@ def _full_in(
 
 
 def _packed(looked: RetentionState) -> float:
-    """How large a record is in the archive, compared with the database; a fifth before that is known."""
+    """Return how large a record is in the archive, compared with the database; a fifth before that is known."""
     segments, journal = looked.index.segments[-20:], looked.sizes.journal
     bounds = looked.bounds
     if not segments or bounds is None or not journal:
@@ -525,7 +525,7 @@ storage_router = interface(
 
 
 async def _retention_desk(request: Request) -> RetentionService:
-    """Who looks after it. Raises `ProblemFound` where nobody does."""
+    """Return who looks after it. Raises `ProblemFound` where nobody does."""
     found: RetentionService | None = request.app.state.retention
     if found is None:
         if request.app.state.settings.demonstration:

@@ -92,7 +92,7 @@ class AgainAnswer(BaseModel):
 
 
 async def _targets(request: Request) -> Targets:
-    """Where webhooks may go."""
+    """Return where webhooks may go."""
     targets: Targets = request.app.state.settings.webhooks
     return targets
 

@@ -42,7 +42,7 @@ class StrictConnection(h11.Connection):
         super().__init__(h11.SERVER, LARGEST_HEAD)
 
     def next_event(self) -> h11.Event | type[h11.NEED_DATA] | type[h11.PAUSED]:
-        """What has come. Raises `h11.RemoteProtocolError`."""
+        """Return what has come. Raises `h11.RemoteProtocolError`."""
         if self.their_state is h11.IDLE:
             self._look_at_head()
         return super().next_event()
@@ -130,7 +130,7 @@ class PromptConnection(H11Protocol):
         self.transport.close()
 
     def _group(self) -> Group:
-        """Whose the connection is as long as nothing has come."""
+        """Return whose the connection is as long as nothing has come."""
         address = self.client[0] if self.client else ""
         return (ConnectionKind.PROXY, address) if address_of(address) in self._proxies else group_of_address(address)
 

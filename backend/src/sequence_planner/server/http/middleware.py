@@ -261,7 +261,9 @@ def _too_large(largest: int) -> ProblemFound:
 
 
 def is_own_health_check(scope: Scope) -> bool:
-    """Whether this machine itself asks by a name of the loopback how the server is, as containers and Prometheus do."""
+    """Return whether this machine itself asks by a name of the loopback how the server is, as containers and Prometheus
+    do.
+    """
     if scope["type"] != "http" or scope["method"] not in ("GET", "HEAD") or scope["path"] not in ABOUT_ITSELF:
         return False
     client = address_of(scope["client"][0]) if scope.get("client") else None
@@ -355,7 +357,7 @@ LOOKED_EVERY: Final = 0.5  # seconds between two looks whether somebody still wa
 
 
 async def while_waited_for(request: Request, work: Coroutine[Any, Any, Result]) -> Result | None:
-    """What the work comes to; None where it was called off, as who asked has left."""
+    """Return what the work comes to; None where it was called off, as who asked has left."""
     task = asyncio.ensure_future(work)
     try:
         while not (await asyncio.wait((task,), timeout=LOOKED_EVERY))[0]:
@@ -465,7 +467,7 @@ NO_ROUTE, NO_METHOD = "none", "other"  # files of the page and what is nowhere; 
 
 
 class RequestMetrics:
-    """What was noted since the server began: requests by method, route and status, and streams that are open."""
+    """The figures noted since the server began: requests by method, route and status, and streams that are open."""
 
     def __init__(self) -> None:
         self.requests: Counter[tuple[str, str, int]] = Counter()
@@ -529,7 +531,7 @@ class RequestLog:
 
 
 def request_number(headers: Headers) -> str:
-    """What the request brings itself, if that is fit for it, or a new one."""
+    """Return what the request brings itself, if that is fit for it, or a new one."""
     brought = headers.get(HEADER, "")
     return brought if FIT.fullmatch(brought) else secrets.token_hex(8)
 

@@ -65,7 +65,7 @@ class PageFiles:
         return response
 
     def _compressed(self, path: str, accepted: str) -> tuple[str, str]:
-        """Which coding of a file to send, and what its name ends in; nothing where it is sent as it is."""
+        """Return which coding of a file to send, and what its name ends in; nothing where it is sent as it is."""
         for coding, suffix in COMPRESSED.items():
             if _takes(accepted, coding) and _is_file(self.folder / (path + suffix)):
                 return coding, suffix
@@ -73,7 +73,7 @@ class PageFiles:
 
 
 def _takes(accepted: str, coding: str) -> bool:
-    """Whether `Accept-Encoding` names it, and does not say that it is not taken (RFC 9110, section 12.5.3)."""
+    """Return whether `Accept-Encoding` names it, and does not say that it is not taken (RFC 9110, section 12.5.3)."""
     for each in accepted.split(","):
         name, _, weight = each.partition(";")
         if name.strip().lower() == coding:

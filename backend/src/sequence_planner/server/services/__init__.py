@@ -1,1 +1,1 @@
-"""What the server does beside answering requests: orders, backups, retention, and the processes of the editor."""
+"""The tasks of the server beside answering requests: orders, backups, retention, and the processes of the editor."""

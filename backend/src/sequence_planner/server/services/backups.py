@@ -43,7 +43,7 @@ AGAIN_AFTER = 0.25  # of the hours between two, after which what failed is tried
 
 @dataclass(frozen=True)
 class Busy:
-    """What is being done now, since when, for whom, and how far it has come."""
+    """The work being done now, since when, for whom, and how far it has come."""
 
     doing: Doing
     file: str
@@ -113,7 +113,7 @@ class BackupService:
         return looked
 
     async def recorded(self) -> Recorded:
-        """What the journal tells of the latest. Raises `StorageError`."""
+        """Return what the journal tells of the latest. Raises `StorageError`."""
         return await self._office.read(service.recorded)
 
     async def make(self, by: Actor, how: How = How.ASKED) -> Busy:

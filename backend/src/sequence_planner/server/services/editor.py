@@ -172,13 +172,13 @@ class Workshop:
         return (await self._changed(propose, by))[1]
 
     async def usages(self, part: str) -> str:
-        """Where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkEndedError`."""
+        """Return where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkEndedError`."""
         found = await self._process.ask((await self.open()).files, "used", part)
         assert isinstance(found, str)
         return found
 
     async def tied(self) -> str:
-        """What is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
+        """Return what is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
         async with self._tying:
             draft = await self.open()
             if self._tied is None or self._tied[0] != draft.number:
@@ -188,7 +188,7 @@ class Workshop:
             return self._tied[1]
 
     async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
-        """How an ability goes through the run that shows a finding of the check of change `number`.
+        """Return how an ability goes through the run that shows a finding of the check of change `number`.
 
         Raises `EditError` where there is no such run or ability, and `WorkEndedError`.
         """
@@ -213,7 +213,7 @@ class Workshop:
         return (await self._changed(lambda draft: self._again(draft, by, undo=False), by))[1]
 
     async def checked(self) -> CheckView:
-        """What is known of the draft."""
+        """Return what is known of the draft."""
         draft = await self.open()
         return self._check or waiting(draft.number)
 
@@ -268,14 +268,14 @@ class Workshop:
         return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
 
     async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> str:
-        """What is answered to a question about a text, as JSON. Raises `WorkEndedError`."""
+        """Return what is answered to a question about a text, as JSON. Raises `WorkEndedError`."""
         draft = await self.open()
         answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
         assert isinstance(answer, str)
         return answer
 
     async def ask_pipelines(self, question: PipelineQuestion | bytes) -> str:
-        """What is answered to a question about the pipelines, as JSON; bytes are the body of a `Preview`.
+        """Return what is answered to a question about the pipelines, as JSON; bytes are the body of a `Preview`.
 
         Raises `EditError`, `BodyError` and `WorkEndedError`.
         """
@@ -356,7 +356,7 @@ class Workshop:
         self._desk.check(draft.number, draft.files)
 
     async def _marked(self, draft: Draft) -> dict[str, FileMark]:
-        """How each file stands; found once for each draft."""
+        """Return how each file stands; found once for each draft."""
         if self._marks is None or self._marks[0] != draft:
             self._marks = draft, await run_in_threadpool(marks, draft)
         return self._marks[1]

@@ -55,12 +55,12 @@ class OrderDispatch:
         self._refused = {id_: why for id_, why in self._refused.items() if id_ in known}
 
     def why_refused(self, order: str) -> str | None:
-        """Why the station has not taken an order when it was given to it last."""
+        """Return why the station has not taken an order when it was given to it last."""
         refused = self._refused.get(order)
         return None if refused is None else refused[0]
 
     def may_take(self, order: str) -> bool:
-        """Whether an order is to be given to the station now, which may have refused it a moment ago."""
+        """Return whether an order is to be given to the station now, which may have refused it a moment ago."""
         _, refused = self._refused.get(order, ("", float("-inf")))
         return time.monotonic() - refused > TRY_AGAIN
 
@@ -238,7 +238,7 @@ class OrderService:
         self._poked.set()
 
     async def work_masters(self) -> WorkMastersView | None:
-        """What jobs of the station consist of, as far as that was heard."""
+        """Return what jobs of the station consist of, as far as that was heard."""
         now = time.monotonic()
         if self._controller.heard and now - self._asked > ASK_EVERY:
             with contextlib.suppress(CommandRefused):
@@ -247,7 +247,7 @@ class OrderService:
         return self._masters
 
     async def unknown_work_master(self, name: str) -> OrderRefused | None:
-        """Why nothing of this work master can be ordered; None where it can, or nobody knows now."""
+        """Return why nothing of this work master can be ordered; None where it can, or nobody knows now."""
         masters = await self.work_masters()
         if masters is None or name in masters.work_masters:
             return None
@@ -346,5 +346,5 @@ class OrderService:
 
 
 def _may_wait(order: JobOrder) -> bool:
-    """Whether it may start and is not at the station yet."""
+    """Return whether it may start and is not at the station yet."""
     return order.state is OrderState.ALLOWED_TO_START and not order.is_at_station

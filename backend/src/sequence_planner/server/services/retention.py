@@ -68,7 +68,9 @@ class Sizes:
 
 @dataclass(frozen=True)
 class RetentionState:
-    """How it is now. `bounds` are of the database; `missing` are files of the archive that are not where they were."""
+    """The state of retention now. `bounds` are of the database; `missing` are files of the archive that are not where
+    they were.
+    """
 
     sizes: Sizes
     days: tuple[Day, ...]
@@ -119,7 +121,7 @@ class RetentionService:
             self._poked.set()
 
     async def look(self) -> RetentionState:
-        """How it is now. Raises `StorageError`."""
+        """Return how it is now. Raises `StorageError`."""
         looked = await self._office.read(self._looked)
         self.sizes = looked.sizes
         return looked

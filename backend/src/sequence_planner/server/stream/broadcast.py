@@ -40,7 +40,7 @@ MAPS = tuple(StationRemoval.__annotations__)
 
 
 def difference(old: StationView, new: StationView) -> tuple[StationChange, StationRemoval]:
-    """What to apply to `old` to get `new`: changed members (of maps, changed entries) and removed keys.
+    """Return what to apply to `old` to get `new`: changed members (of maps, changed entries) and removed keys.
 
     `time` is always among the changes, so that whoever hears a delta also hears how fresh it is.
     """
@@ -66,12 +66,14 @@ def changed_entries(old: Mapping[str, BaseModel], new: Mapping[str, BaseModel]) 
 
 
 def _same(old: object, new: object) -> bool:
-    """Whether both are written as the same JSON, as far as these views go: equal, and of the same types throughout."""
+    """Return whether both are written as the same JSON, as far as these views go: equal, and of the same types
+    throughout.
+    """
     return old is new or (old == new and _same_types(old, new))
 
 
 def _same_types(old: object, new: object) -> bool:
-    """Whether what is equal is also of the same types, down to the values in it."""
+    """Return whether what is equal is also of the same types, down to the values in it."""
     if old is new:
         return True
     if type(old) is not type(new):
@@ -96,7 +98,7 @@ MOST_ERRORS = 8  # answers to wrong frames that wait; of more, the oldest are dr
 
 
 class Subscriber:
-    """What one client has still to be told."""
+    """A client, with what it has still to be told."""
 
     def __init__(self, present: Callable[[], str], length: int) -> None:
         self._present = present
@@ -282,7 +284,7 @@ class NetworkFeed:
 
 
 class FlowsFeed:
-    """What passes the pipelines: the controller is asked twice a second for those that somebody looks at."""
+    """A feed of what passes the pipelines: the controller is asked twice a second for those that somebody looks at."""
 
     def __init__(self, controller: ControllerClient, limits: StreamLimits) -> None:
         self.latest = LatestValue(partial(self._present, None), limits)
@@ -292,7 +294,7 @@ class FlowsFeed:
         self._encoded: dict[Names, str] = {}
 
     def of(self, names: Names) -> PipelineFeed:
-        """What passes these pipelines, or all."""
+        """Return what passes these pipelines, or all."""
         return PipelineFeed(self, names)
 
     @contextmanager
@@ -339,7 +341,7 @@ class FlowsFeed:
 
 
 class PipelineFeed:
-    """What passes some pipelines, as clients subscribe to it."""
+    """A feed of what passes some pipelines, as clients subscribe to it."""
 
     def __init__(self, show: FlowsFeed, names: Names) -> None:
         self.limits = show.latest.limits

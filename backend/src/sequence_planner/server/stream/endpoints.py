@@ -43,7 +43,7 @@ stream_router = interface()
 
 
 class StreamEnd(NamedTuple):
-    """Why the server closes a stream; `code` is that of RFC 6455, or of ours from 4000 on."""
+    """A reason why the server closes a stream; `code` is that of RFC 6455, or of ours from 4000 on."""
 
     code: int
     reason: str
@@ -55,7 +55,7 @@ SIGNED_OUT = StreamEnd(4401, "signed out")
 
 
 class Source(Protocol):
-    """What clients subscribe to."""
+    """A source that clients subscribe to."""
 
     limits: StreamLimits
 
@@ -147,7 +147,7 @@ async def _listen(websocket: WebSocket, subscriber: Subscriber, limits: StreamLi
 
 
 def _fault(frame: Message, longest: int) -> str | None:
-    """What is wrong with a frame; None when it is a message of ours."""
+    """Return what is wrong with a frame; None when it is a message of ours."""
     text = frame.get("text")
     if text is None:
         return "Binary frames are not understood; send JSON text."
@@ -187,7 +187,7 @@ class WatchShow:
         controller.listen_to_silence(self._look)
 
     def of(self, resource: str) -> LatestValue:
-        """What the watches of `resource` are shown."""
+        """Return what the watches of `resource` are shown."""
         if resource not in self._shown:
             self._shown[resource] = LatestValue(partial(self._present, resource), self._limits)
         return self._shown[resource]

@@ -37,7 +37,7 @@ class Driver(Protocol):
         """Take a message of the controller."""
 
     def signals(self, now: float) -> Signals:
-        """What to set at the device now."""
+        """Return what to set at the device now."""
 
     def say(self, read: Record, now: float) -> dict[str, object]:
         """The message about the device, whose signals `read` has."""
@@ -56,11 +56,11 @@ class Listening:
 
     @property
     def spoken_to(self) -> bool:
-        """Whether a command was ever heard; until then a device stays as it is."""
+        """True if a command was ever heard; until then a device stays as it is."""
         return self._heard is not None
 
     def fresh(self, now: float) -> bool:
-        """Whether a command was heard lately."""
+        """Return whether a command was heard lately."""
         return self._heard is not None and now - self._heard < FORGOTTEN_AFTER
 
     def command(self, now: float) -> Record:
@@ -217,7 +217,7 @@ class WorldEndedError(Exception):
 
 @dataclass(frozen=True)
 class NodeAnswer:
-    """What the device's signals are, and what is the matter with the node."""
+    """The device's signals, and what is the matter with the node."""
 
     read: dict[str, object]
     fault: dict[str, Any]

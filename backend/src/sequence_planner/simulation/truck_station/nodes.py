@@ -39,7 +39,7 @@ RELIABLE = QualityOfService.RELIABLE
 
 @dataclass(frozen=True)
 class NodeType:
-    """What a node speaks and hears, and the seconds between two of its messages."""
+    """The messages that a node speaks and hears, and the seconds between two of its messages."""
 
     driver: Callable[[], Driver]
     every: float

@@ -39,7 +39,7 @@ class Arm:
 
     @property
     def off(self) -> bool:
-        """Whether it is switched off by its key: it drops what it was about, and takes no commands."""
+        """True if it is switched off by its key: it drops what it was about, and takes no commands."""
         return self._off
 
     @off.setter
@@ -92,7 +92,7 @@ class TruckEngine:
 
     @property
     def faults(self) -> list[str]:
-        """What is not as it should be on an engine that leaves."""
+        """The things that are not as they should be on an engine that leaves."""
         found = [] if self.frame else ["no ladder frame"]
         found += [f"{pair} {state}" for pair, state in self.bolts.items() if state != "tightened"]
         return found if self.oil_filter else [*found, "oil filter loose"]
@@ -269,7 +269,7 @@ class Verdict:
 
     @property
     def counted(self) -> Counter[str]:
-        """How often each event was."""
+        """The number of times that each event occurred."""
         return Counter(event for _, event in self.events)
 
 

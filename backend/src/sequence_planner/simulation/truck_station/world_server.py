@@ -86,7 +86,7 @@ class MirServer:
         return None if await self._exchanged({"goal": goal}) is None else (HTTPStatus.OK, {"goal": goal})
 
     async def _exchanged(self, put: Signals) -> dict[str, object] | None:
-        """What the AGV's signals are after these are set; None when it is switched off, or the world has ended."""
+        """Return what the AGV's signals are after these are set; None when it is switched off, or the world has ended."""
         async with self._turn:  # the link knows one question at a time
             try:
                 answer = await self._link.exchange(put)
@@ -113,7 +113,7 @@ LONGEST_LINE = 1 << 16
 
 @dataclass
 class NodeFault:
-    """What is the matter with a node: `fields` are the wrong values of its message. Until a time of the clock."""
+    """A fault of a node: `fields` are the wrong values of its message. Until a time of the clock."""
 
     kind: str
     until: float

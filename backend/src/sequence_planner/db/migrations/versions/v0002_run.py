@@ -1,4 +1,4 @@
-"""What has happened at the station, and signed checkpoints."""
+"""The record of what has happened at the station, and signed checkpoints."""
 
 from __future__ import annotations
 
