@@ -101,7 +101,9 @@ class _Kept:
 
 
 def _read_or_kept(folder: Path) -> MeantStation:
-    """Return what the files of a station mean: each of its processes needs that, and they have mostly been read before."""
+    """Return what the files of a station mean: each of its processes needs that, and they have mostly been read
+    before.
+    """
     content = content_key(folder)
     known = None if content is None else read_before(STATION, content)
     if isinstance(known, _Kept):

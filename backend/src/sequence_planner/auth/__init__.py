@@ -1,1 +1,3 @@
-"""Those who may act: people, their sessions, watches and API keys. Pure of HTTP; everything lasting is in the database."""
+"""Those who may act: people, their sessions, watches and API keys. Pure of HTTP; everything lasting is in the
+database.
+"""

@@ -394,7 +394,9 @@ class CompiledTick:
 
 
 def _start_guard(automaton: Automaton, ability: Ability) -> Expression:
-    """Return what must hold for a start, the supervisor apart: the flag `enabled`, its predicate and the written guard."""
+    """Return what must hold for a start, the supervisor apart: the flag `enabled`, its predicate and the written
+    guard.
+    """
     enabled = ability.flag("enabled")
     flags = (Variable(enabled, BOOLEAN),) if enabled in automaton.flag_predicates else ()
     return conjunction(*flags, ability.enabled, ability.start_guard)

@@ -194,7 +194,9 @@ class LastDeployment:
         return under_way(note.name, note.by) if note is not None and self.starting else None
 
     def tell_that_it_waits(self, *, waits: bool) -> None:
-        """Tell whether somebody else commands the devices, so that the start takes as long as that. Raises `OSError`."""
+        """Tell whether somebody else commands the devices, so that the start takes as long as that. Raises
+        `OSError`.
+        """
         if self.starting:
             self._folder.tell_that_it_waits(waits=waits)
 

@@ -283,7 +283,9 @@ class _Life:
             await controller.run()
 
     async def _known(self, station: ReadyStation) -> RestoredState:
-        """Return what is known from before, at rest where it is not certain that nobody has stopped the station since."""
+        """Return what is known from before, at rest where it is not certain that nobody has stopped the station
+        since.
+        """
         known = await asyncio.to_thread(what_is_known, self._database, station.automaton)
         ended, keeper = await asyncio.to_thread(how_it_ended, self._database, self._last_word), self.keeper
         if keeper is not None and ended.word is None and not (ended.is_certain and _follows(ended, keeper)):

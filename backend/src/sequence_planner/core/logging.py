@@ -44,7 +44,9 @@ def log_format() -> LogFormat:
 
 
 class LineQueue:
-    """The part of a file that a logger needs, and its calls never block; a thread writes to the file descriptor `out`."""
+    """The part of a file that a logger needs, and its calls never block; a thread writes to the file descriptor
+    `out`.
+    """
 
     def __init__(self, out: int, most: int = MOST_WAITING) -> None:
         self._out = out

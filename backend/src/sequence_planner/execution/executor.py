@@ -679,7 +679,9 @@ class Executor(ExecutorBase):
     # Its plan.
 
     def request(self, deadline: float) -> PlanRequest | None:
-        """Return what to ask the planner now, or None when there is nothing to ask or it would answer the same again."""
+        """Return what to ask the planner now, or None when there is nothing to ask or it would answer the same
+        again.
+        """
         request = self.plan.request(self._present, deadline) if self.conduct.executes_operations else None
         return self._note_asked(request, Contract.FAST)
 

@@ -94,7 +94,9 @@ class Forecast:
             self._runs[step.ability].append(seconds)
 
     def expected(self, guards: Mapping[str, SupervisorGuard] | None = None) -> dict[int, Expected]:
-        """Return what runs and what is ahead, by the number of the step; `guards` are those that the supervisor adds."""
+        """Return what runs and what is ahead, by the number of the step; `guards` are those that the supervisor
+        adds.
+        """
         order, outlook = self._execution.plan.order, self._outlook
         ending: dict[int, list[tuple[str, float]]] = defaultdict(list)  # which abilities end in a tick, and when
         table: dict[int, Expected] = {}

@@ -34,7 +34,9 @@ def kept_back(conduct: ExecutionState) -> Iterator[str]:
 
 
 def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[str]) -> Iterator[str]:
-    """Yield what runs and decides on the values that its product brings, in words: that belongs to the product before."""
+    """Yield what runs and decides on the values that its product brings, in words: that belongs to the product
+    before.
+    """
     brought = frozenset(map(target, master.brings))
     for name in sorted(running):
         ability = automaton.abilities[name]

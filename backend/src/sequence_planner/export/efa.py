@@ -340,7 +340,9 @@ def _constant(transition: Transition, name: str) -> Constant | None:
 
 
 def _pairs(one: Transition, other: Transition) -> Iterator[tuple[Writes, Writes]] | None:
-    """Return what each writes, wherever both are enabled; None if there are too many valuations. Flags can be anything."""
+    """Return what each writes, wherever both are enabled; None if there are too many valuations. Flags can be
+    anything.
+    """
     domains = {
         variable.name: variable.type.domain
         for transition in (one, other)

@@ -137,7 +137,9 @@ class Child:
             self._end(LOST)
 
     def _seen(self) -> int:
-        """Tell how it has ended, of one without a server: whoever is the reaper of this process's orphans can see it."""
+        """Tell how it has ended, of one without a server: whoever is the reaper of this process's orphans can see
+        it.
+        """
         if self._pid is None:
             return LOST
         _poll(None, self._handle)  # it has let go of the connection, and ends

@@ -36,7 +36,9 @@ _BREATH: Final = 0.01  # seconds for others to write, at least; and as long as i
 
 @dataclass(frozen=True)
 class Trimmed:
-    """The rest that is left: the run begins behind the record `begin`, and `removed` records before were taken out now."""
+    """The rest that is left: the run begins behind the record `begin`, and `removed` records before were taken out
+    now.
+    """
 
     begin: int
     removed: int

@@ -100,7 +100,9 @@ class GroupCommit:
             self._tell(self._end.number, TAKEN_OVER)
 
     def _next_group(self) -> list[RunRecord]:
-        """Return what waits, as soon as something does; nothing at the end. A checkpoint that is due is made meanwhile."""
+        """Return what waits, as soon as something does; nothing at the end. A checkpoint that is due is made
+        meanwhile.
+        """
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: self._queue or self._until is not None, self._checkpointing.due_in())

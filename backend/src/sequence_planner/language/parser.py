@@ -266,7 +266,9 @@ class _Parser:
         return self.relation()
 
     def _is_prefix(self) -> bool:
-        """Return whether the letter at hand is an operator: an operand follows, and not the arguments of `F(x).done`."""
+        """Return whether the letter at hand is an operator: an operand follows, and not the arguments of
+        `F(x).done`.
+        """
         following = iter(self._tokens[self._next + 1 :])
         first = next(following)
         if first.kind != "(":

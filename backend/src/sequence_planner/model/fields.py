@@ -1,4 +1,6 @@
-"""The things that all documents have in common: parts with nothing beside what is declared, and the values they share."""
+"""The things that all documents have in common: parts with nothing beside what is declared, and the values they
+share.
+"""
 
 from __future__ import annotations
 

@@ -162,7 +162,9 @@ class _FolderReader:
         self._before.forget_others(self._names)
 
     def _once(self, name: str, kind: type[BaseModel], reading: _Reading) -> object:
-        """Return what the file holds, read now unless it was with the same text before; None where it cannot be read."""
+        """Return what the file holds, read now unless it was with the same text before; None where it cannot be
+        read.
+        """
         self._names.add(name)
         called = str(self._folder / name)
         try:

@@ -132,7 +132,9 @@ def _entry_above(document: YamlDocument, path: EntryPath, name: str) -> tuple[st
 
 
 def _is_looked_into(details: ErrorDetails, every: Iterable[ErrorDetails]) -> bool:
-    """Return whether another branch of the union has taken this mapping for what it is, and says what is wrong in it."""
+    """Return whether another branch of the union has taken this mapping for what it is, and says what is wrong in
+    it.
+    """
     here = details["loc"][:-1]
     return isinstance(details["input"], dict) and any(
         each["loc"][: len(here)] == here and len(each["loc"]) > len(details["loc"]) for each in every

@@ -24,7 +24,9 @@ _STEP = re.compile(r"\.([A-Za-z_]\w*)|\[(\d+)\]")
 
 @dataclass(frozen=True)
 class FieldPath:
-    """The path to a field: its key in the record, and from there through nested messages (names) and lists (indices)."""
+    """The path to a field: its key in the record, and from there through nested messages (names) and lists
+    (indices).
+    """
 
     text: str
     key: str

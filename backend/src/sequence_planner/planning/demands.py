@@ -1,4 +1,6 @@
-"""Demands of a start on the state before it, and what it leaves in the one after it, as far as its text alone says so."""
+"""Demands of a start on the state before it, and what it leaves in the one after it, as far as its text alone says
+so.
+"""
 
 from __future__ import annotations
 

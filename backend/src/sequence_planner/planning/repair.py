@@ -85,7 +85,9 @@ class Repair:
         return None
 
     def _nearest(self, ways: Iterable[_Way], begin: ReferenceRun) -> Iterator[_Place]:
-        """Yield where the fewest variables differ in value from where a run begins, with what it has not started there."""
+        """Yield where the fewest variables differ in value from where a run begins, with what it has not started
+        there.
+        """
         values = _values(begin.values, self._variables)
 
         def different(point: tuple[Plan, Waypoint]) -> int:

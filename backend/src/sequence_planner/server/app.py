@@ -163,7 +163,9 @@ def _workshop(office: IdentityService, model: Path, settings: Settings) -> Works
 
 
 def _backup_desk(office: IdentityService, settings: Settings, controller: ControllerClient) -> BackupService | None:
-    """Return who looks after backups; nobody where there is no model to go with the database, or where it is forgotten."""
+    """Return who looks after backups; nobody where there is no model to go with the database, or where it is
+    forgotten.
+    """
     if settings.model is None or settings.demonstration:
         return None
     shelf = Shelf(settings.database, settings.model, settings.backups)

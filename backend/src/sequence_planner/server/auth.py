@@ -184,7 +184,9 @@ class BearerMemory:
                 del self._found[next(iter(self._found))]
 
     def recall(self, shown: Credentials, now: float) -> Bearer | None:
-        """Return who has shown this before, if that has not ended since: a session lasts for an hour without a request."""
+        """Return who has shown this before, if that has not ended since: a session lasts for an hour without a
+        request.
+        """
         found = self._found.get(_mark(shown))
         if found is None or now >= found.bearer.expires or abs(now - found.used) > LONGEST_IDLE:
             return None

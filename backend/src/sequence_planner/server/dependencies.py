@@ -158,6 +158,8 @@ UnreadBody = Annotated[bytes, Depends(_unread_body)]
 
 
 def takes(model: type[BaseModel]) -> dict[str, Any]:
-    """Return what `openapi_extra` of a route says whose `UnreadBody` is a `model`, which `openapi_document` must know."""
+    """Return what `openapi_extra` of a route says whose `UnreadBody` is a `model`, which `openapi_document` must
+    know.
+    """
     schema = {"$ref": f"#/components/schemas/{model.__name__}"}
     return {"requestBody": {"required": True, "content": {JSON: {"schema": schema}}}}

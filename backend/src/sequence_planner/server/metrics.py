@@ -415,7 +415,9 @@ def _topics(view: StationView) -> Iterator[Metric]:
 
 
 def of_retention(desk: RetentionService | None) -> Iterator[Metric]:
-    """Yield how much is kept, as it was looked at last, and whether it can be archived; nothing where nothing is kept."""
+    """Yield how much is kept, as it was looked at last, and whether it can be archived; nothing where nothing is
+    kept.
+    """
     if desk is None:
         return
     if desk.sizes is not None:

@@ -112,7 +112,9 @@ def _plain(value: object) -> object:
 
 
 def _distance(said: object, known: object) -> float:
-    """Return how far a value is from another; infinite where they are of different kinds, or differ without a measure."""
+    """Return how far a value is from another; infinite where they are of different kinds, or differ without a
+    measure.
+    """
     if isinstance(said, tuple) and isinstance(known, tuple):
         if len(said) != len(known):
             return math.inf

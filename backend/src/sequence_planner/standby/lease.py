@@ -375,7 +375,9 @@ class LeaseLostError(Exception):
 
 @dataclass(frozen=True)
 class LeaseStatus:
-    """The state of things: who holds the lease or did last, who else is there, and why this station does not take it."""
+    """The state of things: who holds the lease or did last, who else is there, and why this station does not take
+    it.
+    """
 
     name: str
     active: bool

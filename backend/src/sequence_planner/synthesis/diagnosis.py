@@ -1,4 +1,6 @@
-"""The reasons why there is no supervisor: what devices can do from an initial state on, or why rest cannot be reached."""
+"""The reasons why there is no supervisor: what devices can do from an initial state on, or why rest cannot be
+reached.
+"""
 
 from __future__ import annotations
 

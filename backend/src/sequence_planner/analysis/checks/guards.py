@@ -207,7 +207,9 @@ Shape = tuple[object, ...]
 
 
 def shape(automaton: Automaton, expression: Expression) -> Shape:
-    """Return what makes the answer about `expression`: two with the same shape differ in the names of variables alone."""
+    """Return what makes the answer about `expression`: two with the same shape differ in the names of variables
+    alone.
+    """
     numbers: dict[str, int] = {}
 
     def of(part: Expression) -> Shape:

@@ -241,7 +241,9 @@ class FarInquiry(ReachabilityQuery):
         return None
 
     def leads(self, states: Function, goal: Function) -> bool | None:
-        """Return whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
+        """Return whether `goal` can be reached from `states` without faults, the supervisor not asked; None if
+        unknown.
+        """
         if any(not ((states & ~bound) | (bound & goal)).satisfiable() for bound in self._bounds):
             return False
         if Tracer(self.plant, faults=False).leads(goal, states):

@@ -168,7 +168,9 @@ class ReachabilityQuery:
         return self.reached(active) & ~self._completing(goal, self.safe)
 
     def leads(self, states: Function, goal: Function) -> bool | None:
-        """Return whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
+        """Return whether `goal` can be reached from `states` without faults, the supervisor not asked; None if
+        unknown.
+        """
         steps = self.limited(self.plant, self.plant.helpful)
         return (states & reaching(self.diagrams, goal, steps)).satisfiable()
 
@@ -227,7 +229,9 @@ class ReachabilityQuery:
         return reachable(plant.diagrams, plant.initial, self.limited(plant, plant.uncontrollable))
 
     def may_ever(self, predicate: Expression) -> bool:
-        """Return whether it holds in any state that may be reached: also restarted, called off, or with a new product."""
+        """Return whether it holds in any state that may be reached: also restarted, called off, or with a new
+        product.
+        """
         plant, reached = self.ever
         return (plant.where(predicate) & reached).satisfiable()
 

@@ -34,7 +34,9 @@ class SignInFlow:
 
     @property
     def nonce(self) -> str:
-        """The value that the ID token repeats, so that none of another sign-in is taken (OpenID Connect Core, 15.5.2)."""
+        """The value that the ID token repeats, so that none of another sign-in is taken (OpenID Connect Core,
+        15.5.2).
+        """
         return self._made("nonce")
 
     @property

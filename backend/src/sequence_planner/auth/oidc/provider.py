@@ -234,7 +234,9 @@ class Metadata:
 
 
 def read_metadata(document: dict[str, object], issuer: str) -> Metadata:
-    """Return what a discovery document says. Raises `IdentityRefused` (`provider-unavailable`) where it cannot be used."""
+    """Return what a discovery document says. Raises `IdentityRefused` (`provider-unavailable`) where it cannot be
+    used.
+    """
     if document.get("issuer") != issuer:
         raise _unusable("it says that it is another issuer than the one that was named")
     methods = document.get("code_challenge_methods_supported")
@@ -329,7 +331,9 @@ class Provider:
         self._known = DiscoveryCache(settings.issuer)
 
     async def address(self, flow: SignInFlow, back: str) -> str:
-        """Return where the browser is sent to sign in; it comes back to the address `back`. Raises `IdentityRefused`."""
+        """Return where the browser is sent to sign in; it comes back to the address `back`. Raises
+        `IdentityRefused`.
+        """
         asked_for = {
             "response_type": "code",
             "client_id": self.settings.client,
@@ -344,7 +348,9 @@ class Provider:
         return _with((await self._known.metadata()).authorization, asked_for)
 
     def end_address(self, home: str) -> str | None:
-        """Return where one signs out of the provider as well, and then comes to `home`; None where that is not known."""
+        """Return where one signs out of the provider as well, and then comes to `home`; None where that is not
+        known.
+        """
         known = self._known.last
         if known is None or known.end_session is None:
             return None

@@ -82,7 +82,9 @@ class Shown:
         self._since = 0.0  # on the clock of `time.monotonic`
 
     def is_news(self, view: StationView) -> bool:
-        """Return whether it is to be shown, which it then is: else only the time, and when messages came, are others."""
+        """Return whether it is to be shown, which it then is: else only the time, and when messages came, are
+        others.
+        """
         last, now = self._last, time.monotonic()
         if last is not None and now - self._since < LONGEST and _lasting(view) == _lasting(last):
             return False
@@ -131,7 +133,9 @@ _FAILURES = frozenset({"overdue", "still", "given-up"})
 
 
 def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
-    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of them."""
+    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of
+    them.
+    """
     found: set[str] = set()
     for key, alarm in alarms.items():
         kind, _, name = key.partition(":")

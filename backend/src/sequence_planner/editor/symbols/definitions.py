@@ -86,7 +86,9 @@ _OTHERWISE = {"specification": Manner.FORBIDS, "work_master": Manner.RUNS, "mess
 
 
 def manner_of(part: ModelPart, by: ModelPart | None, path: EntryPath, declared: Declared, *, writes: bool) -> Manner:
-    """Tell how `by`, or the station itself, uses a part at an entry within it; `writes` holds where that gets a value."""
+    """Tell how `by`, or the station itself, uses a part at an entry within it; `writes` holds where that gets a
+    value.
+    """
     if part.kind == "enumeration":
         return Manner.RANGES
     if part.kind in ("value", "parameter", "resource"):

@@ -1,4 +1,6 @@
-"""The things that messages say of the variables of a resource: which follow from their fields, and in which pipelines."""
+"""The things that messages say of the variables of a resource: which follow from their fields, and in which
+pipelines.
+"""
 
 from __future__ import annotations
 

@@ -246,7 +246,9 @@ class KnownTimes:
         self._used: dict[str, deque[frozenset[str]]] = defaultdict(lambda: deque(maxlen=REMEMBERED_RUNS))
 
     def seconds(self, operation: str, planned: float | None = None) -> float:
-        """Return how long it takes: the median of the last runs; before the first as long as is `planned`, or a minute."""
+        """Return how long it takes: the median of the last runs; before the first as long as is `planned`, or a
+        minute.
+        """
         if runs := self._seconds.get(operation):
             return median(runs)
         return UNKNOWN_SECONDS if planned is None else planned

@@ -28,7 +28,9 @@ class StageInstance(Protocol):
         """The moment when `wake` is to be called if nothing comes before; None: not at all."""
 
     def take(self, record: Record, now: float) -> Record | None:
-        """Return what goes on because of a record, which may be changed in place; None when it is held back or dropped."""
+        """Return what goes on because of a record, which may be changed in place; None when it is held back or
+        dropped.
+        """
 
     def wake(self, now: float) -> Record | None:
         """Return what goes on because time has passed."""

@@ -353,7 +353,9 @@ class PythonStage:
             raise NotInvertibleError(f"{self.function} cannot be read backwards: give its values in another way")
 
     def call_arguments(self, record: Record) -> dict[str, object]:
-        """Return what the function is called with; a value that is not of its type is unknown, and that is a trouble."""
+        """Return what the function is called with; a value that is not of its type is unknown, and that is a
+        trouble.
+        """
         found: dict[str, object] = {}
         for argument in self.arguments:
             value = argument.path.get(record.values)

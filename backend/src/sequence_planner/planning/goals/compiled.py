@@ -49,7 +49,9 @@ class CompiledGoals:
         return tuple(sorted((self._number(goal), goal.at) for goal in goals))
 
     def missing(self, progress: CompiledProgress, state: State) -> CompiledProgress:
-        """Return what is left without the goals that are met already; with a formula, none is before the next step 3."""
+        """Return what is left without the goals that are met already; with a formula, none is before the next step
+        3.
+        """
         goals = self._compiled
         return tuple(
             (number, at)

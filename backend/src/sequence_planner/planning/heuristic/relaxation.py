@@ -171,7 +171,9 @@ def counted_on(automaton: Automaton, circumstances: Circumstances) -> tuple[Tran
 
 
 class Relaxation:
-    """The values that each variable and flag may get from `first`, where each has some already, by permitted `moves`."""
+    """The values that each variable and flag may get from `first`, where each has some already, by permitted
+    `moves`.
+    """
 
     def __init__(
         self,

@@ -147,7 +147,9 @@ _MOST_WAITS = 40  # in one leap
 
 
 def leap(space: Space, position: RunPosition, steps: Iterable[RelaxedStep]) -> tuple[RunPosition, tuple[Move, ...]]:
-    """Return where `position` gets when the relaxed plan's starts are taken as they can be, and what happens meanwhile."""
+    """Return where `position` gets when the relaxed plan's starts are taken as they can be, and what happens
+    meanwhile.
+    """
     moves: list[Move] = []
     starts = {step.operator[1]: step for step in steps if step.operator[0] is RuleKind.START}
     effects = [step.operator[1] for step in steps if step.operator[0] is RuleKind.EFFECT]

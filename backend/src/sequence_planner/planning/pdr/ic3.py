@@ -282,7 +282,9 @@ class Decision(Immutable):
 
 
 class ReachabilityQuestion(Immutable):
-    """The question whether the goals of `task` can be reached from `state`, or one like it with any values of `free`."""
+    """The question whether the goals of `task` can be reached from `state`, or one like it with any values of
+    `free`.
+    """
 
     automaton: Automaton
     supervisor: Supervisor

@@ -28,7 +28,9 @@ Answer = PlanAnswer | WayBackAnswer | Diagnosis
 
 
 class Planning(Immutable):
-    """The things the process works with; `cautious` where one before it has ended over a question, as an engine may do."""
+    """The things the process works with; `cautious` where one before it has ended over a question, as an engine may
+    do.
+    """
 
     model: DiagnosisModel
     cautious: bool = False

@@ -91,7 +91,9 @@ class BoundedModelChecking:
 
 
 def _counts_positions(formula: Expression) -> bool:
-    """Return whether a formula speaks of the next position, so that one more start can decide it, whatever it writes."""
+    """Return whether a formula speaks of the next position, so that one more start can decide it, whatever it
+    writes.
+    """
     match formula:
         case UnaryTemporal("X" | "N", _):
             return True

@@ -119,7 +119,9 @@ class StartPairs:
         self._second: dict[tuple[str, str], tuple[int, SymbolicState]] = {}
 
     def order_matters(self, one: str, other: str) -> bool:
-        """Return whether in some safe state `one` then `other` can start, and the other way round not, or differently."""
+        """Return whether in some safe state `one` then `other` can start, and the other way round not, or
+        differently.
+        """
         first_now, _ = self._started(one)
         second_then, end = self._both(one, other)
         if Circuit.FALSE in (first_now, second_then):

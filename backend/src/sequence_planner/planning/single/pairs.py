@@ -111,7 +111,9 @@ class PairProver:
         return Finding(proof=Proof(NAME, tuple(self._clauses(work.noted))))
 
     def _in_vain(self, work: _Work, wanted: Iterable[tuple[_Asked, ...]], state: State) -> bool:
-        """Return whether all that is noted for another task, where the goals can be, holds for `state` too, at least."""
+        """Return whether all that is noted for another task, where the goals can be, holds for `state` too, at
+        least.
+        """
         there = sum(1 << self._number[name, value] for name in self._own if (value := state[name]) is not None)
         inside = all(there & ~work.noted[number] == 0 for number in _bits(there))
         return inside and all(_beside(work.noted, each, self._all) for each in wanted)

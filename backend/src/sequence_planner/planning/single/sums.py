@@ -62,7 +62,9 @@ class Sums:
         return Finding(exhausted=excluded)
 
     def _excluded(self, predicate: Expression, state: State, rows: list[Row], pause: Callable[[], object]) -> bool:
-        """Return whether no state with the sums of `state` satisfies the parts of a conjunction that read one variable."""
+        """Return whether no state with the sums of `state` satisfies the parts of a conjunction that read one
+        variable.
+        """
         asked: dict[str, Some] = {}
         for part in conjuncts(predicate):
             if (alone := self._starts.domains.asked(part)) is not None:

@@ -62,7 +62,9 @@ _lock = threading.Lock()
 
 @dataclass(frozen=True)
 class Events:
-    """The functions called on roslibpy's thread: when there is a connection, with each frame, and when there is none."""
+    """The functions called on roslibpy's thread: when there is a connection, with each frame, and when there is
+    none.
+    """
 
     opened: Callable[[], None]
     frame: Callable[[bytes], None]

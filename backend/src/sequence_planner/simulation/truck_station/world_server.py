@@ -86,7 +86,9 @@ class MirServer:
         return None if await self._exchanged({"goal": goal}) is None else (HTTPStatus.OK, {"goal": goal})
 
     async def _exchanged(self, put: Signals) -> dict[str, object] | None:
-        """Return what the AGV's signals are after these are set; None when it is switched off, or the world has ended."""
+        """Return what the AGV's signals are after these are set; None when it is switched off, or the world has
+        ended.
+        """
         async with self._turn:  # the link knows one question at a time
             try:
                 answer = await self._link.exchange(put)
