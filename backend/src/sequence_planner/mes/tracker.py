@@ -190,7 +190,7 @@ class StationStanding(BaseModel):
         return (self.model_copy(update=changes) if changes else self), told
 
     def without(self, job: str) -> StationStanding:
-        """Return it without a job that is over, for which nothing is waited any more."""
+        """Return the standing without a job that is over: nothing is waited for any more there."""
         if job not in self.waits:
             return self
         return self.model_copy(update={"waits": {id_: waits for id_, waits in self.waits.items() if id_ != job}})

@@ -46,7 +46,7 @@ class _Generator(GenerateJsonSchema):
         return False
 
     def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> JsonSchemaValue:
-        """Describe what may be left out as what is not left empty."""
+        """Describe what may be left out so that it is not left empty."""
         inner = schema["schema"]
         return (
             self.generate_inner(inner["schema"])

@@ -107,6 +107,6 @@ def _written(raw: str) -> list[tuple[int, int]]:
 
 
 def _is_space(written: str) -> bool:
-    """Whether a character is white space, as it is or by an escape such as `\\n` or `\\x20`."""
+    """Return whether a character is white space, as it is or by an escape such as `\\n` or `\\x20`."""
     is_number = len(written) > 2 and written[1] in "xuU"
     return written.isspace() or written in _ESCAPED_SPACE or (is_number and chr(int(written[2:], 16)).isspace())

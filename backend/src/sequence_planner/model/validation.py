@@ -1,4 +1,4 @@
-"""The faults in the form of a document, said in its own words.
+"""The account of what is wrong with the form of a document, said in its own words.
 
 pydantic finds it; here its findings get their place in the file, and those about one entry become one.
 """

@@ -34,7 +34,7 @@ Plain = dict[str, object]
 
 
 class GivenError(Exception):
-    """The error that what an example gives cannot be taken; the text says why."""
+    """The error for what an example gives and cannot be taken; the text says why."""
 
 
 class ExampleHarness(ABC):

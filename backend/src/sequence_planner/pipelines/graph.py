@@ -73,7 +73,7 @@ class Chain:
 
     @property
     def is_timed(self) -> bool:
-        """Return whether a record that says the same as the one before can make a difference."""
+        """True if a record that says the same as the one before can make a difference."""
         return any(stage.kind in _TIMED for stage in self.stages)
 
 

@@ -152,7 +152,7 @@ class _Place(Immutable):
 
     @property
     def rest(self) -> int:
-        """Return how many ticks come after it."""
+        """The number of ticks that come after it."""
         return len(self.plan.ticks) - 1 - self.tick
 
     def leading(self, begin: ReferenceRun) -> Iterator[PlanTick]:

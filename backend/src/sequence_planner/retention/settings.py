@@ -20,8 +20,8 @@ GB: Final = 1e9  # bytes
 
 @dataclass(frozen=True)
 class Retention:
-    """The time that what happened stays in the database, or its most GB, whichever comes first; and that for job orders
-    over, with events and responses.
+    """The time for which what happened stays in the database, or how many GB of it, whichever comes first; and the time
+    for job orders that are over, with their events and responses.
 
     What is cut goes to `folder`, or None for one beside the database; nowhere if not `archived`. Files of the archive
     are removed when they are older than `archive_days` or more than `archive_gb`, where these are given.
