@@ -187,7 +187,8 @@ def test_after_a_controller_that_was_killed_nobody_is_in_control(
 ) -> None:
     eventually(lambda: bo.put("control", json={"over": None}).status_code == 204, 5)
     hall.killed("controller")
-    eventually(lambda: production(ada) == "waiting")  # the view of the one that was killed is shown a little longer
+    # The view of the one that was killed is shown a little longer, and the next one prepares the station first.
+    eventually(lambda: production(ada) == "waiting" and bo.post("production/start", json={}).status_code != 503)
     refused = bo.post("production/start", json={})
     assert (refused.status_code, refused.json()["type"]) == (409, "/problems/control-needed")
     assert nobody_is_in_control(ada)
