@@ -21,8 +21,6 @@ from sequence_planner.db import postgresql, sqlite, upgrade
 from sequence_planner.db.errors import PATIENCE, require_meant, storage_error
 from sequence_planner.db.location import PostgresqlServer, SqliteFile, address
 
-__all__ = ["Database", "StorageError"]
-
 _OF_THE_DATABASE = (DBAPIError, TimeoutError)
 _OF_THE_CALLER = (IntegrityError, ProgrammingError, DataError)  # says something about a statement, not the database
 

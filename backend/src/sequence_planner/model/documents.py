@@ -122,8 +122,6 @@ class FlowDocument(DocumentPart):
 
 # What each document of a station may hold. Texts keep their place (`SourceText`), so that errors can name it.
 
-__all__ = ["DocumentPart", "Given", "Predicate", "Seconds", "StageDocument"]
-
 
 Parameters = dict[SourceText, SourceText]
 

@@ -45,21 +45,6 @@ class TellsServices(Protocol):
 # the event loop's thread, and so are the callbacks: the threads of the middleware never show. Discovery takes time (a
 # tenth of a second to several seconds, by vendor), so `graph` tells what is known now, and whoever needs a peer waits.
 
-__all__ = [
-    "Direction",
-    "Handler",
-    "NetworkEndpoint",
-    "NoAnswerError",
-    "NoServerError",
-    "OnBatch",
-    "OnQualityEvent",
-    "QualityEvent",
-    "QualityOfService",
-    "Sample",
-    "Transport",
-    "TransportError",
-]
-
 
 class TransportError(Exception):
     """A transport cannot start or carry on; the text says why and what to do."""

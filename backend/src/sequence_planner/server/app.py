@@ -154,10 +154,6 @@ class StationServer(FastAPI):
         return self.openapi_schema
 
 
-def _looking_back(model: Path, settings: Settings) -> HistoryProcess:
-    return HistoryProcess(model, settings.database, settings.retention.folder)
-
-
 def _workshop(office: IdentityService, model: Path, settings: Settings) -> Workshop:
     return Workshop(office, model, revisions_folder(settings.database, model), settings.stream, settings.start)
 

@@ -121,11 +121,6 @@ def forget_session(response: Response, settings: Settings) -> None:
     _keep(response, session_cookie(settings), "", settings, 0)
 
 
-def forget_watch(response: Response, settings: Settings) -> None:
-    """Have the browser forget its watch's token."""
-    _keep(response, watch_cookie(settings), "", settings, 0)
-
-
 def _keep(response: Response, name: str, value: str, settings: Settings, seconds: int | None) -> None:
     response.set_cookie(name, value, max_age=seconds, httponly=True, samesite="strict", secure=settings.https)
 

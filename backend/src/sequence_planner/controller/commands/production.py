@@ -12,7 +12,6 @@ from sequence_planner.controller.commands.commands import (
     ApproveRequest,
     CommandBase,
     CommandJob,
-    CommandRefused,
     ConfirmEstimates,
     CorrectEstimates,
     DecideOutputs,
@@ -132,8 +131,6 @@ class SetService(CommandBase):
 
 
 # What a person or a system may ask of the controller. Every command carries its actor, and may carry a reason.
-
-__all__ = ["COMMAND", "AcknowledgeTask", "Command", "CommandBase", "CommandRefused", "SetMode", "StartProduction"]
 
 
 class SetOverride(CommandBase):

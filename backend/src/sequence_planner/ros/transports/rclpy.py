@@ -264,16 +264,6 @@ def _of_topic(
 
 T = TypeVar("T")
 
-__all__ = [
-    "ServiceClass",
-    "check_definition",
-    "deserialize_message",
-    "guarded",
-    "message_class",
-    "serialize_message",
-    "service_class",
-]
-
 
 class ServiceClass(Protocol):
     """The class that rosidl generates for a service."""

@@ -225,17 +225,6 @@ def _check_bounds(field: FieldType, value: object) -> None:
 # Its values travel as CDR (the encoding of DDS), and its hash (RIHS01 of REP 2016) tells whether a peer was built with
 # the same definition: peers match on the name alone, and a stale definition silently loses or garbles every sample.
 
-__all__ = [
-    "ActionType",
-    "FieldType",
-    "FoundType",
-    "MalformedMessageError",
-    "MessageDefinitionError",
-    "MessageRegistry",
-    "MessageValueError",
-    "ServiceType",
-    "UnknownMessageTypeError",
-]
 
 #: The defaults other than zero in Jazzy's standard packages, which rosbags does not keep.
 _STANDARD_DEFAULTS: dict[str, dict[str, object]] = {
