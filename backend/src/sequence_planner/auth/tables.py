@@ -1,4 +1,4 @@
-"""The tables of this room. Times are seconds since the epoch; of tokens, codes and keys only hashes are kept.
+"""The tables of this package. Times are seconds since the epoch; of tokens, codes and keys only hashes are kept.
 
 A session, a link or an offer that has ended is a row that is gone; keys and watches stay a while to be looked up. What
 was done is in the journal, which forgets nothing.

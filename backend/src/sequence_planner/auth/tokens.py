@@ -86,7 +86,7 @@ def _unfit(why: str) -> IdentityRefused:
     return IdentityRefused("unfit-name", "Not a name", f"This cannot be a name: {why}.", 422)
 
 
-# Entries of this room in the journal.
+# Entries of this package in the journal.
 
 
 def record(connection: Connection, by: Actor, action: str, subject: str, now: float, **details: JsonValue) -> None:

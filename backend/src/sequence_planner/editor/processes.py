@@ -94,7 +94,7 @@ def answered(work: Callable[[], object]) -> object:
 
 
 class DraftAnswering:
-    """Asks `name`, a function of a module of this room, about several versions of a model."""
+    """Asks `name`, a function of the module, about several versions of a model."""
 
     def __init__(self, module: str, name: str, versions: int) -> None:
         self._process = Answering(module, name)

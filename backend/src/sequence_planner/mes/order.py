@@ -171,7 +171,7 @@ class JobOrder(OrderContent):
         return (self.description.strip() or self.id)[:LONGEST_TITLE]
 
 
-# How this room says no.
+# Errors of the interface for job orders.
 
 
 class OrderRefused(Exception):

@@ -1,4 +1,4 @@
-"""The tables of this room: orders, what has become of them, and the answers to repeated requests.
+"""The tables of this package: orders, what has become of them, and the answers to repeated requests.
 
 Times are seconds since the epoch. An order that was cancelled or cleared stays, without being shown. What is over long
 enough is taken out (`retention`): of an order its id stays, so that it never means another one.

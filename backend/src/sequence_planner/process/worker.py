@@ -528,7 +528,7 @@ async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> o
 
 class Answering:
     """A process that answers one question after the other; it is started with the first of them, and ends when nobody
-    asks for long. `name` is a function of a module of this room that is called with a connection and the path of an
+    asks for long. `name` is a function of a module that is called with a connection and the path of an
     empty folder. Used from one event loop.
     """
 

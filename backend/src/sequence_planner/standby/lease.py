@@ -49,7 +49,7 @@ def digest_of(folder: Path) -> str:
     return hashlib.sha256(texts.encode()).hexdigest()
 
 
-# The tables of this room. No column holds a time: the clocks of several machines need not agree.
+# The tables of this package. No column holds a time: the clocks of several machines need not agree.
 
 NAME = String(100)
 NUMBER = BigInteger().with_variant(Integer, "sqlite")

@@ -1,4 +1,4 @@
-"""The tables of this room. Times are seconds since the epoch."""
+"""The tables of this package. Times are seconds since the epoch."""
 
 from __future__ import annotations
 
