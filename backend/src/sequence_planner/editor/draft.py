@@ -224,7 +224,7 @@ def _require_unchanged(text: str, edit: SetEntry | RemoveEntry | MoveEntry, path
         raise PartChangedError(edit.file, path, f"`{shown_path(path)}` of {edit.file} was changed meanwhile")
 
 
-# The tables of this package: the one draft of the station, and who changed what in it. Times are seconds since the epoch.
+# The tables of the draft: the one of the station, and who changed what in it. Times are seconds since the epoch.
 #
 # What a file was when the draft began stands beside what it is, so that what somebody does to the files of the station
 # meanwhile can be brought together with it.
