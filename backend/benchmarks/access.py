@@ -62,7 +62,7 @@ def command(*arguments: str) -> list[str]:
 
 def add_administrator() -> None:
     """Somebody who may do everything, made at the machine."""
-    adding = command("people", "add", NAME, str(STATION), "--role", "administrator")
+    adding = command("users", "add", NAME, str(STATION), "--role", "administrator")
     subprocess.run(adding, input=f"{GIVEN}\n", text=True, check=True, stdout=subprocess.DEVNULL)
 
 
@@ -151,7 +151,7 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float]]:
         return answer.json() if answer.content else None
 
     yield "read the state", median(lambda: act(200, "GET", "/state"))
-    yield "take control", median(lambda: act(204, "PUT", "/control", {"over": None}))
+    yield "take control", median(lambda: act(204, "PUT", "/control-lock", {"over": None}))
     yield "pause", median(lambda: act(204, "PUT", "/mode", {"mode": "paused"}))
     yield "go on", median(lambda: act(204, "PUT", "/mode", {"mode": "automatic"}))
     yield "start production (refused: it is started)", median(lambda: act(409, "POST", "/production/start", {}))
@@ -161,7 +161,7 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float]]:
 
     def person() -> dict[str, Any]:
         body = {"name": f"Person {next(names)}", "role": "viewer", "password": f"{PASSWORD} again"}
-        made: dict[str, Any] = act(201, "POST", "/people", body)
+        made: dict[str, Any] = act(201, "POST", "/users", body)
         return made
 
     besides_hash("add a person", person)
@@ -169,24 +169,24 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float]]:
 
     def change() -> None:
         one = next(people)
-        act(200, "PATCH", f"/people/{one['id']}", {"role": "operator"}, headers={"If-Match": f'"{one["revision"]}"'})
+        act(200, "PATCH", f"/users/{one['id']}", {"role": "operator"}, headers={"If-Match": f'"{one["revision"]}"'})
 
     yield "change a person's role", median(change)
     someone = person()["id"]
-    yield "sign a person out everywhere", median(lambda: act(204, "DELETE", f"/people/{someone}/sessions"))
+    yield "sign a person out everywhere", median(lambda: act(204, "DELETE", f"/users/{someone}/sessions"))
 
     def key() -> str:
-        made = act(201, "POST", "/keys", {"name": f"key {next(names)}", "scopes": ["read"], "days": 1})
+        made = act(201, "POST", "/api-keys", {"name": f"key {next(names)}", "scopes": ["read"], "days": 1})
         return str(made["key"]["id"])
 
     yield "make a key", median(key)
     keys = iter([key() for _ in range(ROUNDS)])
-    yield "revoke a key", median(lambda: act(204, "DELETE", f"/keys/{next(keys)}"))
+    yield "revoke a key", median(lambda: act(204, "DELETE", f"/api-keys/{next(keys)}"))
 
     def offer() -> str:
         body = {"name": f"watch {next(names)}", "resource": "operator"}
-        made = act(201, "POST", "/watches/offers", body)
-        act(204, "DELETE", f"/watches/offers/{made['id']}")
+        made = act(201, "POST", "/wearables/offers", body)
+        act(204, "DELETE", f"/wearables/offers/{made['id']}")
         return str(made["id"])
 
     yield "offer to pair a watch, and take it back", median(offer)
@@ -196,8 +196,8 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float]]:
 
 def released(act: Callable[..., Any]) -> None:
     """Give control up and take it."""
-    act(204, "DELETE", "/control")
-    act(204, "PUT", "/control", {"over": None})
+    act(204, "DELETE", "/control-lock")
+    act(204, "PUT", "/control-lock", {"over": None})
 
 
 def signed_out(client: httpx.Client) -> None:

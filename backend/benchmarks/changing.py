@@ -30,35 +30,35 @@ OTHER = "an even quieter submarine"
 # They change nothing: their bodies are questions.
 QUESTIONS = {
     "POST /corrections/preview",
-    "POST /errands/goal-preview",
-    "POST /errands/reset-preview",
+    "POST /operator-plans/goal-preview",
+    "POST /operator-plans/reset-preview",
     "POST /history/{number}/branch",
     "POST /model/language/check",
     "POST /model/language/completion",
     "POST /model/language/format",
     "POST /model/language/hover",
-    "POST /model/pipelines/fits",
+    "POST /model/pipelines/suggestions",
     "POST /model/pipelines/preview",
-    "POST /model/pipelines/trials",
+    "POST /model/pipelines/test-runs",
     "POST /model/what-if",
-    "POST /why-not/goal",
+    "POST /goals/blockers",
 }
 # They need another station than this one: at its first start, before production, a demonstration, with a provider, with
 # two people, an archive, overrides, a topic that is not in its model, a recording, or a checked revision.
 ELSEWHERE = {
     "POST /corrections/confirm",
     "POST /storage/archive",
-    "PUT /outputs",
+    "PUT /restored-outputs",
     "POST /production/start",
     "PUT /overrides/{name}",
     "DELETE /overrides/{name}",
-    "POST /first-administrator",
+    "POST /setup",
     "POST /session/demonstration",
     "POST /session/provider",
     "POST /session/provider/answer",
     "POST /approvals/corrections",
     "POST /approvals/forces",
-    "POST /approvals/outputs",
+    "POST /approvals/restored-outputs",
     "POST /approvals/{request}/approve",
     "POST /approvals/{request}/decline",
     "POST /model/deployments",
@@ -137,13 +137,13 @@ def main() -> None:
                 systems(act, number)
                 backups(act)
                 watches(act, number, address)
-                act("PUT", "/control", {"over": None})
+                act("PUT", "/control-lock", {"over": None})
                 tasks_and_alarms(act)
                 modes(act)
                 ways_back(act)
                 orders(act, number)
                 drafting(act, number)
-                act("DELETE", "/control")
+                act("DELETE", "/control-lock")
     report(act)
 
 
@@ -153,8 +153,8 @@ def people(act: Acts, number: int) -> None:
     act("DELETE", "/session")
     act("POST", "/session", {"name": NAME, "password": old})
     act("PUT", "/session/password", {"old": old, "new": new})
-    person = act("POST", "/people", {"name": f"Person {number}", "role": "viewer", "password": f"{PASSWORD} too"})
-    address, revision = f"/people/{person['id']}", {"If-Match": f'"{person["revision"]}"'}
+    person = act("POST", "/users", {"name": f"Person {number}", "role": "viewer", "password": f"{PASSWORD} too"})
+    address, revision = f"/users/{person['id']}", {"If-Match": f'"{person["revision"]}"'}
     act("PATCH", address, {"role": "operator"}, headers=revision)
     act("PUT", f"{address}/password", {"password": f"{PASSWORD} as well"})
     act("DELETE", f"{address}/sessions")
@@ -162,13 +162,13 @@ def people(act: Acts, number: int) -> None:
 
 def systems(act: Acts, number: int) -> None:
     """Keys and webhooks."""
-    key = act("POST", "/keys", {"name": f"key {number}", "scopes": ["read"], "days": 1})["key"]["id"]
-    turned = act("POST", f"/keys/{key}/rotation", {"overlap": 60})["key"]["id"]
-    act("DELETE", f"/keys/{turned}")
+    key = act("POST", "/api-keys", {"name": f"key {number}", "scopes": ["read"], "days": 1})["key"]["id"]
+    turned = act("POST", f"/api-keys/{key}/rotation", {"overlap": 60})["key"]["id"]
+    act("DELETE", f"/api-keys/{turned}")
     url = "http://127.0.0.1:9/told"
     made = act("POST", "/webhooks", {"title": f"MES {number}", "url": url, "after": 0})
     webhook = f"/webhooks/{made['webhook']['id']}"
-    act("POST", f"{webhook}/dead-letters/again", {})
+    act("POST", f"{webhook}/dead-letters/retry", {})
     act("DELETE", webhook)
 
 
@@ -183,12 +183,12 @@ def backups(act: Acts) -> None:
 def watches(act: Acts, number: int, address: str) -> None:
     """A watch is offered to be paired twice, and paired once."""
     asked = {"name": f"watch {number}", "resource": "operator"}
-    act("DELETE", f"/watches/offers/{act('POST', '/watches/offers', asked)['id']}")
-    offer = act("POST", "/watches/offers", asked)
+    act("DELETE", f"/wearables/offers/{act('POST', '/wearables/offers', asked)['id']}")
+    offer = act("POST", "/wearables/offers", asked)
     with httpx.Client(base_url=f"{address}/api/v1", timeout=30) as wrist:
-        watch = act.by(wrist, "POST", "/watches/pairing", {"code": offer["code"]})["id"]
-    act("POST", f"/watches/{watch}/confirmation", {})
-    act("DELETE", f"/watches/{watch}")
+        watch = act.by(wrist, "POST", "/wearables/pairing", {"code": offer["code"]})["id"]
+    act("POST", f"/wearables/{watch}/confirmation", {})
+    act("DELETE", f"/wearables/{watch}")
 
 
 def tasks_and_alarms(act: Acts) -> None:
@@ -220,7 +220,7 @@ def modes(act: Acts) -> None:
     act("PUT", "/stepping", {"on": False, "reason": WHY})
     act("PUT", "/mode", {"mode": "paused"})
     for in_service in (False, True):
-        act("PUT", "/service/resource/robot", {"in_service": in_service, "reason": WHY})
+        act("PUT", "/availability/resource/robot", {"in_service": in_service, "reason": WHY})
     act("PUT", "/forces/robot.moving", {"value": False, "seconds": 60, "reason": WHY})
     act("DELETE", "/forces/robot.moving")
 
@@ -243,22 +243,22 @@ def ways_back(act: Acts) -> None:
     act("POST", "/corrections/undo", {"revision": revision, "reason": WHY})
     pose = act("GET", "/state")["variables"]["robot.pose"]["value"]
     there = "home" if pose == "above_engine" else "above_engine"
-    offer = act("POST", "/errands/goal-preview", {"predicate": f"robot.pose == {there}"})
+    offer = act("POST", "/operator-plans/goal-preview", {"predicate": f"robot.pose == {there}"})
     steps = [each["ability"] for each in offer["errand"]["steps"]]
-    act("POST", "/errands", {"offer": offer["id"], "reason": WHY, "starts": steps})
-    act("POST", "/errands/stop", {})
+    act("POST", "/operator-plans", {"offer": offer["id"], "reason": WHY, "starts": steps})
+    act("POST", "/operator-plans/stop", {})
     act.wait(lambda: act("GET", "/station")["errand"] is None)
     act("POST", "/restart/leave", {})
     act("PUT", "/mode", {"mode": "paused"})
     abilities = act("GET", "/abilities")["abilities"]
     startable = [name for name, each in abilities.items() if each["enabled"] and not each["human"]]
-    act("POST", "/trials", {"ability": startable[0]})
+    act("POST", "/test-runs", {"ability": startable[0]})
     act.wait(lambda: act("GET", "/station")["errand"] is None)
 
 
 def orders(act: Acts, number: int) -> None:
     """An order is given, changed, started and cancelled."""
-    act("PUT", "/work-by-order", {"on": True, "reason": WHY})
+    act("PUT", "/settings/job-mode", {"on": True, "reason": WHY})
     asked = {"work_master": "truck_engine", "start": False}
     order = act("POST", "/job-orders", asked, headers={"Idempotency-Key": f"order-{number}"})
     address = f"/job-orders/{order['id']}"
@@ -266,7 +266,7 @@ def orders(act: Acts, number: int) -> None:
     act("PUT", address, {"work_master": "truck_engine", "priority": 3}, headers=revision)
     for one in ("Start", "RevokeStart", "Cancel"):
         act("POST", f"{address}/commands", {"command": one, "reason": WHY})
-    act("PUT", "/work-by-order", {"on": False, "reason": WHY})
+    act("PUT", "/settings/job-mode", {"on": False, "reason": WHY})
 
 
 def drafting(act: Acts, number: int) -> None:

@@ -51,7 +51,7 @@ test('the pages of a station at work', async ({ browser }) => {
 	try {
 		const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
 		const page = await context.newPage();
-		for (const address of ['/', '/restart', '/state', '/alarms', '/history', '/ros', '/watch']) {
+		for (const address of ['/', '/restart', '/state', '/alarms', '/history', '/ros', '/operator']) {
 			const fresh = await browser.newContext();
 			const visited = await fresh.newPage();
 			const kilobytes = await scriptsOf(visited, async () => {

@@ -83,7 +83,7 @@ test('the screens of engineers', async ({ operate, watch, browse }) => {
 	await restsOnPerson(operate, watch);
 	for (const [name, address, settled] of [
 		['model', '/model?entry=resources%2Frobot.yaml%23abilities%23move_to_position', '[role="tree"]'],
-		['ability', '/ability?name=robot.move_to_position(home)', '[data-testid="automaton"]'],
+		['ability', '/abilities?name=robot.move_to_position(home)', '[data-testid="automaton"]'],
 		['pipelines', '/pipelines?of=%2Fur10%2Fstate', '.svelte-flow__node'],
 		['station', '/station?thing=operation%3Aprepare_planning_scene', '[data-tied="near"]'],
 		['check', '/check', '[data-testid="check"][data-verdict="good"]'],

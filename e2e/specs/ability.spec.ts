@@ -4,7 +4,7 @@ import { acknowledge, picture, restsOnPerson, takeControl, variable } from '../s
 import { ADA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
-const address = (ability: string): string => `/ability?${new URLSearchParams({ name: ability })}`;
+const address = (ability: string): string => `/abilities?${new URLSearchParams({ name: ability })}`;
 const moveTo = (pose: string): string => `robot.move_to_position(${pose})`;
 const region = (page: Page, name: string): Locator => page.getByRole('region', { name, exact: true });
 const phase = (page: Page): Locator => page.getByTestId('phase');
@@ -86,7 +86,7 @@ test.describe('a station that works', () => {
 			await expect(press(operate)).toHaveAttribute('aria-disabled', 'true');
 			const problem = await operate.evaluate(async (ability) => {
 				const headers = { 'Content-Type': 'application/json' };
-				const answer = await fetch('/api/v1/trials', { method: 'POST', headers, body: JSON.stringify({ ability }) });
+				const answer = await fetch('/api/v1/test-runs', { method: 'POST', headers, body: JSON.stringify({ ability }) });
 				return { status: answer.status, ...((await answer.json()) as { type: string; detail: string }) };
 			}, moveTo(pair));
 			expect(problem).toMatchObject({ status: 409, type: '/problems/not-startable' });

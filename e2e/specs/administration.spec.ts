@@ -7,7 +7,7 @@ import { expect, test } from '../station/test.ts';
 test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
 
 test('a key is made, its secret is shown once, it gets another, and revoked it opens nothing', async ({ browse, station }) => {
-	const ada = await browse(ADA, '/keys');
+	const ada = await browse(ADA, '/api-keys');
 	const read = async (secret: string): Promise<number> =>
 		(await fetch(`${station.url}/api/v1/state`, { headers: { Authorization: `Bearer ${secret}` } })).status;
 	await ada.getByLabel('Name of the system that uses it').fill('Dashboard');
@@ -94,7 +94,7 @@ test('what is kept is told, and is archived by keyboard', async ({ browse }) => 
 });
 
 test('sign-in and account are free of barriers, on every screen and in both themes', async ({ browse }) => {
-	const door = await browse(null, '/sign-in?to=/people');
+	const door = await browse(null, '/sign-in?to=/users');
 	await door.getByRole('button', { name: 'Sign in' }).click();
 	await expect(door.getByText('Enter your password.').last()).toBeVisible();
 	await examine(door, 'sign-in');

@@ -23,14 +23,14 @@ test('a new station becomes somebody’s by its link, once, who then lets others
 	const make = ada.getByRole('button', { name: 'Make the administrator' });
 
 	await test.step('without the link it says where to find it, and offers no demonstration', async () => {
-		await expect(ada).toHaveURL('/first-start');
+		await expect(ada).toHaveURL('/setup');
 		await expect(ada.getByText('Open the link that the station showed on its terminal')).toBeVisible();
 		await expect(ada.getByRole('button', { name: /demonstration/ })).toHaveCount(0);
 		expect(await post(ada, 'session/demonstration', {})).toBe(403);
 	});
 
 	await test.step('a link that somebody made up is refused in words', async () => {
-		await ada.goto(`/first-start#${'a'.repeat(43)}`);
+		await ada.goto(`/setup#${'a'.repeat(43)}`);
 		await ada.getByLabel('Name').fill(ADA.name);
 		await ada.getByLabel('Password', { exact: true }).fill(ADA.password);
 		await make.click();
@@ -46,7 +46,7 @@ test('a new station becomes somebody’s by its link, once, who then lets others
 		ada.on('request', (request) => asked.push(request.url()));
 		await ada.goto(link);
 		await expect(make).toBeVisible();
-		await expect(ada).toHaveURL('/first-start');
+		await expect(ada).toHaveURL('/setup');
 		await ada.getByLabel('Name').fill(ADA.name);
 		await ada.getByLabel('Password', { exact: true }).fill('Ada');
 		await make.click();
@@ -68,11 +68,11 @@ test('a new station becomes somebody’s by its link, once, who then lets others
 		await expect(again.getByText('This station has an administrator already')).toBeVisible();
 		await expect(again.getByLabel('Name')).toHaveCount(0);
 		const body = { token, name: 'Mallory', password: 'four stolen lanterns' };
-		expect(await post(again, 'first-administrator', body)).toBe(403);
+		expect(await post(again, 'setup', body)).toBe(403);
 	});
 
 	const temporary = await test.step('the administrator adds a person, and hands a password over once', async () => {
-		await ada.goto('/people');
+		await ada.goto('/users');
 		await ada.getByLabel('Name').fill(EVA.name);
 		await ada.getByLabel('Role').selectOption('operator');
 		const password = await ada.getByLabel('Temporary password').inputValue();
@@ -90,7 +90,7 @@ test('a new station becomes somebody’s by its link, once, who then lets others
 		await signIn(eva, EVA.name, temporary);
 		await expect(eva.getByText('Choose a password of your own first.')).toBeVisible();
 		await expect(eva.getByTestId('strip')).toHaveCount(0);
-		for (const address of ['/', '/journal', '/watch']) {
+		for (const address of ['/', '/journal', '/operator']) {
 			await eva.goto(address);
 			await expect(eva).toHaveURL('/account');
 			await expect(eva.getByTestId('strip')).toHaveCount(0);
@@ -100,7 +100,7 @@ test('a new station becomes somebody’s by its link, once, who then lets others
 				const headers = { 'Content-Type': 'application/json' };
 				const answers = await Promise.all([
 					fetch('/api/v1/state'),
-					fetch('/api/v1/control', { method: 'PUT', headers, body: '{"over":null}' })
+					fetch('/api/v1/control-lock', { method: 'PUT', headers, body: '{"over":null}' })
 				]);
 				return answers.map(({ status }) => status);
 			})

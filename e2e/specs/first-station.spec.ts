@@ -71,6 +71,6 @@ for (const [how, hand] of HANDS)
 		const page = await browse(ERIK, '/model');
 		const builder = new Builder(page, hand(page));
 		await build(builder, () => mistakes(builder));
-		await run(builder, await browse(EVA, '/watch', WRIST), model);
+		await run(builder, await browse(EVA, '/operator', WRIST), model);
 		expect(complaints).toEqual([]);
 	});

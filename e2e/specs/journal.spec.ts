@@ -14,8 +14,8 @@ test('a bolt pair is tightened with a paired watch, and the journal names who di
 	operate,
 	station
 }) => {
-	const watches = await browse(EVA, '/watches');
-	const watch = await browse(null, '/watch', WRIST);
+	const watches = await browse(EVA, '/wearables');
+	const watch = await browse(null, '/operator', WRIST);
 	await startProduction(operate);
 
 	const code = await test.step('a device becomes a watch with a code, once somebody has confirmed it', async () => {
@@ -32,7 +32,7 @@ test('a bolt pair is tightened with a paired watch, and the journal names who di
 	});
 
 	await test.step('no other device becomes one with the same code', async () => {
-		const other = await browse(null, '/watch', WRIST);
+		const other = await browse(null, '/operator', WRIST);
 		await typeCode(other, code);
 		await expect(other.getByRole('alert')).toContainText('This code does not work');
 		await expect(other.getByRole('heading', { name: 'Pair this watch' })).toBeVisible();

@@ -200,7 +200,7 @@ async function believe({ restart, station }: Place, name: string, value: string)
 /** Somebody takes a resource out of service. */
 async function takeOut({ restart, station }: Place, resource: string): Promise<void> {
 	const data = { in_service: false, reason: 'it squeaks' };
-	const answer = await restart.request.put(`${station.url}/api/v1/service/resource/${resource}`, { data });
+	const answer = await restart.request.put(`${station.url}/api/v1/availability/resource/${resource}`, { data });
 	expect(answer.ok(), await answer.text()).toBe(true);
 }
 

@@ -13,7 +13,7 @@ const SCREENS = [
 /** Where text of twice the size must fit: on 320 pixels it would be that of a page enlarged eight times. */
 const ENLARGED = SCREENS.filter(([width]) => width > 320);
 
-const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/ros', '/station', '/pipelines', '/account', '/journal', '/watches', '/people', '/keys', '/webhooks', '/backups', '/storage'];
+const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/ros', '/station', '/pipelines', '/account', '/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
 
 /** Doubles the size of all text. */
 async function enlarge(page: Page): Promise<void> {

@@ -54,8 +54,8 @@ test('signing out leaves nothing of the station in sight, neither by Back nor in
 	const eva = await browse(EVA, '/');
 	await expect(eva.getByText(STATION).first()).toBeVisible();
 	const other = await eva.context().newPage();
-	await other.goto('/watches');
-	await expect(other.getByRole('heading', { name: 'Watches', exact: true })).toBeVisible();
+	await other.goto('/wearables');
+	await expect(other.getByRole('heading', { name: 'Wearables', exact: true })).toBeVisible();
 	await eva.getByTestId('who').click();
 	await eva.getByRole('link', { name: 'Journal' }).click();
 	await expect(eva.getByRole('heading', { name: 'Journal' })).toBeVisible();
@@ -80,7 +80,7 @@ test('a server that starts again does not sign anybody out @long', async ({ brow
 });
 
 test('an administrator signs somebody out, and that page is left within 2 s', async ({ browse }) => {
-	const [ada, adam] = [await browse(ADA, '/people'), await browse(ADAM, '/')];
+	const [ada, adam] = [await browse(ADA, '/users'), await browse(ADAM, '/')];
 	await expect(adam.getByText(STATION).first()).toBeVisible();
 	await ada.reload();
 	await ada.getByRole('button', { name: 'Sign out everywhere: Adam' }).click();
@@ -104,9 +104,9 @@ test('a viewer looks on and finds nothing to press that acts', async ({ browse }
 	await expect(vera.getByRole('link', { name: 'Account' })).toBeVisible();
 	for (const [title, role] of [
 		['Journal', 'operator'],
-		['Watches', 'operator'],
-		['People', 'administrator'],
-		['Keys', 'administrator']
+		['Wearables', 'operator'],
+		['Users', 'administrator'],
+		['API keys', 'administrator']
 	] as const) {
 		await expect(vera.getByRole('link', { name: title })).toHaveCount(0);
 		await vera.goto(`/${title.toLowerCase()}`);

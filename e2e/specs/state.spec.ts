@@ -33,7 +33,7 @@ async function seize(page: Page): Promise<void> {
 		const { control } = (await (await fetch('/api/v1/station')).json()) as { control: { session: string } | null };
 		return control?.session ?? null;
 	});
-	await ask(page, 'PUT', 'control', { over, reason: 'It is my turn' });
+	await ask(page, 'PUT', 'control-lock', { over, reason: 'It is my turn' });
 	await expect(page.getByTestId('control')).toHaveAttribute('data-holder', 'you');
 }
 

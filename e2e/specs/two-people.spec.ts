@@ -82,7 +82,7 @@ test('who signs in with the provider comes to the page that was asked for, and s
 	await expect(otto).toHaveURL(`${station.url}/sign-in`);
 	await expect(otto.getByRole('button', { name: 'Sign in with Works ID' })).toBeVisible();
 
-	const ada = await browse(ADA, '/people');
+	const ada = await browse(ADA, '/users');
 	await examine(ada, 'people-provided');
 	const row = ada.locator('[data-person="Otto"]');
 	await expect(row).toContainText('signs in with http');

@@ -93,7 +93,7 @@ test('the watch can be installed, opens without the server, and what it sends la
 	browse,
 	operate
 }) => {
-	const watch = await browse(null, '/watch', WRIST);
+	const watch = await browse(null, '/operator', WRIST);
 	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
 	// A watch has a slow radio: all the page's scripts, as they are sent.
 	const sent = await watch.evaluate(() =>
@@ -142,7 +142,7 @@ test.describe('whose browser reads Swedish', () => {
 	test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
 
 	test('reads the watch and the sign-in so, and the language that is chosen is kept', async ({ browse }) => {
-		const watch = await browse(null, '/watch', { ...WRIST, locale: 'sv-SE' });
+		const watch = await browse(null, '/operator', { ...WRIST, locale: 'sv-SE' });
 		await expect(watch.getByRole('heading', { name: 'Para ihop klockan' })).toBeVisible();
 		expect(await outsideCircle(watch)).toEqual([]);
 		await picture(watch, 'watch-swedish');

@@ -15,7 +15,7 @@ const group = (page: Page, name: 'nobody' | 'others') => page.getByTestId('who-c
 async function order(page: Page, url: string): Promise<void> {
 	const headers = { 'Idempotency-Key': 'one' };
 	await expect(async () => {
-		const byOrder = await page.request.put(`${url}/api/v1/work-by-order`, { data: { on: true, reason: 'a test' } });
+		const byOrder = await page.request.put(`${url}/api/v1/settings/job-mode`, { data: { on: true, reason: 'a test' } });
 		expect(byOrder.ok(), await byOrder.text()).toBe(true);
 	}).toPass(); // a controller on a busy machine can be late
 	const data = { id: '4711', work_master: 'engine', start: true };
@@ -49,7 +49,7 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	const restart = await browse(null, '/restart');
 	await expect(restart.getByTestId('who-can')).toContainText(`${ROBOT} is not heard.`);
 	await picture(restart, 'who-can-restart');
-	const watch = await browse(null, '/watch', WRIST);
+	const watch = await browse(null, '/operator', WRIST);
 	await expect(watch.getByText(`No contact: ${ROBOT}`)).toBeVisible();
 	expect(await outsideCircle(watch)).toEqual([]);
 	expect(await findings(watch)).toEqual([]);

@@ -82,7 +82,7 @@ export async function tryAlone(builder: Builder): Promise<void> {
 	await hand.press(page.getByTestId('strip').getByRole('button', { name: 'Pause' }));
 	await expect(page.getByRole('button', { name: 'Take control' })).toHaveCount(0);
 	await hand.press(page.getByRole('button', { name: 'Start production' }));
-	await goTo(builder, 'Ability');
+	await goTo(builder, 'Abilities');
 	await picture(page, 'first-ability-list');
 	await hand.press(page.getByRole('navigation', { name: 'Abilities' }).getByRole('link', { name: 'Move to above' }));
 	await hand.press(page.getByRole('region', { name: 'Try it' }).getByRole('button', { name: 'Try it' }));

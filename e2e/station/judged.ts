@@ -42,8 +42,8 @@ export class Judged {
 	async #heard(response: Response): Promise<void> {
 		const { pathname } = new URL(response.url());
 		if (!response.ok()) return;
-		if (pathname.endsWith('/errands')) this.#errand = pathname;
-		if (!pathname.endsWith('/advice')) return;
+		if (pathname.endsWith('/operator-plans')) this.#errand = pathname;
+		if (!pathname.endsWith('/recovery/proposals')) return;
 		const { offers } = (await response.json()) as Advice;
 		for (const [number, offer] of offers.entries()) {
 			if (!this.proposed.includes(offer.title)) this.proposed.push(offer.title);

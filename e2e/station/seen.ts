@@ -75,7 +75,7 @@ export async function signOut(page: Page): Promise<void> {
 
 /** On the page Watches: offers to pair a watch; the code. */
 export async function offerWatch(watches: Page, name: string): Promise<string> {
-	await watches.getByLabel('What the watch is called').fill(name);
+	await watches.getByLabel('Name of the wearable').fill(name);
 	await watches.getByRole('button', { name: 'Get a code' }).click();
 	return (await watches.getByTestId('code').innerText()).replaceAll(/\D/g, '');
 }

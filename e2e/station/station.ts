@@ -158,7 +158,7 @@ export class Station {
 		if (others.length === 0) return;
 		const cookie = await this.signIn(first);
 		for (const person of others) {
-			await this.#ask('POST', 'people', { ...person, password: given(person.password) }, cookie);
+			await this.#ask('POST', 'users', { ...person, password: given(person.password) }, cookie);
 			await this.#chooses(person);
 		}
 	}
@@ -166,7 +166,7 @@ export class Station {
 	/** Makes somebody who can sign in, as who sits at the machine does. */
 	async add(person: Person): Promise<void> {
 		const { name, role, password } = person;
-		const args = ['people', 'add', name, '--role', role, this.model];
+		const args = ['users', 'add', name, '--role', role, this.model];
 		const input = `${given(password)}\n`;
 		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, input, encoding: 'utf8' });
 		if (ended.status !== 0) throw new Error(`${args.join(' ')}: ${ended.stderr}`);
@@ -181,7 +181,7 @@ export class Station {
 
 	/** The first-start link, as it is shown to who sits at the machine. */
 	link(): string {
-		const args = ['people', 'link', this.model, '--url', this.url];
+		const args = ['users', 'setup-link', this.model, '--url', this.url];
 		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, encoding: 'utf8' });
 		const [link] = /https?:\S+#\S+/.exec(ended.stdout) ?? [];
 		if (link === undefined) throw new Error(`${args.join(' ')}: ${ended.stdout}${ended.stderr}`);

@@ -119,7 +119,7 @@ export const test = base.extend<Given, { bench: Bench }>({
 		await Promise.all(contexts.map((context) => context.close()));
 	},
 	watch: async ({ browse, byItself }, use) => {
-		const page = await browse(byItself ? null : EVA, '/watch', WRIST);
+		const page = await browse(byItself ? null : EVA, '/operator', WRIST);
 		await expect(page).toHaveTitle(/^Watch · /); // until it is known who looks on, a page has no name
 		await expect(page.getByRole('heading')).toBeVisible();
 		await expect(page.getByTestId('not-live')).toBeHidden();

@@ -20,7 +20,7 @@ class Person:
     def begin(self) -> None:
         """Start production. Raises TimeoutError."""
         self._client.post("session/demonstration", json={}).raise_for_status()
-        self._client.put("control", json={"over": None}).raise_for_status()
+        self._client.put("control-lock", json={"over": None}).raise_for_status()
         end = time.monotonic() + _PATIENCE
         while not self._client.post("production/start", json={}).is_success:
             if time.monotonic() > end:

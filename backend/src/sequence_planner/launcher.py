@@ -70,7 +70,7 @@ def health(endpoint: Endpoint) -> int | None:
 
 def announced(endpoint: Endpoint, model: Path) -> str:
     """Say where the station in the folder `model` is opened."""
-    return f"{model} runs: open {endpoint.address} (operator's watch: {endpoint.address}/watch)"
+    return f"{model} runs: open {endpoint.address} (operator's view: {endpoint.address}/operator)"
 
 
 # One command starts all processes of a station, and sees to it that they live.
@@ -281,7 +281,7 @@ class _Launcher:
         endpoint, model = self._request.endpoint, self._request.model
         try:
             how = first_start(model, self._url, endpoint, at_terminal=sys.stdout.isatty())
-        except (SettingsError, OSError) as error:  # it can still be asked for with `people link`
+        except (SettingsError, OSError) as error:  # it can still be asked for with `users setup-link`
             how = str(error)
         if how is not None:
             say(how)

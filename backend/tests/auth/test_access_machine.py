@@ -147,7 +147,7 @@ class Access(RuleBasedStateMachine):
             with self.database.writing() as connection:
                 secret, key = api_keys.rotate_key(connection, id, overlap, days, ADA, self.now)
         except IdentityRefused as refused:
-            assert refused.slug in ("key-over", "no-key")
+            assert refused.slug in ("key-expired", "no-key")
             assert secrets[-1].ends <= self.now
             return
         assert secrets[-1].ends > self.now
@@ -172,7 +172,7 @@ class Access(RuleBasedStateMachine):
             with self.database.writing() as connection:
                 code, made = pairing.offer(connection, f"Watch {which}", "operator", ADA, self.now)
         except IdentityRefused as refused:
-            assert refused.slug in ("watch-exists", "too-many-offers")
+            assert refused.slug in ("wearable-exists", "too-many-offers")
             return
         assert made.expires == self.now + 2 * MINUTE
         self.codes[code] = made.expires
@@ -196,7 +196,7 @@ class Access(RuleBasedStateMachine):
     def a_watch_is_let_in_or_revoked(self, which: int, revoked: bool) -> None:
         watch = list(self.watches.values())[which % len(self.watches)]
         if revoked:
-            self._revoke(watch, watches.revoke, "no-watch")
+            self._revoke(watch, watches.revoke, "no-wearable")
             return
         good = watch.ends > self.now and not watch.confirmed
         try:

@@ -52,7 +52,7 @@ def test_a_link_works_once(database: Database) -> None:
     token = new_token(database)
     assert isinstance(use(database, token), Person)
     assert not usable(database, token)
-    assert use(database, token, "Adam") == "403 link-unusable"
+    assert use(database, token, "Adam") == "403 setup-link-invalid"
 
 
 @BOTH
@@ -60,27 +60,27 @@ def test_a_link_works_once_also_for_two_at_once(database: Database) -> None:
     token = new_token(database)
     with ThreadPoolExecutor(4) as pool:
         answers = list(pool.map(lambda number: use(database, token, f"Eva {number}"), range(8)))
-    assert answers.count("403 link-unusable") == 7
+    assert answers.count("403 setup-link-invalid") == 7
 
 
 def test_a_link_works_for_a_quarter_of_an_hour(database: Database) -> None:
     token = new_token(database)
     assert usable(database, token, NOW + 899)
     assert not usable(database, token, NOW + 900)
-    assert use(database, token, now=NOW + 900) == "403 link-unusable"
+    assert use(database, token, now=NOW + 900) == "403 setup-link-invalid"
 
 
 def test_a_new_link_replaces_the_one_before(database: Database) -> None:
     before, token = new_token(database), new_token(database)
-    assert use(database, before) == "403 link-unusable"
+    assert use(database, before) == "403 setup-link-invalid"
     assert isinstance(use(database, token), Person)
 
 
 @pytest.mark.parametrize("token", ["", "x", "\ud800", "A" * 43])
 def test_what_is_no_link(database: Database, token: str) -> None:
-    assert use(database, token) == "403 link-unusable"
+    assert use(database, token) == "403 setup-link-invalid"
     new_token(database)
-    assert use(database, token) == "403 link-unusable"
+    assert use(database, token) == "403 setup-link-invalid"
 
 
 def test_no_link_while_there_is_an_administrator(database: Database) -> None:
@@ -89,7 +89,7 @@ def test_no_link_while_there_is_an_administrator(database: Database) -> None:
     assert usable(database, token)
     add(database, "Ada", Role.ADMINISTRATOR)
     assert not usable(database, token)
-    assert use(database, token) == "403 link-unusable"
+    assert use(database, token) == "403 setup-link-invalid"
     with pytest.raises(IdentityRefused) as refused:
         new_token(database)
     assert (refused.value.slug, refused.value.status) == ("administrator-exists", 409)
@@ -99,7 +99,7 @@ def test_a_name_that_may_not_be_uses_nothing_up(database: Database) -> None:
     token = new_token(database)
     add(database, "Adam")
     assert use(database, token, "adam") == "409 name-taken"
-    assert use(database, token, "\u202e") == "422 unfit-name"
+    assert use(database, token, "\u202e") == "422 invalid-name"
     assert isinstance(use(database, token), Person)
     with database.reading() as connection:
         assert len(users.everybody(connection)) == 2

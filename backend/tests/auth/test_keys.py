@@ -90,10 +90,10 @@ def test_what_is_no_key_is_not_revoked(database: Database, id: str) -> None:
 @pytest.mark.parametrize(
     ("name", "scopes", "days", "slug"),
     [
-        ("", {Scope.READ}, 1, "unfit-name"),
+        ("", {Scope.READ}, 1, "invalid-name"),
         ("MES", set(), 1, "no-scope"),
-        ("MES", {Scope.READ}, 0, "unfit-days"),
-        ("MES", {Scope.READ}, 731, "unfit-days"),
+        ("MES", {Scope.READ}, 0, "invalid-days"),
+        ("MES", {Scope.READ}, 731, "invalid-days"),
     ],
 )
 def test_keys_that_cannot_be(database: Database, name: str, scopes: set[Scope], days: int, slug: str) -> None:

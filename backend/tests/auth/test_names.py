@@ -15,7 +15,7 @@ def usable(text: str) -> str | None:
     try:
         return clean_name(text)
     except IdentityRefused as refused:
-        assert (refused.slug, refused.status) == ("unfit-name", 422)
+        assert (refused.slug, refused.status) == ("invalid-name", 422)
         return None
 
 

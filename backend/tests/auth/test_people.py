@@ -75,7 +75,7 @@ def test_what_is_no_id_finds_nobody(database: Database, id: str) -> None:
         assert users.find(connection, id) is None
     with pytest.raises(IdentityRefused) as refused, database.writing() as connection:
         users.change(connection, id, 1, ADA, NOW, role=Role.VIEWER)
-    assert (refused.value.slug, refused.value.status) == ("no-person", 404)
+    assert (refused.value.slug, refused.value.status) == ("no-user", 404)
 
 
 @BOTH
@@ -100,7 +100,7 @@ def test_what_changes_nothing_is_no_change(database: Database) -> None:
 @pytest.mark.parametrize("revision", [0, 2, -1, 10**30])
 def test_of_two_who_change_a_person_the_second_notices(database: Database, revision: int) -> None:
     eva = add(database, "Eva")
-    assert change(database, eva.model_copy(update={"revision": revision}), disabled=True) == "412 person-changed"
+    assert change(database, eva.model_copy(update={"revision": revision}), disabled=True) == "412 user-changed"
     assert now_known(database, eva) == eva
 
 

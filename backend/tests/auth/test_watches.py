@@ -147,16 +147,16 @@ def test_a_watch_that_nobody_lets_in_is_gone_after_two_minutes(database: Databas
     assert found(database, token, NOW + 119) is not None
     assert found(database, token, NOW + 120) is None
     assert states(database, NOW + 120) == []
-    assert confirm(database, watch.id, NOW + 120) == "404 no-watch"
+    assert confirm(database, watch.id, NOW + 120) == "404 no-wearable"
     offer(database, now=NOW + 120)
 
 
 def test_a_watch_is_let_in_once(database: Database) -> None:
     _, watch = waiting(database)
     assert isinstance(confirm(database, watch.id), Watch)
-    assert confirm(database, watch.id) == "409 watch-not-waiting"
+    assert confirm(database, watch.id) == "409 wearable-not-waiting"
     for id in ("", "0" * 16, "\0", "\ud800"):
-        assert confirm(database, id) == "404 no-watch"
+        assert confirm(database, id) == "404 no-wearable"
 
 
 @pytest.mark.parametrize("confirmed", [False, True])
@@ -170,7 +170,7 @@ def test_a_watch_is_revoked_at_once_and_for_good(database: Database, confirmed: 
             watches.revoke(connection, watch.id, ADA, NOW)
     assert found(database, token) is None
     assert found(database, other) is not None
-    assert confirm(database, watch.id) == "409 watch-not-waiting"
+    assert confirm(database, watch.id) == "409 wearable-not-waiting"
     assert len(entries(database, "watch-revoked")) == 1
 
 
@@ -179,7 +179,7 @@ def test_no_two_watches_of_one_name(database: Database) -> None:
     def refused(name: str) -> bool:
         with pytest.raises(IdentityRefused) as answer:
             offer(database, name)
-        return (answer.value.slug, answer.value.status) == ("watch-exists", 409)
+        return (answer.value.slug, answer.value.status) == ("wearable-exists", 409)
 
     _, made = offer(database)
     assert refused("watch 1 ")

@@ -72,7 +72,7 @@ def test_who_waits_too_long_is_told_so_and_the_next_is_answered() -> None:
         for each in late:
             with pytest.raises(CommandRefused) as refused:
                 await each
-            assert (refused.value.slug, refused.value.status) == ("adviser-late", 504)
+            assert (refused.value.slug, refused.value.status) == ("advisor-timeout", 504)
         assert time.monotonic() - began < 1
         os.kill(process.pid, signal.SIGCONT)
         assert (await adviser.answer(fetching(), 20)).verdict is Verdict.FOUND
@@ -91,7 +91,7 @@ def test_one_that_is_killed_is_replaced_and_who_asked_is_told() -> None:
         process.kill()
         with pytest.raises(CommandRefused, match="Nothing was changed by asking") as refused:
             await asking
-        assert (refused.value.slug, refused.value.status) == ("adviser-away", 503)
+        assert (refused.value.slug, refused.value.status) == ("advisor-unavailable", 503)
         await until(lambda: [each.pid for each in processes()] not in ([], [process.pid]))
         assert (await adviser.answer(fetching(), 20)).verdict is Verdict.FOUND
 

@@ -236,7 +236,7 @@ def test_who_asks_is_in_control_and_stays_it(cell: Cell) -> None:
 def test_it_holds_in_one_state_alone(cell: Cell) -> None:
     request, revision = cell.ask(FULL), cell.revision
     old = RequestApproval(actor=EVA, act=FULL, revision=revision - 1, reason=WHY)
-    assert cell.refusal(old) == "state-moved"
+    assert cell.refusal(old) == "stale-revision"
     cell.tick("out")
     assert cell.revision > revision
     assert cell.refusal(cell.approve(request, FULL)) == "request-gone"
@@ -248,7 +248,7 @@ def test_who_approves_says_what_and_in_which_state(cell: Cell) -> None:
     for other in (CorrectionAct(values={PART: "empty"}), CorrectionAct(values={PART: "full", OTHER: "full"}), MOVES):
         assert cell.refusal(cell.approve(request, other)) == "not-confirmed"
     stale = cell.approve(request, FULL).model_copy(update={"revision": cell.revision - 1})
-    assert cell.refusal(stale) == "state-moved"
+    assert cell.refusal(stale) == "stale-revision"
     assert cell.refusal(cell.approve("another", FULL)) == "request-gone"
 
 
@@ -258,7 +258,7 @@ def test_what_could_not_be_done_is_not_asked_for(cell: Cell) -> None:
         (CorrectionAct(values={"parts[none]": "full"}), "unknown-variable"),
         (CorrectionAct(values={MOVING: True}), "not-estimated"),
         (ForceAct(name=PART, value="full", seconds=1), "not-forceable"),
-        (OutputsAct(values={GOTO: "home"}), "nothing-to-decide"),
+        (OutputsAct(values={GOTO: "home"}), "nothing-to-confirm"),
         (ForceAct(name="arm.pose", value="home", seconds=1), "no-approval-needed"),
     ):
         asking = RequestApproval(actor=EVA, act=act, revision=cell.revision, reason=WHY)

@@ -155,7 +155,7 @@ def test_production_is_not_started_beside_another_commander() -> None:
         other.advertise(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE)
         with pytest.raises(CommandRefused, match="/other also publishes /arm/command") as refused:
             await on.start()
-        assert refused.value.slug == "other-commander"
+        assert refused.value.slug == "other-controller"
         other.close()
         await on.start()
         assert on.controller.execution.production is Production.STARTED

@@ -106,7 +106,7 @@ def test_a_plan_that_nobody_can_make_now_leaves_the_rest() -> None:
 
     class Away:
         async def answer(self, request: PlanRequest, deadline: float) -> object:
-            raise CommandRefused("adviser-away", "There is no adviser", "It is started again.", 503)
+            raise CommandRefused("advisor-unavailable", "There is no adviser", "It is started again.", 503)
 
     station.corrections._previewing._adviser = Away()  # type: ignore[assignment]
     shown = preview(station)
@@ -171,7 +171,7 @@ def test_no_undo_of_another_correction_than_the_one_that_was_seen() -> None:
     assert seen is not None
     station.correct({BOLT: "tightened"})
     undo = UndoCorrection(actor=ADAM, revision=seen.revision, reason="it is not placed")
-    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "state-moved"
+    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "stale-revision"
     assert station.execution.state[BOLT] == "tightened"
 
 
@@ -182,11 +182,11 @@ def test_no_undo_over_what_has_happened_since() -> None:
     assert station.corrections.last is not None
     assert not station.corrections.last.undoable
     undo = UndoCorrection(actor=EVA, revision=station.corrections.last.revision, reason="not so")
-    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "state-moved"
+    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "stale-revision"
     assert station.execution.state[BOLT] == "tightened"
     station.execution.correct({BOLT: "placed"}, "Adam", "another one is placed", station.now)
     assert not station.corrections.last.undoable
-    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "state-moved"
+    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "stale-revision"
     assert station.execution.state[BOLT] == "placed", "that is not what was corrected, though it looks the same"
 
 
@@ -213,7 +213,7 @@ def test_a_correction_of_what_has_moved_is_refused() -> None:
     station = in_restart(Station())
     seen = preview(station).revision
     station.tick(robot__pose="unknown")
-    assert refusal(lambda: station.correct({BOLT: "placed"}, seen)) == "state-moved"
+    assert refusal(lambda: station.correct({BOLT: "placed"}, seen)) == "stale-revision"
     assert station.execution.state[BOLT] == "empty"
 
 
@@ -234,13 +234,13 @@ def test_corrections_are_for_restart_mode_once_production_is_started(mode: Mode)
 def test_nothing_is_corrected_under_an_errand() -> None:
     station = in_restart(Station())
     station.execution.take_errand(OperatorPlan(ErrandKind.GOAL, "go home", Plan((), True, True)), station.now)
-    assert refusal(lambda: station.correct({BOLT: "placed"})) == "errand-under-way"
+    assert refusal(lambda: station.correct({BOLT: "placed"})) == "plan-running"
 
 
 def test_confirming_is_for_what_was_seen() -> None:
     station = Station()
     wrong = ConfirmEstimates(actor=EVA, reason=WHY, values={BOLT: "placed"})
-    assert refusal(lambda: station.corrections.carry_out(wrong, station.now)) == "state-moved"
+    assert refusal(lambda: station.corrections.carry_out(wrong, station.now)) == "stale-revision"
     right = ConfirmEstimates(actor=EVA, reason=WHY, values={BOLT: "empty"})
     station.corrections.carry_out(right, station.now)
     assert station.beliefs.of(BOLT).writer == "Eva"

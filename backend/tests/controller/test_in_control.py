@@ -93,7 +93,7 @@ def test_control_is_taken_over_knowingly_and_seen() -> None:
     async def scenario(on: Bench) -> None:
         await on.controller.command(TakeControl(actor=EVA))
         moved = await refusal(on, TakeControl(actor=ADAM))
-        assert (moved.slug, moved.status) == ("control-moved", 409)
+        assert (moved.slug, moved.status) == ("control-changed", 409)
         assert "Eva" in moved.detail
         await on.controller.command(TakeControl(actor=ADAM, over=EVA.session))
         control = on.controller.view().control

@@ -54,7 +54,7 @@ def test_a_station_that_works_freely_is_active_wherever_it_can() -> None:
     on.execution.start_production()
     on.tick()
     assert on.execution.active == {"fill_it", "check_it", "pack_it", "sweep"}
-    with refused("not-by-order"):
+    with refused("not-in-job-mode"):
         on.take("a", "bottle")
     on.by_order()
     on.tick()
@@ -308,7 +308,7 @@ def test_the_order_between_jobs_is_kept_as_long_as_both_are_there(on: Bench) -> 
     assert on.execution.active == {"fill_it", "sweep"}
     on.sequence(("b/pack_it", "a/check_it"), ("a/label_it", "a/check_it"), ("a/label_it", "a/fill_it"))
     assert on.jobs["a"].steps["label_it"].waits_for == ["check_it", "fill_it"]
-    with refused("jobs-in-circle") as circle:
+    with refused("cyclic-order") as circle:
         on.sequence(("b/pack_it", "a/check_it"), ("a/fill_it", "b/pack_it"))
     assert circle.value.status == 422
     assert "a/fill_it" in circle.value.detail

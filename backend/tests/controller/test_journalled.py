@@ -102,7 +102,7 @@ def test_after_a_start_nothing_is_published_and_a_person_decides_where_devices_w
                 await on.controller.command(TakeControl(actor=EVA))
                 with pytest.raises(CommandRefused) as refused:
                     await on.start()
-                assert refused.value.slug == "outputs-undecided"
+                assert refused.value.slug == "outputs-unconfirmed"
                 await asyncio.sleep(0.5)
                 assert arm.commands == []
                 await on.controller.command(

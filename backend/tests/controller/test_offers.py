@@ -142,9 +142,9 @@ def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> 
             assert offer.errand is not None
             assert [(step.ability, step.tick) for step in offer.errand.steps] == [("go", 1)]
             assert (offer.kind, offer.needs_restart, offer.ends) == ("goal", False, "at == work and not loaded")
-            assert offer.obstacle == refused("production-waiting", lambda: there.take(offer))
+            assert offer.obstacle == refused("production-not-started", lambda: there.take(offer))
             there.execution.start_production()
-            assert "changed" in refused("state-moved", lambda: there.take(offer))
+            assert "changed" in refused("stale-revision", lambda: there.take(offer))
             offer = await there.offers.goal("at == work")
             assert offer.obstacle == refused("wrong-mode", lambda: there.take(offer))
             there.enter(Mode.PAUSED)
@@ -152,14 +152,14 @@ def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> 
             assert offer.obstacle is None
             refused("not-confirmed", lambda: there.take(offer, starts=[]))
             refused("not-confirmed", lambda: there.take(offer, corrections={"jammed": False}))
-            refused("offer-gone", lambda: there.take(offer.model_copy(update={"id": "another-1"})))
+            refused("proposal-gone", lambda: there.take(offer.model_copy(update={"id": "another-1"})))
             assert there.execution.errand is None
             there.take(offer)
             assert there.execution.errand is not None
             assert (there.execution.errand.by, there.execution.errand.why) == ("Eva", "to try it")
             assert there.tick() == ("go",)
-            await refused_later("errand-under-way", there.offers.goal("loaded"))
-            await refused_later("errand-under-way", there.offers.advice())
+            await refused_later("plan-running", there.offers.goal("loaded"))
+            await refused_later("plan-running", there.offers.advice())
             assert there.tick(at="work") == ()
             assert there.execution.errand is None
             assert there.execution.conduct.last_errand is not None
@@ -300,7 +300,7 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             refused("not-confirmed", lambda: there.take(correction, corrections={"jammed": 0}))
             there.take(correction)
             assert there.execution.state["jammed"] is False
-            refused("state-moved", lambda: there.take(rescue))
+            refused("stale-revision", lambda: there.take(rescue))
             there.correct(jammed=True)
             there.enter(Mode.PAUSED)
             advice = await there.offers.advice()
@@ -315,7 +315,7 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             assert there.execution.mode is Mode.RESTART, "to leave it is another act"
             replan = (await there.offers.advice()).offers[0]
             assert replan.kind == "replan"
-            assert replan.obstacle == refused("nothing-to-take", lambda: there.take(replan))
+            assert replan.obstacle == refused("nothing-to-execute", lambda: there.take(replan))
 
     asyncio.run(scenario())
 

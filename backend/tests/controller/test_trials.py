@@ -174,7 +174,7 @@ def test_it_takes_the_paused_mode_and_production(press: Press) -> None:
     fresh = Press()
     fresh.tick()
     fresh.enter(Mode.PAUSED)
-    assert "start production" in fresh.refused("production-waiting")
+    assert "start production" in fresh.refused("production-not-started")
     fresh.execution.start_production()
     fresh.attempt()
     assert fresh.tick() == ("press",)
@@ -213,7 +213,7 @@ def test_restart_abilities_steps_and_service_are_no_exception(press: Press) -> N
 
 def test_one_thing_is_carried_out_at_a_time(press: Press) -> None:
     press.attempt()
-    assert press.refused("errand-under-way", "open") == "Try: press is being carried out. Wait for its end, or stop it."
+    assert press.refused("plan-running", "open") == "Try: press is being carried out. Wait for its end, or stop it."
 
 
 def test_real_devices_have_to_be_confirmed(press: Press) -> None:

@@ -97,7 +97,7 @@ def test_to_force_an_output_for_a_while_is_no_decision() -> None:
 def test_decisions_are_refused_where_there_is_nothing_to_decide() -> None:
     fresh = Station()
     for execution, values, slug in (
-        (fresh.execution, {"robot__target_pose": "home"}, "nothing-to-decide"),
+        (fresh.execution, {"robot__target_pose": "home"}, "nothing-to-confirm"),
         (come_back({}), {"robot__target_pose": "unknown"}, "not-in-domain"),
         (come_back({}), {"robot__pose": "home"}, "not-an-output"),
         (come_back({}), {"robot__speed": 1}, "unknown-variable"),

@@ -61,7 +61,7 @@ def test_it_says_for_whom_it_waits_and_commands_once_that_has_ended(tmp_path: Pa
             assert "/other" in client.view.alarms["rival"].text
             with pytest.raises(CommandRefused, match=r"/arm/command \(node /other\)") as refused:
                 await client.send(start)
-            assert refused.value.slug == "other-commander"
+            assert refused.value.slug == "other-controller"
             other.close()
 
             async def begin() -> bool:

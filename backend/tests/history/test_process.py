@@ -47,7 +47,7 @@ def test_one_that_is_late_or_dies_is_replaced(database: Database) -> None:
         return slugs
 
     *slugs, kind = asyncio.run(told())
-    assert slugs == ["history-late", "history-failed"]
+    assert slugs == ["history-timeout", "history-failed"]
     assert kind in ("ticked", "asked", "answered")
 
 

@@ -16,7 +16,7 @@ from sequence_planner.auth.tokens import new_token
 from sequence_planner.server.auth import flow_cookie, session_cookie
 from server.test_acting import problem
 
-UNFIT = "provider-answer-unfit"
+UNFIT = "provider-answer-invalid"
 
 
 def stays_out(browser: httpx.Client) -> None:

@@ -40,7 +40,7 @@ def test_a_person_is_made_at_the_first_sign_in_and_found_at_the_next(scene: Scen
         [kept] = [each for each in set_cookies if each.startswith(f"sequence-planner-{scene.server.settings.port}=")]
         assert {"httponly", "path=/", "samesite=strict"} == {each.strip() for each in kept.split(";")[1:]}
         assert any("sign-in" in each and "max-age=0" in each for each in set_cookies)
-        assert browser.get("/api/v1/people").status_code == 200
+        assert browser.get("/api/v1/users").status_code == 200
     scene.provider.say("ada", preferred_username="Ada the Second")
     with scene.browser() as browser:
         again = scene.sign_in(browser, "ada").json()["session"]["person"]
@@ -66,8 +66,8 @@ def test_the_role_is_taken_anew_at_each_sign_in(scene: Scene) -> None:
         assert scene.sign_in(before, "ada").json()["session"]["person"]["role"] == "administrator"
         scene.provider.say("ada", groups="station-operators")
         assert scene.sign_in(after, "ada").json()["session"]["person"]["role"] == "operator"
-        problem(before.get("/api/v1/people"), 401, "signed-out")
-        problem(after.get("/api/v1/people"), 403, "role-too-low")
+        problem(before.get("/api/v1/users"), 401, "signed-out")
+        problem(after.get("/api/v1/users"), 403, "role-too-low")
         scene.provider.say("ada", groups=[])
         with scene.browser() as third:
             problem(scene.sign_in(third, "ada"), 403, "no-role")
@@ -109,13 +109,13 @@ def test_who_comes_from_the_provider_has_no_password_here(scene: Scene) -> None:
         problem(browser.put(f"{SESSION}/password", json=change), 403, "no-password")
         scene.sign_in(ada, "ada")
         given = {"password": "given by an administrator"}
-        problem(ada.put(f"/api/v1/people/{otto['id']}/password", json=given), 409, "no-password-here")
-        revision = next(each for each in ada.get("/api/v1/people").json()["people"] if each["id"] == otto["id"])
+        problem(ada.put(f"/api/v1/users/{otto['id']}/password", json=given), 409, "no-password-here")
+        revision = next(each for each in ada.get("/api/v1/users").json()["people"] if each["id"] == otto["id"])
         headers = {"If-Match": f'"{revision["revision"]}"'}
-        changed = ada.patch(f"/api/v1/people/{otto['id']}", json={"role": "administrator"}, headers=headers)
+        changed = ada.patch(f"/api/v1/users/{otto['id']}", json={"role": "administrator"}, headers=headers)
         problem(changed, 409, "role-from-provider")
         assert revision["issuer"] == scene.provider.issuer
-        assert ada.patch(f"/api/v1/people/{otto['id']}", json={"disabled": True}, headers=headers).status_code == 200
+        assert ada.patch(f"/api/v1/users/{otto['id']}", json={"disabled": True}, headers=headers).status_code == 200
 
 
 def test_an_administrator_gets_back_in_with_a_password_until_the_provider_is_there_again(scene: Scene) -> None:
@@ -127,7 +127,7 @@ def test_an_administrator_gets_back_in_with_a_password_until_the_provider_is_the
             users.set_password(connection, ada["id"], hashed, SYSTEM, time.time(), temporary=False, recovery=True)
         assert browser.post(SESSION, json={"name": "Ada", "password": password}).status_code == 200
         scene.sign_in(again, "ada")
-        problem(browser.get("/api/v1/people"), 401, "signed-out")
+        problem(browser.get("/api/v1/users"), 401, "signed-out")
         answer = browser.post(SESSION, json={"name": "Ada", "password": password})
         problem(answer, 401, "wrong-name-or-password")
 

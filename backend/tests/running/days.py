@@ -54,7 +54,7 @@ def day(at: At, seed: str, orders: int, troubles: int) -> Counter[str]:
             mes = client.Mes(f"http://127.0.0.1:{station.port}", mes_key(station))
             station.begin_production()
             by_order = {"on": True, "reason": "the shift begins"}
-            station.wait(lambda: station.ask("PUT", "work-by-order", by_order).is_success, "it works freely")
+            station.wait(lambda: station.ask("PUT", "settings/job-mode", by_order).is_success, "it works freely")
             chance, people = random.Random(seed), place.people
             of_day = simulator.Day(mes, place.work_master, orders, place.seconds, chance, people, "day")
             try:

@@ -127,7 +127,7 @@ def after(person: Person, place: Floor, fault: str) -> Seen:
         return Seen(fault, completed=done, notice=notice, tasks=tasks, was_so=was_so)
     seconds = time.monotonic() - began
     asked = time.monotonic()
-    advice = person.get("advice")
+    advice = person.get("recovery/proposals")
     text = next((alarm["text"] for alarm in found.values()), "held")
     return Seen(fault, text, seconds, time.monotonic() - asked, advice)
 
@@ -148,7 +148,7 @@ def _begin(person: Person, place: Floor, fault: str) -> None:
         person.do("PUT", "mode", {"mode": "hold", "reason": "an emergency"})
     elif fault.startswith("out of service "):
         resource = fault.removeprefix("out of service ")
-        person.do("PUT", f"service/resource/{resource}", {"in_service": False, "reason": "it is looked after"})
+        person.do("PUT", f"availability/resource/{resource}", {"in_service": False, "reason": "it is looked after"})
     elif fault.startswith("by hand "):
         name, value = fault.removeprefix("by hand ").split(" := ")
         place.by_hand(name, value)

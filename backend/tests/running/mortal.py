@@ -154,7 +154,7 @@ class Mortal:
         """What is answered; control is taken where it is needed."""
         answer = self.browser.request(method, path, json=body)
         if answer.status_code == httpx.codes.CONFLICT and answer.json()["type"] == "/problems/control-needed":
-            self.browser.put("control", json={"over": None}).raise_for_status()
+            self.browser.put("control-lock", json={"over": None}).raise_for_status()
             answer = self.browser.request(method, path, json=body)
         return answer
 
@@ -168,7 +168,7 @@ class Mortal:
         undecided = self.browser.get("station").json()["undecided"]
         for name, each in undecided.items():
             value = self.chance.choice([each["value"], *each["quiet"]])
-            answer = self.ask("PUT", "outputs", {"values": {name: value}, "reason": "looked at"})
+            answer = self.ask("PUT", "restored-outputs", {"values": {name: value}, "reason": "looked at"})
             self.seen["outputs decided on" if answer.is_success else "decisions refused"] += 1
         return bool(undecided)
 
@@ -180,7 +180,7 @@ class Mortal:
             self.decide()
             answer = self.ask("POST", "production/start", {"reason": "looked at"})
             if answer.status_code == httpx.codes.CONFLICT:
-                assert answer.json()["type"] in ("/problems/outputs-undecided",), answer.text
+                assert answer.json()["type"] in ("/problems/outputs-unconfirmed",), answer.text
             return answer.is_success
 
         self.wait(started, "production cannot be started")

@@ -26,7 +26,7 @@ LOOK_EVERY = 1.0  # seconds
 PAGES = {
     "GET /job-orders": "job-orders?limit=200",
     "GET /capabilities": "capabilities",
-    "GET /order-of-work": "order-of-work",
+    "GET /schedule": "schedule",
 }
 TICKS = "sequence_planner_tick_duration_seconds"
 
@@ -165,7 +165,7 @@ def queue(seed: str, orders: int, kills: int) -> Counter[str]:
         queue = Queue(station, day, client.Mes(address, key))
         station.wait(lambda: station.production() == "waiting", "it is not up")
         by_order = {"on": True, "reason": "the shift begins"}
-        station.wait(lambda: station.ask("PUT", "work-by-order", by_order).is_success, "it works freely")
+        station.wait(lambda: station.ask("PUT", "settings/job-mode", by_order).is_success, "it works freely")
         queue.order(orders)
         for _ in range(20):
             queue.ask("while all are queued")

@@ -86,7 +86,7 @@ class RunningStation:
         """What is answered; control is taken where it is needed."""
         answer = self.browser.post(path, json=body)
         if answer.status_code == httpx.codes.CONFLICT and answer.json()["type"] == "/problems/control-needed":
-            self.browser.put("control", json={"over": None}).raise_for_status()
+            self.browser.put("control-lock", json={"over": None}).raise_for_status()
             answer = self.browser.post(path, json=body)
         return answer
 

@@ -25,7 +25,7 @@ def works(station: EditedStation) -> None:
     station.control()
     if undecided := station.get("undecided", "station"):
         values = {name: each["value"] for name, each in undecided.items()}
-        station.asked("PUT", "outputs", {"values": values, "reason": "as it was"})
+        station.asked("PUT", "restored-outputs", {"values": values, "reason": "as it was"})
     station.asked("POST", "production/start", {})
     station.asked("PUT", "mode", {"mode": "automatic"})
     eventually(lambda: bool(station.get("tasks")))

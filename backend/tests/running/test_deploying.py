@@ -169,7 +169,7 @@ def moved(station: EditedStation) -> None:
     begin(station)
     trial = {"ability": "robot.move_to(above)", "reason": "to try it"}
     # Refused until its first commands are sent, and the robot answers them.
-    eventually(lambda: station.browser.post("trials", json=trial, timeout=PATIENCE).is_success)
+    eventually(lambda: station.browser.post("test-runs", json=trial, timeout=PATIENCE).is_success)
     eventually(lambda: station.value("robot.pose") == "above")
     eventually(lambda: station.get("errand", "station") is None)
 
@@ -178,13 +178,13 @@ def test_emulated_devices_go_on_as_they_stand_or_begin_anew_with_the_station(tmp
     with edited(tmp_path, "--emulator", "--emulator-speed", "5") as station:
         eventually(station.up)
         moved(station)
-        session = station.get("control", "station")["session"]
+        session = station.get("control-lock", "station")["session"]
         revision = deployed(station, TITLED, name="Titled")
         assert station.outcome(revision)["state"] == "runs"
         eventually(lambda: station.value("robot.pose") == "above")
         assert title(station) == "Another title"
         assert station.value("robot.target_pose") == "above"
-        assert station.get("control", "station")["session"] == session
+        assert station.get("control-lock", "station")["session"] == session
         begin(station)
 
         again = (STATION, TITLED[2], TITLED[1])
@@ -192,7 +192,7 @@ def test_emulated_devices_go_on_as_they_stand_or_begin_anew_with_the_station(tmp
         assert station.outcome(revision)["state"] == "runs"
         eventually(lambda: station.value("robot.pose") == "home")
         assert station.value("robot.target_pose") == "home"
-        assert station.get("control", "station")["session"] == session
+        assert station.get("control-lock", "station")["session"] == session
         assert station.get("unconfirmed", "station") is False
         begin(station)
 
@@ -209,7 +209,7 @@ def test_nothing_but_a_stop_is_accepted_while_a_deployment_is_under_way_and_mode
         eventually(station.up)
         station.control()
         station.asked("PUT", "mode", {"mode": "paused"})
-        session = station.get("control", "station")["session"]
+        session = station.get("control-lock", "station")["session"]
         revision = deployed(station, TITLED, name="Titled")
         held = station.browser.put("mode", json={"mode": "hold"}).is_success  # the controller before may be gone by now
         mode, refused, shown = "hold" if held else "paused", Counter[str](), 0
@@ -230,11 +230,11 @@ def test_nothing_but_a_stop_is_accepted_while_a_deployment_is_under_way_and_mode
         assert refused.keys() <= {
             "/problems/deployment-under-way",
             "/problems/controller-unavailable",
-            "/problems/controller-no-answer",
+            "/problems/controller-timeout",
         }
         assert shown > 0
         assert station.outcome(revision)["state"] == "runs"
-        assert station.get("control", "station")["session"] == session
+        assert station.get("control-lock", "station")["session"] == session
 
 
 def test_real_devices_cannot_be_reset(tmp_path: Path) -> None:

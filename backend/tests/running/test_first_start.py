@@ -19,7 +19,7 @@ from running.stations import MODEL, PATIENCE, REPOSITORY, command, environment, 
 from server.certificates import Certified, certify
 
 NAME = "station.example"
-LINK = re.compile(r"https://station\.example:(\d+)/first-start#([\w-]+)")
+LINK = re.compile(r"https://station\.example:(\d+)/setup#([\w-]+)")
 
 
 @contextmanager
@@ -73,7 +73,7 @@ def test_the_link_is_for_the_terminal_alone_and_works_once(tmp_path: Path, monke
     arguments = ("run", str(MODEL), "--port", str(port), "--host", "0.0.0.0", *serving)
     errors, log = tmp_path / "errors", tmp_path / "log"
     with at_a_terminal(errors, *arguments) as terminal:
-        text = shown(terminal, re.compile(r"first-start#[\w-]+\s"))
+        text = shown(terminal, re.compile(r"setup#[\w-]+\s"))
         assert f"open https://{NAME}:{port} " in text
         [(at, token)] = LINK.findall(text)
         assert at == str(port)
@@ -81,11 +81,11 @@ def test_the_link_is_for_the_terminal_alone_and_works_once(tmp_path: Path, monke
         assert url not in command_lines()
         with browser(made, port) as opened:
             body = {"token": token, "name": "Ada", "password": "a long enough one"}
-            first = opened.post("first-administrator", json=body)
+            first = opened.post("setup", json=body)
             assert first.status_code == 201
             assert first.headers["set-cookie"].startswith("__Host-sequence-planner=")
-            again = opened.post("first-administrator", json=body | {"name": "Eve"})
-            assert (again.status_code, again.json()["type"]) == (403, "/problems/link-unusable")
+            again = opened.post("setup", json=body | {"name": "Eve"})
+            assert (again.status_code, again.json()["type"]) == (403, "/problems/setup-link-invalid")
     assert token not in errors.read_text()
     with process(log, *arguments):
         eventually(lambda: "runs: open" in log.read_text())
@@ -95,11 +95,11 @@ def test_the_link_is_for_the_terminal_alone_and_works_once(tmp_path: Path, monke
 def test_where_there_is_no_terminal_it_is_only_said_how_to_get_the_link(tmp_path: Path) -> None:
     log, port, url = tmp_path / "log", free_port(), f"sqlite:///{tmp_path / 'station.sqlite'}"
     with process(log, "run", str(MODEL), "--port", str(port), "--database", url):
-        eventually(lambda: "people link" in log.read_text())
+        eventually(lambda: "users setup-link" in log.read_text())
     text = log.read_text()
-    how = f"`sequence-planner people link {MODEL} --url http://127.0.0.1:{port}`"
+    how = f"`sequence-planner users setup-link {MODEL} --url http://127.0.0.1:{port}`"
     assert f"{how} prints the link for the first administrator" in text
-    assert "first-start" not in text
+    assert "/setup" not in text
 
 
 def test_a_demonstration_is_forgotten(short_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

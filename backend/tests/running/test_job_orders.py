@@ -140,7 +140,7 @@ def test_orders_are_worked_and_nothing_is_lost_or_doubled(station: Mortal) -> No
     mes.wait(lambda: bool(mes.get("urgent")["waits_for"]), "nobody says why nothing is done")
     assert mes.get("urgent")["waits_for"] == ["the station works freely", "production is not started"]
     by_order = {"on": True, "reason": "the shift begins"}
-    station.wait(lambda: station.ask("PUT", "work-by-order", by_order).is_success, "it does not work by order")
+    station.wait(lambda: station.ask("PUT", "settings/job-mode", by_order).is_success, "it does not work by order")
     station.begin_production()
 
     mes.wait(is_state(mes, "urgent", "Running"), "the most urgent is not begun")

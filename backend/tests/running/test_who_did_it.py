@@ -54,21 +54,21 @@ def done(answer: httpx.Response) -> None:
 
 def nobody_is_in_control(browser: httpx.Client) -> bool:
     """Control can be taken from nobody only where nobody has it; it is given up at once."""
-    if browser.put("control", json={"over": None}).status_code != 204:
+    if browser.put("control-lock", json={"over": None}).status_code != 204:
         return False
-    done(browser.delete("control"))
+    done(browser.delete("control-lock"))
     return True
 
 
 def work_with_a_watch(hall: Hall, ada: httpx.Client, until: Callable[[], bool]) -> None:
     """Pair a watch, and acknowledge on it whatever it shows until all is done."""
-    offer = ada.post("watches/offers", json={"name": "Bo's watch", "resource": "operator"}).json()
+    offer = ada.post("wearables/offers", json={"name": "Bo's watch", "resource": "operator"}).json()
     with hall.browser() as watch:
-        answer = watch.post("watches/pairing", json={"code": offer["code"]})
+        answer = watch.post("wearables/pairing", json={"code": offer["code"]})
         assert answer.status_code == 201, answer.text
-        done(ada.post(f"watches/{answer.json()['id']}/confirmation", json={}))
+        done(ada.post(f"wearables/{answer.json()['id']}/confirmation", json={}))
         cookie = "; ".join(f"{name}={value}" for name, value in watch.cookies.items())
-        address = f"ws://127.0.0.1:{hall.station.port}/api/v1/watches/stream"
+        address = f"ws://127.0.0.1:{hall.station.port}/api/v1/wearables/stream"
         with connect(address, additional_headers={"Cookie": cookie}) as stream:
 
             def acknowledged() -> bool:
@@ -101,14 +101,14 @@ def test_the_journal_tells_of_a_shift_who_did_what_when_where_and_why(
 ) -> None:
     began, last = time.time(), journal(ada)[-1]["number"]
     tighten = "tighten_bolt_pair(bolt_pair_{})"
-    done(bo.put("control", json={"over": None, "reason": "the morning shift"}))
+    done(bo.put("control-lock", json={"over": None, "reason": "the morning shift"}))
     done(bo.post("production/start", json={"reason": "the first engine"}))
     done(bo.put("mode", json={"mode": "paused", "reason": "the tool sticks"}))
     done(bo.put("mode", json={"mode": "automatic", "reason": "it is free again"}))
     done(bo.put("overrides/robot.speed", json={"fields": {"speed_scaling": 0.1}, "reason": "somebody is near"}))
     done(bo.delete("overrides/robot.speed"))
     work_with_a_watch(hall, ada, lambda: any(hall.station.completed(tighten.format(pair)) for pair in (1, 2, 3)))
-    done(ada.put("control", json={"over": session(bo), "reason": "the shift ends"}))
+    done(ada.put("control-lock", json={"over": session(bo), "reason": "the shift ends"}))
     refused = bo.put("mode", json={"mode": "automatic", "reason": "but it was mine"})
     assert (refused.status_code, refused.json()["type"]) == (409, "/problems/control-needed")
 
@@ -172,10 +172,10 @@ def test_the_journal_on_the_command_line_is_the_same_and_is_whole(hall: Hall, ad
 
 
 def test_who_is_signed_out_loses_control_within_two_seconds(hall: Hall, ada: httpx.Client, bo: httpx.Client) -> None:
-    eventually(lambda: bo.put("control", json={"over": None}).status_code == 204, 5)
+    eventually(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, 5)
     assert not nobody_is_in_control(ada)
-    [person] = [each["id"] for each in ada.get("people").json()["people"] if each["name"] == "Bo"]
-    done(ada.delete(f"people/{person}/sessions"))
+    [person] = [each["id"] for each in ada.get("users").json()["people"] if each["name"] == "Bo"]
+    done(ada.delete(f"users/{person}/sessions"))
     eventually(lambda: nobody_is_in_control(ada), 2)
     assert bo.get("station").status_code == 401
     [withdrawn] = [each for each in journal(ada) if each["entry"]["action"] == "withdraw-control"][-1:]
@@ -185,7 +185,7 @@ def test_who_is_signed_out_loses_control_within_two_seconds(hall: Hall, ada: htt
 def test_after_a_controller_that_was_killed_nobody_is_in_control(
     hall: Hall, ada: httpx.Client, bo: httpx.Client
 ) -> None:
-    eventually(lambda: bo.put("control", json={"over": None}).status_code == 204, 5)
+    eventually(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, 5)
     hall.killed("controller")
     # The view of the one that was killed is shown a little longer, and the next one prepares the station first.
     eventually(lambda: production(ada) == "waiting" and bo.post("production/start", json={}).status_code != 503)
@@ -195,7 +195,7 @@ def test_after_a_controller_that_was_killed_nobody_is_in_control(
 
 
 def test_after_a_server_that_was_killed_people_are_still_signed_in(hall: Hall, bo: httpx.Client) -> None:
-    eventually(lambda: bo.put("control", json={"over": None}).status_code == 204, 5)
+    eventually(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, 5)
     before = session(bo)
     hall.killed("server")
     assert session(bo) == before

@@ -55,8 +55,8 @@ class EditedStation(RunningStation):
 
     def control(self) -> None:
         """Take control from whoever has it."""
-        holds = self.get("control", "station")
-        self.asked("PUT", "control", {"over": None if holds is None else holds["session"]})
+        holds = self.get("control-lock", "station")
+        self.asked("PUT", "control-lock", {"over": None if holds is None else holds["session"]})
 
     def change(self, *replacements: tuple[str, str, str]) -> None:
         """Change files of the draft: path, text before, text after."""

@@ -48,8 +48,8 @@ def test_a_definition_is_told_by_the_name_of_the_ability(engineer: httpx.Client,
 
 def test_a_trial_is_a_command_of_who_has_control(engineer: httpx.Client, controller: Trying) -> None:
     body = {"ability": "robot.move", "real_devices": True, "reason": "to see it"}
-    assert engineer.post("trials", json=body).status_code == 204
-    assert engineer.post("trials", json={"ability": "robot.move"}).status_code == 204
+    assert engineer.post("test-runs", json=body).status_code == 204
+    assert engineer.post("test-runs", json={"ability": "robot.move"}).status_code == 204
     first, second = controller.commands
     assert isinstance(first, TryAbility)
     assert isinstance(second, TryAbility)
@@ -58,7 +58,7 @@ def test_a_trial_is_a_command_of_who_has_control(engineer: httpx.Client, control
     assert (second.real_devices, second.reason, second.subject) == (False, None, "robot.move")
     wrongs: tuple[dict[str, object], ...] = ({"ability": ""}, {"ability": 3}, {"real_devices": "si"}, {"starts": []})
     for wrong in wrongs:
-        problem(engineer.post("trials", json={**body, **wrong}), 422, "invalid-request")
+        problem(engineer.post("test-runs", json={**body, **wrong}), 422, "invalid-request")
 
 
 @pytest.mark.parametrize(("slug", "status"), [("not-startable", 409), ("real-devices", 409), ("unknown-ability", 404)])
@@ -66,5 +66,5 @@ def test_what_the_controller_refuses_is_said_in_its_words(
     engineer: httpx.Client, controller: Trying, slug: str, status: int
 ) -> None:
     controller.refused = CommandRefused(slug, "Refused", "It waits for robot.pose == home.", status)
-    found = problem(engineer.post("trials", json={"ability": "robot.move"}), status, slug)
+    found = problem(engineer.post("test-runs", json={"ability": "robot.move"}), status, slug)
     assert found["detail"] == "It waits for robot.pose == home."

@@ -34,8 +34,8 @@ def problem(answer: httpx.Response, status: int, slug: str) -> dict[str, Any]:
 
 def test_each_action_is_a_command_with_its_actor(client: httpx.Client, controller: Controller) -> None:
     assert client.post("/api/v1/tasks/7/acknowledgement", json={"revision": 3}).status_code == 204
-    assert client.put("/api/v1/control", json={"over": None, "reason": "my shift"}).status_code == 204
-    assert client.delete("/api/v1/control").status_code == 204
+    assert client.put("/api/v1/control-lock", json={"over": None, "reason": "my shift"}).status_code == 204
+    assert client.delete("/api/v1/control-lock").status_code == 204
     actor = controller.commands[0].actor
     assert controller.commands == [
         AcknowledgeTask(actor=actor, task="7", revision=3),
@@ -161,7 +161,7 @@ def test_a_controller_that_dies_over_a_command_leaves_its_outcome_open(
     assert begun.wait(5)
     controller.stop()
     asking.join(5)
-    assert "not known" in problem(answers[0], 504, "controller-no-answer")["detail"]
+    assert "not known" in problem(answers[0], 504, "controller-timeout")["detail"]
     controller.link = type(controller.link)(controller.link.path, controller.handle)
     controller.start()
     until(lambda: client.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204)

@@ -35,13 +35,15 @@ def engineer(server: Server) -> Iterator[httpx.Client]:
         yield client
 
 
-@pytest.mark.parametrize(("path", "act"), [("corrections", CORRECTS), ("outputs", DECIDES), ("forces", FORCES)])
+@pytest.mark.parametrize(
+    ("path", "act"), [("corrections", CORRECTS), ("restored-outputs", DECIDES), ("forces", FORCES)]
+)
 def test_a_request_is_one_command(engineer: httpx.Client, controller: Controller, path: str, act: Act) -> None:
     body = {"act": act.model_dump(), "revision": 7, "reason": WHY}
     assert engineer.post(path, json=body).status_code == 204
     expected = RequestApproval.model_construct(act=act, revision=7, reason=WHY)
     assert given(controller) == expected.model_dump(exclude={"actor"})
-    for other in {"corrections", "outputs", "forces"} - {path}:
+    for other in {"corrections", "restored-outputs", "forces"} - {path}:
         problem(engineer.post(other, json=body), 422, "invalid-request")
     for wrong in ({"revision": -1}, {"revision": 1.0}, {"reason": ""}, {"reason": None}, {"act": None}):
         problem(engineer.post(path, json=body | wrong), 422, "invalid-request")

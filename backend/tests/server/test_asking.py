@@ -64,7 +64,7 @@ def test_answers_come_as_the_documents_they_are_and_no_command_waits_for_one(pat
             await until(lambda: answers.waiting == MOST_ASKS)
             with pytest.raises(CommandRefused) as refused:
                 await client.ask(AboutPipelines())
-            assert (refused.value.slug, refused.value.status) == ("too-many-asks", 503)
+            assert (refused.value.slug, refused.value.status) == ("controller-busy", 503)
             await client.send(SetMode(actor=ACTOR, mode=Mode.PAUSED))
             answers.let.set()
             assert await asyncio.gather(*flows) == [FlowsView(time=1.0, pipelines={})] * MOST_ASKS
@@ -84,7 +84,7 @@ def test_an_answer_that_would_come_too_late_is_given_up(path: Path) -> None:
             began = time.monotonic()
             with pytest.raises(CommandRefused, match="Nothing was changed by asking") as refused:
                 await client.ask(Hasty())
-            assert (refused.value.slug, refused.value.status) == ("answer-late", 504)
+            assert (refused.value.slug, refused.value.status) == ("answer-timeout", 504)
             assert time.monotonic() - began < 2
             assert (answers.waiting, answers.given_up) == (0, 1)
             running.cancel()
@@ -123,7 +123,7 @@ def test_who_hears_nothing_is_told_that_asking_changes_nothing(path: Path) -> No
         running = await connected(client)
         with pytest.raises(CommandRefused, match="Nothing was changed by asking") as refused:
             await client.ask(Hasty())
-        assert (refused.value.slug, refused.value.status) == ("controller-no-answer", 504)
+        assert (refused.value.slug, refused.value.status) == ("controller-timeout", 504)
         running.cancel()
 
     asyncio.run(scenario())

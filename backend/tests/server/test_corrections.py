@@ -66,7 +66,7 @@ def operator(server: Server) -> Iterator[httpx.Client]:
         ),
         (
             "PUT",
-            "outputs",
+            "restored-outputs",
             {"values": VALUES, "reason": WHY},
             DecideOutputs.model_construct(values=VALUES, reason=WHY),
         ),
@@ -93,7 +93,7 @@ def test_a_preview_is_asked_for_and_commands_nothing(operator: httpx.Client, con
 
 @pytest.mark.parametrize(
     ("status", "slug"),
-    [(404, "unknown-variable"), (422, "not-in-domain"), (422, "not-estimated"), (504, "adviser-late")],
+    [(404, "unknown-variable"), (422, "not-in-domain"), (422, "not-estimated"), (504, "advisor-timeout")],
 )
 def test_a_refused_preview_is_a_problem(operator: httpx.Client, controller: Asked, status: int, slug: str) -> None:
     controller.refusal = CommandRefused(slug, "No", "Because.", status)
@@ -112,7 +112,7 @@ def test_a_refused_preview_is_a_problem(operator: httpx.Client, controller: Aske
         ("POST", "corrections/undo", {"revision": 7}, "body.reason"),
         ("POST", "corrections/undo", {"reason": WHY}, "body.revision"),
         ("POST", "corrections/confirm", {"values": VALUES}, "body.reason"),
-        ("PUT", "outputs", {"values": VALUES}, "body.reason"),
+        ("PUT", "restored-outputs", {"values": VALUES}, "body.reason"),
     ],
 )
 def test_what_is_wrong_with_a_request(

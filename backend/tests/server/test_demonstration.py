@@ -49,7 +49,7 @@ def test_a_demonstration_acts_and_says_what_it_is(shown: Server, controller: Con
         assert (told["state"], told["kind"], told["person"]["name"]) == ("signed-in", "demonstration", "Demonstration")
         assert browser.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
         assert controller.commands[0].actor.kind is ActorKind.DEMONSTRATION
-        problem(browser.get("/api/v1/people"), 403, "role-too-low")
+        problem(browser.get("/api/v1/users"), 403, "role-too-low")
         change = {"old": PASSWORD, "new": PASSWORD}
         problem(browser.put("/api/v1/session/password", json=change), 403, "no-password")
         assert browser.delete("/api/v1/session").status_code == 204
@@ -106,11 +106,11 @@ def test_the_first_administrator_comes_by_a_link_that_works_once(server: Server)
     body = {"token": token, "name": "Ada", "password": PASSWORD}
     with server.client() as browser, server.client() as late:
         assert browser.get("/api/v1/session").json()["state"] == "first-start"
-        problem(browser.post("/api/v1/first-administrator", json=body | {"token": "x" * 43}), 403, "link-unusable")
-        problem(browser.post("/api/v1/first-administrator", json=body | {"password": "short"}), 422, "weak-password")
-        answer = browser.post("/api/v1/first-administrator", json=body)
+        problem(browser.post("/api/v1/setup", json=body | {"token": "x" * 43}), 403, "setup-link-invalid")
+        problem(browser.post("/api/v1/setup", json=body | {"password": "short"}), 422, "weak-password")
+        answer = browser.post("/api/v1/setup", json=body)
         assert answer.status_code == 201
         assert answer.json()["person"]["role"] == "administrator"
-        assert browser.get("/api/v1/people").status_code == 200
-        problem(late.post("/api/v1/first-administrator", json=body | {"name": "Eve"}), 403, "link-unusable")
+        assert browser.get("/api/v1/users").status_code == 200
+        problem(late.post("/api/v1/setup", json=body | {"name": "Eve"}), 403, "setup-link-invalid")
         assert late.get("/api/v1/session").json()["state"] == "signed-out"

@@ -89,6 +89,6 @@ def test_what_the_page_about_pipelines_types_sets_and_clears_an_override(
 def test_what_the_page_about_access_types_reads_the_station_with_a_key(server: Server, tmp_path: Path) -> None:
     with server.client(Role.ADMINISTRATOR) as administrator:
         body = {"name": "dashboard", "scopes": ["read"], "days": 30}
-        secret = administrator.post("/api/v1/keys", json=body).json()["secret"]
+        secret = administrator.post("/api/v1/api-keys", json=body).json()["secret"]
     lines = snippet("docs/access.md", "STATION_KEY").replace("https://station.example", server.address)
     assert '"mode":"automatic"' in typed(lines, tmp_path, STATION_KEY=secret)

@@ -61,7 +61,7 @@ def test_the_graph_is_that_of_the_draft(eva: httpx.Client) -> None:
 
 def test_a_stage_that_fits_is_put_there_and_taken_back(eva: httpx.Client, model: Path) -> None:
     before = (model / ROBOT).read_text(encoding="utf-8")
-    fits = asked(eva, "fits", pipeline=STATE, edge=1)["stages"]
+    fits = asked(eva, "suggestions", pipeline=STATE, edge=1)["stages"]
     (debounce,) = [each for each in fits if each["kind"] == "debounce"]
     preview = asked(eva, "preview", edits=debounce["edits"])
     assert (preview["refused"], preview["findings"], list(preview["pipelines"])) == (None, [], [STATE])
@@ -91,7 +91,7 @@ def test_a_stage_that_is_another_by_now_is_not_moved(eva: httpx.Client) -> None:
     assert (view["standing"], view["stages"][0]["standing"]) == ("wrong", "wrong")
     assert "there is no field `pose` here" in view["stages"][0]["findings"][0]["message"]
     assert view["stages"][1]["standing"] == "unknown"
-    problem(eva.post(f"{PIPELINES}/fits", json={"pipeline": STATE, "edge": 2}), 422, "edit-refused")
+    problem(eva.post(f"{PIPELINES}/suggestions", json={"pipeline": STATE, "edge": 2}), 422, "edit-refused")
 
 
 def test_an_example_is_written_run_and_tried(eva: httpx.Client) -> None:
@@ -105,10 +105,10 @@ def test_an_example_is_written_run_and_tried(eva: httpx.Client) -> None:
     edit = {"kind": "set", "file": ROBOT, "path": [*path, "gives", "pose"], "was": "bolt_pair_1", "value": "home"}
     made(eva, edit)
     assert asked(eva, "examples", pipeline=STATE, name="at home")["runs"][0]["passed"]
-    (trial,) = asked(eva, "trials", pipeline=STATE, steps=[{"given": given}])["runs"]
+    (trial,) = asked(eva, "test-runs", pipeline=STATE, steps=[{"given": given}])["runs"]
     assert [edge["last"].get("pose") for edge in trial["steps"][0]["edges"]] == [None, "home", "home"]
     problem(eva.post(f"{PIPELINES}/examples", json={"pipeline": "/none"}), 422, "edit-refused")
-    problem(eva.post(f"{PIPELINES}/trials", json={"pipeline": STATE, "steps": []}), 422, "invalid-request")
+    problem(eva.post(f"{PIPELINES}/test-runs", json={"pipeline": STATE, "steps": []}), 422, "invalid-request")
 
 
 def test_without_a_controller_nothing_is_recorded(eva: httpx.Client) -> None:

@@ -64,7 +64,7 @@ def test_the_streams_of_a_disabled_person_a_key_and_a_watch_are_closed(server: S
         (server.stream, server.cookie(server.session(person)[0])),
         (server.stream, {"Authorization": f"Bearer {secret}"}),
         (
-            server.stream.replace("/stream", "/watches/stream"),
+            server.stream.replace("/stream", "/wearables/stream"),
             {"Cookie": f"{watch_cookie(server.settings)}={worn}"},
         ),
     )
@@ -171,7 +171,7 @@ def test_while_the_database_is_away_who_was_there_goes_on_and_nobody_else_comes_
         assert str(away.parent) not in found["detail"]
         for refused in (
             browser.delete("/api/v1/session"),
-            browser.get("/api/v1/watches"),
+            browser.get("/api/v1/wearables"),
             other.post("/api/v1/session", json={"name": "Ada", "password": "seven green bolts"}),
             httpx.get(f"{server.address}/api/v1/session", headers=server.cookie(stranger)),
         ):
@@ -236,7 +236,7 @@ def test_who_loses_the_right_or_is_signed_out_by_another_stays_out_while_the_dat
     ):
         for each in (browser, other, third):
             assert each.get("/api/v1/state").status_code == 200
-        assert browser.delete(f"/api/v1/people/{person.id}/sessions").is_success
+        assert browser.delete(f"/api/v1/users/{person.id}/sessions").is_success
         take_away(server)
         problem(other.put("/api/v1/mode", json={"mode": "paused"}), 503, "storage-unavailable")
         assert third.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204

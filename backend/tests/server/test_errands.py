@@ -61,15 +61,15 @@ def engineer(server: Server) -> Iterator[httpx.Client]:
 def test_each_question_is_asked_as_it_is_and_answered_with_its_document(
     engineer: httpx.Client, controller: Asked
 ) -> None:
-    assert engineer.get("advice").json() == ADVICE.model_dump(mode="json")
+    assert engineer.get("recovery/proposals").json() == ADVICE.model_dump(mode="json")
     goal = {"predicate": "robot.pose == home"}
-    assert engineer.post("errands/goal-preview", json=goal).json() == OFFER.model_dump(mode="json")
-    assert engineer.post("errands/reset-preview", json={"operation": "tighten(1)"}).json()["id"] == OFFER.id
-    ability = engineer.get("why-not/ability/robot.move").json()
+    assert engineer.post("operator-plans/goal-preview", json=goal).json() == OFFER.model_dump(mode="json")
+    assert engineer.post("operator-plans/reset-preview", json={"operation": "tighten(1)"}).json()["id"] == OFFER.id
+    ability = engineer.get("abilities/robot.move/blockers").json()
     (condition,) = ability["conditions"]
     assert condition["involved"][0]["wanted"] == ["home"]
-    problem(engineer.get("why-not/operation/carry%28left%29"), 404, "unknown-operation")
-    assert engineer.post("why-not/goal", json=goal).json()["plan"]["steps"][0]["ability"] == "robot.move"
+    problem(engineer.get("operations/carry%28left%29/blockers"), 404, "unknown-operation")
+    assert engineer.post("goals/blockers", json=goal).json()["plan"]["steps"][0]["ability"] == "robot.move"
     assert controller.asked == [
         AskAdvice(),
         AskGoal(predicate="robot.pose == home"),
@@ -87,8 +87,8 @@ def test_an_offer_is_taken_with_all_that_was_confirmed(engineer: httpx.Client, c
         "corrections": {"bolts": "placed", "on": True, "count": 3},
         "reason": "the bolt is out",
     }
-    assert engineer.post("errands", json=body).status_code == 204
-    assert engineer.post("errands/stop", json={}).status_code == 204
+    assert engineer.post("operator-plans", json=body).status_code == 204
+    assert engineer.post("operator-plans/stop", json={}).status_code == 204
     taken, stopped = controller.commands
     assert isinstance(taken, TakeErrand)
     assert taken.needs_control
@@ -98,18 +98,18 @@ def test_an_offer_is_taken_with_all_that_was_confirmed(engineer: httpx.Client, c
     assert isinstance(stopped, StopErrand)
     assert not stopped.needs_control
     for wrong in ({"reason": ""}, {"reason": None}, {"starts": "robot.move"}, {"corrections": {"bolts": 1.5}}):
-        problem(engineer.post("errands", json={**body, **wrong}), 422, "invalid-request")
-    problem(engineer.post("errands", json={"offer": "81a0a8-1", "reason": "no starts"}), 422, "invalid-request")
+        problem(engineer.post("operator-plans", json={**body, **wrong}), 422, "invalid-request")
+    problem(engineer.post("operator-plans", json={"offer": "81a0a8-1", "reason": "no starts"}), 422, "invalid-request")
     assert len(controller.commands) == 2
 
 
 def test_refusals_come_in_the_controllers_words(engineer: httpx.Client, controller: Asked) -> None:
-    controller.refusal = CommandRefused("adviser-late", "The adviser was too slow", "Try again.", 504)
-    late = problem(engineer.get("advice"), 504, "adviser-late")
+    controller.refusal = CommandRefused("advisor-timeout", "The adviser was too slow", "Try again.", 504)
+    late = problem(engineer.get("recovery/proposals"), 504, "advisor-timeout")
     assert (late["detail"], late["place"]) == ("Try again.", None)
     detail = "character 1, `up`: unknown name `up`"
     place = TextPlace(start=0, end=2, message="unknown name `up`")
     controller.refusal = CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422, place)
-    for path in ("errands/goal-preview", "why-not/goal"):
+    for path in ("operator-plans/goal-preview", "goals/blockers"):
         found = problem(engineer.post(path, json={"predicate": "up"}), 422, "bad-predicate")
         assert (found["detail"], found["place"]) == (detail, place.model_dump())

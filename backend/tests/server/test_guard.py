@@ -46,7 +46,7 @@ def test_what_two_servers_may_read_differently_is_read_by_none(server: Server) -
         raw.sendall(b"POST /api/v1/session HTTP/1.1\r\n" + host + both + b"\r\n2\r\n{}\r\n0\r\n\r\n" + smuggled)
         answered = b"".join(iter(lambda: raw.recv(4096), b""))
     assert answered.startswith(b"HTTP/1.1 400 ")
-    assert b"/problems/two-lengths" in answered
+    assert b"/problems/conflicting-lengths" in answered
     assert answered.count(b"HTTP/1.1 ") == 1
 
 

@@ -15,7 +15,7 @@ from .running import Server, until
 from .test_acting import problem
 from .test_people import closing_code, records
 
-KEYS = "/api/v1/keys"
+KEYS = "/api/v1/api-keys"
 DAY = 86400.0  # seconds
 BODY = {"name": "MES", "scopes": ["read"], "days": 30}
 
@@ -45,7 +45,7 @@ def test_a_key_opens_what_its_scopes_say(server: Server, administrator: httpx.Cl
     assert (ask(server, audits, "audit").status_code, ask(server, both, "audit").status_code) == (200, 200)
     problem(ask(server, reads, "audit"), 403, "scope-missing")
     problem(ask(server, audits), 403, "scope-missing")
-    for place in ("people", "keys", "watches"):
+    for place in ("users", "api-keys", "wearables"):
         problem(ask(server, both, place), 403, "scope-missing")
 
 
@@ -170,7 +170,7 @@ def test_a_rotation_ends_the_secret_before_the_present_one_and_revoking_ends_all
     assert [ask(server, each).status_code for each in (first, second, third)] == [401, 200, 200]
     administrator.delete(f"{KEYS}/{key['id']}")
     assert [ask(server, each).status_code for each in (first, second, third)] == [401, 401, 401]
-    problem(rotate(administrator, key["id"]), 409, "key-over")
+    problem(rotate(administrator, key["id"]), 409, "key-expired")
     problem(rotate(administrator, "0123456789abcdef"), 404, "no-key")
     for wrong in ({"overlap": -1}, {"overlap": 721}, {"overlap": 0.5}, {"days": 0}, {"days": 731}):
         problem(rotate(administrator, key["id"], **wrong), 422, "invalid-request")

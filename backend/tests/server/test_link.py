@@ -282,7 +282,7 @@ def test_a_controller_that_never_answers_is_given_up(path: Path) -> None:
             running = await connected(client)
             with pytest.raises(CommandRefused, match="not known") as refused:
                 await client.send(SetMode(actor=ACTOR, mode=Mode.PAUSED))
-            assert (refused.value.slug, refused.value.status) == ("controller-no-answer", 504)
+            assert (refused.value.slug, refused.value.status) == ("controller-timeout", 504)
             running.cancel()
 
     asyncio.run(scenario())

@@ -50,7 +50,7 @@ def test_no_secret_is_in_the_log(tmp_path: Path) -> None:
     answered = [event for event in events if event["event"] == "answered"]
     assert [event["request"] for event in answered] == numbers
     assert [event["status"] for event in answered] == [201, 204, 401, 200, 200, 201, 503]
-    assert {event["route"] for event in answered} >= {"/api/v1/session", "/api/v1/keys"}
+    assert {event["route"] for event in answered} >= {"/api/v1/session", "/api/v1/api-keys"}
     for name, secret in secrets.items():
         assert secret, name
         assert secret not in log, name
@@ -67,14 +67,14 @@ def _used(address: str, link: str) -> tuple[dict[str, str], list[str]]:
     until(is_there, 30)
     with httpx.Client(base_url=f"{address}/api/v1", timeout=20) as browser:
         began = {"token": link, "name": "Ada", "password": PASSWORD}
-        answers = [browser.post("/first-administrator", json=began)]
+        answers = [browser.post("/setup", json=began)]
         cookie = next(iter(browser.cookies.values()))
         answers += [
             browser.request("DELETE", "/session"),
             browser.post("/session", json={"name": "Ada", "password": WRONG}),
             browser.post("/session", json={"name": "Ada", "password": PASSWORD}),
             browser.put("/session/password", json={"old": PASSWORD, "new": NEW}),
-            browser.post("/keys", json={"name": "MES", "scopes": ["read"], "days": 1}),
+            browser.post("/api-keys", json={"name": "MES", "scopes": ["read"], "days": 1}),
         ]
         again, key = next(iter(browser.cookies.values())), answers[-1].json()["secret"]
         httpx.get(f"{address}/api/v1/state", headers={"Authorization": f"Bearer {key}"})

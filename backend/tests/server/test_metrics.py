@@ -142,7 +142,7 @@ def test_a_database_that_cannot_be_written_to_is_told(
 def test_prometheus_reads_all_figures(server: Server, client: httpx.Client) -> None:
     write_restarts(server.settings.controller_socket.parent, {"controller": 2, "server": 0})
     assert client.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
-    assert client.get("/api/v1/keys").status_code == 403
+    assert client.get("/api/v1/api-keys").status_code == 403
     assert client.get("/somewhere/else").status_code in (404, 503)
     with listen(server) as stream:
         stream.recv()
@@ -163,7 +163,7 @@ def test_prometheus_reads_all_figures(server: Server, client: httpx.Client) -> N
     assert value(found, "packml_state", state="execute") == 1
     assert value(found, "stream_clients", route="/api/v1/stream") == 1
     assert value(found, "http_requests_total", method="PUT", route="/api/v1/mode", status="204") == 1
-    assert value(found, "http_requests_total", method="GET", route="/api/v1/keys", status="403") == 1
+    assert value(found, "http_requests_total", method="GET", route="/api/v1/api-keys", status="403") == 1
     assert value(found, "http_request_duration_seconds_count", route="/api/v1/mode") == 1
     assert any(each.labels["route"] == "none" for each in found["sequence_planner_http_requests"].samples)
     assert "/somewhere/else" not in httpx.get(f"{server.address}/metrics").text

@@ -241,7 +241,7 @@ def test_what_happens_to_the_files_of_the_station_is_taken_up(eva: httpx.Client,
 
 def test_a_revision_is_saved_and_taken_back(eva: httpx.Client, adam: httpx.Client) -> None:
     number = made(eva, TITLE)["number"]
-    problem(save(eva, "Bolts", number - 1), 409, "draft-moved")
+    problem(save(eva, "Bolts", number - 1), 409, "stale-draft")
     problem(save(eva, "  ", number), 422, "edit-refused")
     saved = save(eva, "Bolts", number)
     assert saved.status_code == 201

@@ -46,13 +46,13 @@ MOVE = "robot.move_to_position(home)"
         ("POST", "/stepping/step", {}, TakeStep.model_construct()),
         (
             "PUT",
-            f"/service/ability/{quote(MOVE)}",
+            f"/availability/ability/{quote(MOVE)}",
             {"in_service": False, "reason": WHY},
             SetService.model_construct(of=ServiceKind.ABILITY, name=MOVE, in_service=False, reason=WHY),
         ),
         (
             "PUT",
-            "/service/resource/robot",
+            "/availability/resource/robot",
             {"in_service": True, "reason": WHY},
             SetService.model_construct(of=ServiceKind.RESOURCE, name="robot", in_service=True, reason=WHY),
         ),
@@ -92,9 +92,9 @@ def test_each_request_is_a_command(
     [
         ("PUT", "/mode", {"mode": "restart"}, "body.mode"),  # it has a way in of its own
         ("PUT", "/stepping", {}, "body.on"),
-        ("PUT", "/service/topic/robot", {"in_service": False, "reason": WHY}, "path.of"),
-        ("PUT", "/service/resource/robot", {"in_service": False}, "body.reason"),
-        ("PUT", "/service/resource/robot", {"in_service": False, "reason": ""}, "body.reason"),
+        ("PUT", "/availability/topic/robot", {"in_service": False, "reason": WHY}, "path.kind"),
+        ("PUT", "/availability/resource/robot", {"in_service": False}, "body.reason"),
+        ("PUT", "/availability/resource/robot", {"in_service": False, "reason": ""}, "body.reason"),
         ("PUT", "/forces/robot.on", {"value": True, "seconds": 60}, "body.reason"),
         ("PUT", "/forces/robot.on", {"value": True, "seconds": 0, "reason": WHY}, "body.seconds"),
         ("PUT", "/forces/robot.on", {"value": True, "seconds": 3601, "reason": WHY}, "body.seconds"),

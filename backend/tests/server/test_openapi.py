@@ -84,7 +84,7 @@ def test_each_operation_says_with_which_status_it_refuses(described: dict[str, A
     paths = described["paths"]
     assert paths["/healthz"]["get"]["responses"].keys() == {"200", "431", "503", "default"}
     assert paths["/api/v1/tasks"]["get"]["responses"].keys() == {"200", "401", "403", "431", "503", "default"}
-    change = paths["/api/v1/people/{person}"]["patch"]["responses"]
+    change = paths["/api/v1/users/{person}"]["patch"]["responses"]
     assert {"401", "403", "404", "409", "412", "415", "422", "428"} < change.keys()
     assert list(change["200"]["headers"]) == ["ETag"]
     assert list(described["components"]["responses"]["Problem429"]["headers"]) == ["Retry-After"]

@@ -117,7 +117,7 @@ def test_an_order_that_the_station_does_not_know_can_be_aborted(
 ) -> None:
     handed_over(mes, controller, "engine")
     become(server, "engine", OrderState.RUNNING)
-    controller.refuses = {CommandJob: "unknown-job", TakeJob: "not-by-order"}
+    controller.refuses = {CommandJob: "unknown-job", TakeJob: "not-in-job-mode"}
     assert tell(mes, "engine", "Abort").json()["commanded"] == "Abort"
     until(lambda: mes.get(f"{ORDERS}/engine").json()["state"] == "Aborted")
     assert mes.get("/api/v1/job-responses/engine").json()["outcome"] == "aborted"
@@ -136,7 +136,7 @@ def test_an_order_that_may_be_on_its_way_is_aborted_there(mes: httpx.Client, con
 def test_what_is_refused_is_not_said_at_every_look(mes: httpx.Client, controller: Working, server: Server) -> None:
     handed_over(mes, controller, "engine")
     become(server, "engine", OrderState.RUNNING)
-    controller.refuses = {TakeJob: "not-by-order"}
+    controller.refuses = {TakeJob: "not-in-job-mode"}
     store(mes, "another", id="another")
     given = len(controller.said(TakeJob))
     time.sleep(LOOKS)

@@ -22,7 +22,7 @@ from .test_looking import Telling
 
 __all__ = ["controller", "mes"]
 
-PLACE = "/api/v1/order-of-work"
+PLACE = "/api/v1/schedule"
 
 
 @pytest.fixture(autouse=True)

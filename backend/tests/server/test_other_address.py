@@ -105,11 +105,11 @@ def test_a_watch_is_paired_sees_its_task_and_acknowledges_it(place: Place, contr
 def test_it_is_opened_over_https_by_its_own_name_there_and_nowhere_else(place: Place) -> None:
     port = place.server.settings.port
     with pytest.raises(httpx.TransportError):
-        httpx.get(f"http://{place.address}:{port}/watch")
+        httpx.get(f"http://{place.address}:{port}/operator")
     with pytest.raises(httpx.ConnectError):
-        httpx.get(f"http://127.0.0.1:{port}/watch")
+        httpx.get(f"http://127.0.0.1:{port}/operator")
     with place.browser() as browser:
         for host in ("evil.example", f"127.0.0.1:{port}", "localhost"):
-            problem(browser.get("/watch", headers={"Host": host}), 421, "wrong-host")
+            problem(browser.get("/operator", headers={"Host": host}), 421, "wrong-host")
         foreign = {"Origin": f"http://{place.address}:{port}"}
         problem(browser.post(f"{WATCHES}/pairing", json={"code": "1"}, headers=foreign), 403, "foreign-origin")

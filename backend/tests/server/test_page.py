@@ -15,7 +15,7 @@ def built(server: Server) -> Server:
     page = server.settings.page
     (page / "_app" / "immutable").mkdir(parents=True)
     (page / "index.html").write_text("<title>Operate</title>")
-    (page / "watch.html").write_text("<title>Watch</title>")
+    (page / "operator.html").write_text("<title>Operator view</title>")
     (page / "theme.js").write_text("1")
     (page / "_app" / "immutable" / "start.abc.js").write_text("2")
     (page.parent / "secret.html").write_text("not for you")
@@ -23,7 +23,7 @@ def built(server: Server) -> Server:
 
 
 def test_without_a_build_the_page_says_how_to_make_one(client: httpx.Client) -> None:
-    for path in ("/", "/watch"):
+    for path in ("/", "/operator"):
         answer = client.get(path)
         assert answer.status_code == 503
         assert "make run" in answer.text
@@ -31,14 +31,14 @@ def test_without_a_build_the_page_says_how_to_make_one(client: httpx.Client) -> 
 
 def test_each_page_has_its_address(built: Server, client: httpx.Client) -> None:
     assert "Operate" in client.get("/").text
-    assert "Watch" in client.get("/watch").text
-    assert client.get("/watch").headers["content-type"].startswith("text/html")
+    assert "Operator view" in client.get("/operator").text
+    assert client.get("/operator").headers["content-type"].startswith("text/html")
     assert client.head("/").status_code == 200
 
 
 def test_only_what_carries_a_hash_in_its_name_is_kept(built: Server, client: httpx.Client) -> None:
     assert "immutable" in client.get("/_app/immutable/start.abc.js").headers["cache-control"]
-    for path in ("/", "/watch", "/theme.js"):
+    for path in ("/", "/operator", "/theme.js"):
         assert client.get(path).headers["cache-control"] == "no-cache"
     assert client.get("/_app/immutable/old.js").headers["cache-control"] == "no-store"
 
@@ -89,6 +89,6 @@ def test_a_name_that_no_file_can_have_is_not_found(built: Server, client: httpx.
 
 
 def test_a_page_cannot_be_written(built: Server, client: httpx.Client) -> None:
-    answer = client.post("/watch", json={})
+    answer = client.post("/operator", json={})
     problem(answer, 405, "method-not-allowed")
     assert answer.headers["allow"] == "GET, HEAD"

@@ -159,13 +159,13 @@ def test_a_watch_that_nobody_confirms_is_told_nothing_and_is_gone_after_two_minu
     server: Server, client: httpx.Client, device: Device
 ) -> None:
     watch = paired(client, device)
-    problem(device.acknowledge(OWN), 403, "watch-waiting")
+    problem(device.acknowledge(OWN), 403, "wearable-unconfirmed")
     with pytest.raises(InvalidStatus) as refused:
         device.listen()
     assert refused.value.response.status_code == 403
     later(server, 121)
     assert device.state() == "signed-out"
-    problem(confirm(client, watch), 404, "no-watch")
+    problem(confirm(client, watch), 404, "no-wearable")
     assert client.get(WATCHES).json()["watches"] == []
 
 
@@ -174,7 +174,7 @@ def test_a_watch_that_is_refused_does_not_come_in(client: httpx.Client, device: 
     watch = device.pair(made["code"]).json()["id"]
     assert client.delete(f"{WATCHES}/{watch}").status_code == 204
     assert device.state() == "signed-out"
-    problem(confirm(client, watch), 409, "watch-not-waiting")
+    problem(confirm(client, watch), 409, "wearable-not-waiting")
     problem(device.pair(made["code"]), 403, "wrong-code")
     assert device.state() == "signed-out"
 
@@ -221,13 +221,13 @@ def test_what_is_no_code_is_not_counted(client: httpx.Client, device: Device) ->
 def test_two_watches_do_not_have_one_name(client: httpx.Client, device: Device) -> None:
     watch = active(client, device)
     body = {"name": "WATCH  1", "resource": "operator"}
-    problem(client.post(f"{WATCHES}/offers", json=body), 409, "watch-exists")
+    problem(client.post(f"{WATCHES}/offers", json=body), 409, "wearable-exists")
     client.delete(f"{WATCHES}/{watch}")
     assert offer(client, "Watch 1")
 
 
 def test_a_watch_that_is_not_there_is_neither_confirmed_nor_revoked(client: httpx.Client) -> None:
     for watch in ("0123456789abcdef", "no one", "Ä", "self"):
-        problem(confirm(client, watch), 404, "no-watch")
-        problem(client.delete(f"{WATCHES}/{watch}"), 404, "no-watch")
+        problem(confirm(client, watch), 404, "no-wearable")
+        problem(client.delete(f"{WATCHES}/{watch}"), 404, "no-wearable")
         problem(client.delete(f"{WATCHES}/offers/{watch}"), 404, "no-offer")

@@ -22,7 +22,7 @@ from sequence_planner.journal.entry import Record
 from .running import Server, listen
 from .test_acting import problem
 
-PEOPLE = "/api/v1/people"
+PEOPLE = "/api/v1/users"
 TEMPORARY = "a temporary password"
 BODY = {"name": "Eva Lund", "role": "operator", "password": TEMPORARY}
 
@@ -82,10 +82,10 @@ def test_a_person_is_entered_and_has_to_choose_another_password(
     assert listed(administrator)["Eva Lund"] == answer.json()
     assert sign_in(browser, TEMPORARY).json()["must_change_password"]
     assert listed(administrator)["Eva Lund"]["sessions"] == 1
-    problem(browser.get("/api/v1/watches"), 403, "password-must-change")
+    problem(browser.get("/api/v1/wearables"), 403, "password-must-change")
     changed = browser.put("/api/v1/session/password", json={"old": TEMPORARY, "new": "a password of her own"})
     assert not changed.json()["must_change_password"]
-    assert browser.get("/api/v1/watches").status_code == 200
+    assert browser.get("/api/v1/wearables").status_code == 200
     created = next(each for each in records(server) if each.entry.action == "person-created")
     assert created.entry.actor.name.startswith("Administrator")
     assert created.entry.actor.address == "127.0.0.1"
@@ -157,12 +157,12 @@ def test_a_change_names_the_revision_that_was_seen(administrator: httpx.Client) 
     for odd in ("1", '"one"', 'W/"1"', '"1", "2"', '""', '"99999999999999999999"'):
         answer = administrator.patch(place, json={"role": "engineer"}, headers={"If-Match": odd})
         assert problem(answer, 422, "invalid-request")["errors"][0]["field"] == "header.if-match"
-    problem(change(administrator, person, {"role": "engineer"}, revision=7), 412, "person-changed")
+    problem(change(administrator, person, {"role": "engineer"}, revision=7), 412, "user-changed")
     assert listed(administrator)["Eva Lund"] == person
     answer = change(administrator, person, {"role": "engineer"})
     assert (answer.status_code, answer.headers["etag"]) == (200, '"2"')
     assert answer.json() == listed(administrator)["Eva Lund"] == person | {"role": "engineer", "revision": 2}
-    problem(change(administrator, person, {"disabled": True}), 412, "person-changed")
+    problem(change(administrator, person, {"disabled": True}), 412, "user-changed")
     whichever = administrator.patch(place, json={"role": "viewer"}, headers={"If-Match": "*"})
     assert (whichever.status_code, whichever.headers["etag"]) == (200, '"3"')
     assert administrator.patch(place, json={"role": "engineer"}, headers={"If-Match": '"3"'}).status_code == 200
@@ -203,9 +203,9 @@ def test_a_change_of_what_somebody_may_do_ends_their_sessions(server: Server, ad
     for number, body in enumerate(changes):
         person = server.person(name=f"Olle {number}")
         with server.client(token=server.session(person)[0]) as browser:
-            assert browser.get("/api/v1/watches").status_code == 200
+            assert browser.get("/api/v1/wearables").status_code == 200
             assert change(administrator, person.model_dump(), body).status_code == 200
-            problem(browser.get("/api/v1/watches"), 401, "signed-out")
+            problem(browser.get("/api/v1/wearables"), 401, "signed-out")
 
 
 def test_whoever_is_disabled_cannot_sign_in_until_enabled_again(
@@ -250,7 +250,7 @@ def test_somebody_is_signed_out_everywhere(server: Server, administrator: httpx.
         assert closing_code(stream) == 4401
     for token in tokens:
         with server.client(token=token) as browser:
-            problem(browser.get("/api/v1/watches"), 401, "signed-out")
+            problem(browser.get("/api/v1/wearables"), 401, "signed-out")
     assert listed(administrator)["Olle"]["sessions"] == 0
 
 
@@ -258,9 +258,9 @@ def test_who_is_not_there_is_not_changed(administrator: httpx.Client) -> None:
     for person in ("0123456789abcdef", "no one", "Ä", "'; drop table people; --"):
         place = f"{PEOPLE}/{person}"
         headers = {"If-Match": '"1"'}
-        problem(administrator.patch(place, json={"role": "viewer"}, headers=headers), 404, "no-person")
-        problem(administrator.put(f"{place}/password", json={"password": TEMPORARY}), 404, "no-person")
-        problem(administrator.delete(f"{place}/sessions"), 404, "no-person")
+        problem(administrator.patch(place, json={"role": "viewer"}, headers=headers), 404, "no-user")
+        problem(administrator.put(f"{place}/password", json={"password": TEMPORARY}), 404, "no-user")
+        problem(administrator.delete(f"{place}/sessions"), 404, "no-user")
 
 
 def test_a_form_is_not_read(administrator: httpx.Client) -> None:

@@ -17,24 +17,24 @@ UNREAD = {400, 405, 415}  # of requests that are refused before anybody asks who
 # What takes a secret, a model of the station, a person's resource, a demonstration, or what a running station makes in
 # time.
 NOT_GUESSED = {
-    "POST /api/v1/watches/offers",
+    "POST /api/v1/wearables/offers",
     "GET /api/v1/history/checkpoint",
     "GET /api/v1/history/at",  # no run is recorded here
     "GET /api/v1/history/line",
-    "POST /api/v1/first-administrator",
+    "POST /api/v1/setup",
     "POST /api/v1/session",
     "POST /api/v1/session/demonstration",
     "POST /api/v1/session/provider",
     "POST /api/v1/session/provider/answer",
     "PUT /api/v1/session/password",
     "POST /api/v1/ros/attachments",
-    "POST /api/v1/watches/pairing",
+    "POST /api/v1/wearables/pairing",
     "POST /api/v1/webhooks",  # to no host may be sent here
     "GET /api/v1/backups",  # there is no model to go with the database
     "POST /api/v1/backups",
     "GET /api/v1/storage",  # as of backups
     "POST /api/v1/storage/archive",
-    "GET /api/v1/watches/self",
+    "GET /api/v1/wearables/self",
 }
 
 

@@ -132,9 +132,9 @@ def test_what_was_given_up_is_listed_and_sent_again(
     )
     assert answer["next"] == 1
     assert client.get(f"{place}/dead-letters?after=1").json() == {"dead_letters": [], "next": 1}
-    assert client.post(f"{place}/dead-letters/again", json={"events": [7]}).json() == {"events": 0}
-    assert client.post(f"{place}/dead-letters/again", json={}).json() == {"events": 1}
+    assert client.post(f"{place}/dead-letters/retry", json={"events": [7]}).json() == {"events": 0}
+    assert client.post(f"{place}/dead-letters/retry", json={}).json() == {"events": 1}
     until(lambda: len(receiver.received) == 2)
     assert receiver.received[1].verified(made["secret"])["number"] == 1
     problem(client.get(f"{WEBHOOKS}/none/dead-letters"), 404, "no-webhook")
-    problem(client.post(f"{WEBHOOKS}/none/dead-letters/again", json={}), 404, "no-webhook")
+    problem(client.post(f"{WEBHOOKS}/none/dead-letters/retry", json={}), 404, "no-webhook")

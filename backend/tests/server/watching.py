@@ -14,7 +14,7 @@ from .example_view import ability, example_view
 from .running import Server
 from .test_acting import problem
 
-WATCHES = "/api/v1/watches"
+WATCHES = "/api/v1/wearables"
 OWN, FOREIGN = "7", "8"  # tasks
 DAY = 86400.0  # seconds
 

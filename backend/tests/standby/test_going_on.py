@@ -112,7 +112,7 @@ def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_b
         if mode is not None:
             with pytest.raises(CommandRefused, match="goes on by itself before a person starts") as refused:
                 await life._handle(SetMode(actor=SYSTEM, mode=mode))
-            assert refused.value.slug == ("stands-by" if stands_by else "preparing")
+            assert refused.value.slug == ("on-standby" if stands_by else "preparing")
         keeper.taken_from, now = "press-a", time.monotonic
         monkeypatch.setattr(time, "monotonic", lambda: now() + later)
         alone = asyncio.create_task(asyncio.sleep(0))

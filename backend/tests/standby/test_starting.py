@@ -96,7 +96,7 @@ def kept_while_it_stands_by(station: EditedStation, other: Mortal) -> None:
     eventually(lambda: (station.station().get("deployment") or {}).get("state") == "runs", LONG)
     assert station.get("standby", "station")["active"] is False
     refused = station.browser.post("production/start", json={})
-    assert (refused.status_code, refused.json()["type"]) == (503, "/problems/stands-by")
+    assert (refused.status_code, refused.json()["type"]) == (503, "/problems/on-standby")
     # Later it commands again, with the model that was deployed.
     other.kill("controller")
     eventually(lambda: (station.station().get("standby") or {}).get("active") is True, LONG)

@@ -66,7 +66,7 @@ class Operator:
 
     def is_told_to_take_over(self) -> bool:
         """Whether the first advice that leaves out nothing is to take over."""
-        answer = self.station.browser.get("advice", timeout=30)
+        answer = self.station.browser.get("recovery/proposals", timeout=30)
         offers = [offer for offer in answer.json().get("offers", ()) if not offer["left_out"]]
         return bool(offers) and [(each["name"], each["then"]) for each in offers[0]["physical"]] == [(TAKE_OVER, True)]
 
@@ -77,7 +77,7 @@ class Operator:
     def put_robot(self, *, in_service: bool) -> None:
         """Take it out of service, or put it back."""
         body = {"in_service": in_service, "reason": "its computer is dead" if not in_service else "it was repaired"}
-        assert self.do("service/resource/robot", body) == httpx.codes.NO_CONTENT
+        assert self.do("availability/resource/robot", body) == httpx.codes.NO_CONTENT
 
     def robot_is_repaired(self) -> None:
         """Its computer is started again, it stands at home, and its key is turned back."""

@@ -24,6 +24,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/abilities/{name}/blockers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Ability Blockers
+         * @description What keeps an ability from starting, and who could change it.
+         */
+        get: operations["ability_blockers"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/abilities/{name}/definition": {
         parameters: {
             query?: never;
@@ -36,28 +56,6 @@ export interface paths {
          * @description Its guards, actions and expected reactions as they are written, what of them holds now, and its last trial.
          */
         get: operations["ability_definition"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/advice": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Advice
-         * @description Proven ways on from the present state, the least effort first, each with its plan.
-         *
-         *     409 `errand-under-way` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
-         */
-        get: operations["advice"];
         put?: never;
         post?: never;
         delete?: never;
@@ -97,7 +95,7 @@ export interface paths {
         put?: never;
         /**
          * Acknowledge Alarm
-         * @description Say that one has seen an alarm; 409 `alarm-came-again` where it came anew after the one that was seen.
+         * @description Say that one has seen an alarm; 409 `alarm-recurred` where it came anew after the one that was seen.
          */
         post: operations["acknowledge_alarm"];
         delete?: never;
@@ -206,6 +204,72 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/api-keys": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Api Keys
+         * @description All keys, without their secrets.
+         */
+        get: operations["list_api_keys"];
+        put?: never;
+        /**
+         * Create Api Key
+         * @description Make a key. Its secret is answered this once: only a hash of it is kept.
+         */
+        post: operations["create_api_key"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/api-keys/{key}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke Api Key
+         * @description Revoke a key: whoever bears it is refused from now on.
+         */
+        delete: operations["revoke_api_key"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/api-keys/{key}/rotation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Rotate Api Key
+         * @description Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
+         *
+         *     409 `key-expired` when the key works no more.
+         */
+        post: operations["rotate_api_key"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/approvals/corrections": {
         parameters: {
             query?: never;
@@ -216,12 +280,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Ask For Correction
+         * Request Correction Approval
          * @description Ask a second person to approve a correction, within two minutes and in this state. It takes control.
          *
          *     409 `no-approval-needed` where none of its variables asks for that.
          */
-        post: operations["ask_for_correction"];
+        post: operations["request_correction_approval"];
         delete?: never;
         options?: never;
         head?: never;
@@ -238,17 +302,17 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Ask For Force
+         * Request Force Approval
          * @description Ask a second person to approve a force, as a correction.
          */
-        post: operations["ask_for_force"];
+        post: operations["request_force_approval"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/v1/approvals/outputs": {
+    "/api/v1/approvals/restored-outputs": {
         parameters: {
             query?: never;
             header?: never;
@@ -258,10 +322,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Ask For Outputs
+         * Request Outputs Approval
          * @description Ask a second person to approve a decision on outputs, as a correction.
          */
-        post: operations["ask_for_outputs"];
+        post: operations["request_outputs_approval"];
         delete?: never;
         options?: never;
         head?: never;
@@ -331,6 +395,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/availability/{kind}/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set Availability
+         * @description Take a resource, an ability or an operation out of service, or put it back. It takes control.
+         */
+        put: operations["set_availability"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/backups": {
         parameters: {
             query?: never;
@@ -339,16 +423,16 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * All Backups
+         * List Backups
          * @description Which backups there are, what is being done, and what would be in the way of another.
          */
-        get: operations["all_backups"];
+        get: operations["list_backups"];
         put?: never;
         /**
-         * Make
+         * Create Backup
          * @description Make a backup in the background. Whoever asks while one is being made gets that one.
          */
-        post: operations["make"];
+        post: operations["create_backup"];
         delete?: never;
         options?: never;
         head?: never;
@@ -365,10 +449,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Check
+         * Check Backup
          * @description Read a backup as a whole in the background, as if it were to be restored, but put nothing in place.
          */
-        post: operations["check"];
+        post: operations["check_backup"];
         delete?: never;
         options?: never;
         head?: never;
@@ -395,7 +479,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/control": {
+    "/api/v1/control-lock": {
         parameters: {
             query?: never;
             header?: never;
@@ -405,7 +489,7 @@ export interface paths {
         get?: never;
         /**
          * Take Control
-         * @description Put this session in control; 409 `control-moved` when by now another is than the one that was seen.
+         * @description Put this session in control; 409 `control-changed` when by now another is than the one that was seen.
          */
         put: operations["take_control"];
         post?: never;
@@ -432,7 +516,7 @@ export interface paths {
          * Correct
          * @description Give estimates other values, all at once: in restart mode, or before production is started. It takes control.
          *
-         *     409 `state-moved` when the state is not at this revision any more; nothing has changed then.
+         *     409 `stale-revision` when the state is not at this revision any more; nothing has changed then.
          */
         post: operations["correct"];
         delete?: never;
@@ -452,7 +536,7 @@ export interface paths {
         put?: never;
         /**
          * Confirm Correction
-         * @description Say that these estimates are as the station believes; 409 `state-moved` when one is another by now.
+         * @description Say that these estimates are as the station believes; 409 `stale-revision` when one is another by now.
          */
         post: operations["confirm_correction"];
         delete?: never;
@@ -496,95 +580,9 @@ export interface paths {
          * Undo Correction
          * @description Take the last correction back, as long as its variables have the values that it gave them. It takes control.
          *
-         *     409 `state-moved` when they have others, or when the last correction was made on another revision.
+         *     409 `stale-revision` when they have others, or when the last correction was made on another revision.
          */
         post: operations["undo_correction"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/errands": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Take Errand
-         * @description Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
-         *
-         *     409 `offer-gone` and `state-moved` ask to look again; `not-confirmed`: starts and corrections are not the offer's.
-         */
-        post: operations["take_errand"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/errands/goal-preview": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Preview Goal
-         * @description A plan to whatever shall hold, to be looked at and perhaps taken.
-         *
-         *     422 `bad-predicate` names the place; 409 `goal-holds` and `no-plan` say why there is nothing to take.
-         */
-        post: operations["preview_goal"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/errands/reset-preview": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Preview Reset
-         * @description A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none.
-         */
-        post: operations["preview_reset"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/errands/stop": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Stop Errand
-         * @description Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
-         *
-         *     200 says that it was done and the journal does not have it yet.
-         */
-        post: operations["stop_errand"];
         delete?: never;
         options?: never;
         head?: never;
@@ -616,28 +614,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/first-administrator": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * First Administrator
-         * @description Make the first administrator with the link of the first start, which works once and for 15 minutes.
-         *
-         *     403 `link-unusable` when it does not.
-         */
-        post: operations["first_administrator"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/forces/{name}": {
         parameters: {
             query?: never;
@@ -660,6 +636,26 @@ export interface paths {
          * @description Let a variable be as it comes again, if it is forced. It takes control.
          */
         delete: operations["release_force"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/goals/blockers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Goal Blockers
+         * @description What keeps a predicate from being true, and whether the station could reach it; 422 `bad-predicate`.
+         */
+        post: operations["goal_blockers"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -758,10 +754,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Time Line
+         * Timeline
          * @description What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it.
          */
-        get: operations["time_line"];
+        get: operations["timeline"];
         put?: never;
         post?: never;
         delete?: never;
@@ -778,10 +774,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Look Back
+         * State At
          * @description A record, and how the station was right after it.
          */
-        get: operations["look_back"];
+        get: operations["state_at"];
         put?: never;
         post?: never;
         delete?: never;
@@ -800,10 +796,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Take Branch
+         * Branch History
          * @description How the station would have gone on from there, with emulated devices. Nothing of it reaches the station.
          */
-        post: operations["take_branch"];
+        post: operations["branch_history"];
         delete?: never;
         options?: never;
         head?: never;
@@ -933,72 +929,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/keys": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * All Keys
-         * @description All keys, without their secrets.
-         */
-        get: operations["all_keys"];
-        put?: never;
-        /**
-         * Make Key
-         * @description Make a key. Its secret is answered this once: only a hash of it is kept.
-         */
-        post: operations["make_key"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/keys/{key}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post?: never;
-        /**
-         * Revoke Key
-         * @description Revoke a key: whoever bears it is refused from now on.
-         */
-        delete: operations["revoke_key"];
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/keys/{key}/rotation": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Rotate Key
-         * @description Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
-         *
-         *     409 `key-over` when the key works no more.
-         */
-        post: operations["rotate_key"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/mode": {
         parameters: {
             query?: never;
@@ -1011,8 +941,8 @@ export interface paths {
          * Set Mode
          * @description Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused.
          *
-         *     200 says that the station is stopped and the journal does not have it yet; 503 `stop-not-kept` that it is stopped
-         *     and nowhere written down.
+         *     200 says that the station is stopped and the journal does not have it yet; 503 `stop-not-recorded` that it is
+         *     stopped and nowhere written down.
          */
         put: operations["set_mode"];
         post?: never;
@@ -1311,26 +1241,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/model/pipelines/fits": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Find Fits
-         * @description What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow.
-         */
-        post: operations["find_fits"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/model/pipelines/preview": {
         parameters: {
             query?: never;
@@ -1371,7 +1281,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/model/pipelines/trials": {
+    "/api/v1/model/pipelines/suggestions": {
         parameters: {
             query?: never;
             header?: never;
@@ -1381,10 +1291,30 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Try Pipeline
+         * Suggest Stages
+         * @description What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow.
+         */
+        post: operations["suggest_stages"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/test-runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Run Pipeline Test
          * @description What comes of a message, or of several in time that is told, with the record at every edge.
          */
-        post: operations["try_pipeline"];
+        post: operations["run_pipeline_test"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1446,7 +1376,7 @@ export interface paths {
         put?: never;
         /**
          * Save Revision
-         * @description Save the draft as a revision; refused where somebody has changed it since (`draft-moved`).
+         * @description Save the draft as a revision; refused where somebody has changed it since (`stale-draft`).
          */
         post: operations["save_revision"];
         delete?: never;
@@ -1579,7 +1509,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/order-of-work": {
+    "/api/v1/operations/{name}/blockers": {
         parameters: {
             query?: never;
             header?: never;
@@ -1587,10 +1517,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read Order Of Work
-         * @description When orders are expected to be worked, in the order in which they are to begin; only the first `limit`.
+         * Operation Blockers
+         * @description What keeps an operation from being active or completed, and who could change it.
          */
-        get: operations["read_order_of_work"];
+        get: operations["operation_blockers"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1599,7 +1529,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/outputs": {
+    "/api/v1/operator-plans": {
         parameters: {
             query?: never;
             header?: never;
@@ -1607,12 +1537,79 @@ export interface paths {
             cookie?: never;
         };
         get?: never;
+        put?: never;
         /**
-         * Decide Outputs
-         * @description Decide on outputs that came back from the journal and would move devices; before production. It takes control.
+         * Execute Operator Plan
+         * @description Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
+         *
+         *     409 `proposal-gone` and `stale-revision` ask to look again; `not-confirmed`: starts and corrections are not those
+         *     of the offer.
          */
-        put: operations["decide_outputs"];
-        post?: never;
+        post: operations["execute_operator_plan"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operator-plans/goal-preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview Goal
+         * @description A plan to whatever shall hold, to be looked at and perhaps taken.
+         *
+         *     422 `bad-predicate` names the place; 409 `goal-holds` and `no-plan` say why there is nothing to take.
+         */
+        post: operations["preview_goal"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operator-plans/reset-preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview Reset
+         * @description A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none.
+         */
+        post: operations["preview_reset"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operator-plans/stop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop Operator Plan
+         * @description Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
+         *
+         *     200 says that it was done and the journal does not have it yet.
+         */
+        post: operations["stop_operator_plan"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1660,96 +1657,6 @@ export interface paths {
          * @description Take back what is set, if anything is. It takes control.
          */
         delete: operations["clear_override"];
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/people": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Everybody
-         * @description Everybody, by name; those who may no longer sign in too.
-         */
-        get: operations["everybody"];
-        put?: never;
-        /**
-         * Create Person
-         * @description Enter a person, who signs in with the temporary password and then has to choose another.
-         */
-        post: operations["create_person"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/people/{person}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        /**
-         * Change Person
-         * @description Change the role, or whether the person may sign in; either ends all of that person's sessions.
-         *
-         *     428 without `If-Match`, which may be `*` for whatever revision there is; 412 `person-changed` when another has
-         *     changed the person meanwhile; 409 `last-administrator` when nobody would be left to administer, or
-         *     `role-from-provider` where that is not for here.
-         */
-        patch: operations["change_person"];
-        trace?: never;
-    };
-    "/api/v1/people/{person}/password": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        /**
-         * Give Password
-         * @description Give a temporary password; it ends all of that person's sessions.
-         *
-         *     409 `no-password-here` where the person signs in with a provider.
-         */
-        put: operations["give_password"];
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/people/{person}/sessions": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        post?: never;
-        /**
-         * End Sessions
-         * @description Sign the person out everywhere.
-         */
-        delete: operations["end_sessions"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1836,6 +1743,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/recovery/proposals": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Recovery Proposals
+         * @description Proven ways on from the present state, the least effort first, each with its plan.
+         *
+         *     409 `plan-running` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
+         */
+        get: operations["recovery_proposals"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/resources": {
         parameters: {
             query?: never;
@@ -1896,6 +1825,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/restored-outputs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Confirm Restored Outputs
+         * @description Decide on outputs that came back from the journal and would move devices; before production. It takes control.
+         */
+        put: operations["confirm_restored_outputs"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/ros/attachments": {
         parameters: {
             query?: never;
@@ -1940,19 +1889,19 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/service/{of}/{name}": {
+    "/api/v1/schedule": {
         parameters: {
             query?: never;
             header?: never;
             path?: never;
             cookie?: never;
         };
-        get?: never;
         /**
-         * Set Service
-         * @description Take a resource, an ability or an operation out of service, or put it back. It takes control.
+         * Read Schedule
+         * @description When orders are expected to be worked, in the order in which they are to begin; only the first `limit`.
          */
-        put: operations["set_service"];
+        get: operations["read_schedule"];
+        put?: never;
         post?: never;
         delete?: never;
         options?: never;
@@ -2063,10 +2012,52 @@ export interface paths {
          * Finish Sign In
          * @description Finish what this browser has begun; the session that it had ends.
          *
-         *     403 `sign-in-not-begun` where it has begun none, `provider-refused`, `provider-answer-unfit`, `no-role` or
+         *     403 `sign-in-not-begun` where it has begun none, `provider-refused`, `provider-answer-invalid`, `no-role` or
          *     `disabled`; 503 `provider-unavailable`.
          */
         post: operations["finish_sign_in"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/settings/job-mode": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set Job Mode
+         * @description Let operations of work masters be active for job orders only, or whenever they can be. It takes control.
+         */
+        put: operations["set_job_mode"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/setup": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Set Up
+         * @description Make the first administrator with the link of the first start, which works once and for 15 minutes.
+         *
+         *     403 `setup-link-invalid` when it does not.
+         */
+        post: operations["set_up"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2276,6 +2267,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/test-runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Start Test Run
+         * @description Start the ability alone, at once; `POST /operator-plans/stop` ends that. It takes control, and the paused mode.
+         *
+         *     409 `not-startable` says what its guards or the supervisor lack; `real-devices`: they have not been confirmed.
+         */
+        post: operations["start_test_run"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/topics": {
         parameters: {
             query?: never;
@@ -2296,7 +2309,31 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/trials": {
+    "/api/v1/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Users
+         * @description Everybody, by name; those who may no longer sign in too.
+         */
+        get: operations["list_users"];
+        put?: never;
+        /**
+         * Create User
+         * @description Enter a person, who signs in with the temporary password and then has to choose another.
+         */
+        post: operations["create_user"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/users/{person}": {
         parameters: {
             query?: never;
             header?: never;
@@ -2305,20 +2342,64 @@ export interface paths {
         };
         get?: never;
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
         /**
-         * Try Ability
-         * @description Start the ability alone, at once; `POST /errands/stop` ends that. It takes control, and the paused mode.
+         * Change User
+         * @description Change the role, or whether the person may sign in; either ends all of that person's sessions.
          *
-         *     409 `not-startable` says what its guards or the supervisor lack; `real-devices`: they have not been confirmed.
+         *     428 without `If-Match`, which may be `*` for whatever revision there is; 412 `user-changed` when another has
+         *     changed the person meanwhile; 409 `last-administrator` when nobody would be left to administer, or
+         *     `role-from-provider` where that is not for here.
          */
-        post: operations["try_ability"];
+        patch: operations["change_user"];
+        trace?: never;
+    };
+    "/api/v1/users/{person}/password": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set User Password
+         * @description Give a temporary password; it ends all of that person's sessions.
+         *
+         *     409 `no-password-here` where the person signs in with a provider.
+         */
+        put: operations["set_user_password"];
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches": {
+    "/api/v1/users/{person}/sessions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * End User Sessions
+         * @description Sign the person out everywhere.
+         */
+        delete: operations["end_user_sessions"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/wearables": {
         parameters: {
             query?: never;
             header?: never;
@@ -2326,10 +2407,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * All Watches
+         * List Wearables
          * @description The watches there are or were, the offers that are open, and the resources that a watch can serve.
          */
-        get: operations["all_watches"];
+        get: operations["list_wearables"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2338,7 +2419,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches/offers": {
+    "/api/v1/wearables/offers": {
         parameters: {
             query?: never;
             header?: never;
@@ -2358,7 +2439,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches/offers/{offer}": {
+    "/api/v1/wearables/offers/{offer}": {
         parameters: {
             query?: never;
             header?: never;
@@ -2378,7 +2459,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches/pairing": {
+    "/api/v1/wearables/pairing": {
         parameters: {
             query?: never;
             header?: never;
@@ -2388,19 +2469,19 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Pair Watch
+         * Pair Wearable
          * @description Redeem a code. The device gets its credential, which is worth nothing before an operator has confirmed it.
          *
          *     403 `wrong-code` whatever is wrong with it; 429 `too-many-attempts`.
          */
-        post: operations["pair_watch"];
+        post: operations["pair_wearable"];
         delete?: never;
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches/self": {
+    "/api/v1/wearables/self": {
         parameters: {
             query?: never;
             header?: never;
@@ -2408,10 +2489,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * This Watch
+         * This Wearable
          * @description What the watch that asks is called, whose tasks it shows, and whether it was confirmed yet.
          */
-        get: operations["this_watch"];
+        get: operations["this_wearable"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2420,7 +2501,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches/{watch}": {
+    "/api/v1/wearables/{watch}": {
         parameters: {
             query?: never;
             header?: never;
@@ -2431,16 +2512,16 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Revoke Watch
+         * Revoke Wearable
          * @description Refuse a device that waits, or revoke one that was confirmed; within two seconds it is told nothing any more.
          */
-        delete: operations["revoke_watch"];
+        delete: operations["revoke_wearable"];
         options?: never;
         head?: never;
         patch?: never;
         trace?: never;
     };
-    "/api/v1/watches/{watch}/confirmation": {
+    "/api/v1/wearables/{watch}/confirmation": {
         parameters: {
             query?: never;
             header?: never;
@@ -2450,10 +2531,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Confirm Watch
+         * Confirm Wearable
          * @description Confirm that the device that has redeemed the code is the one that was meant; within two minutes.
          */
-        post: operations["confirm_watch"];
+        post: operations["confirm_wearable"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2468,16 +2549,16 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * All Webhooks
+         * List Webhooks
          * @description All webhooks, without their secrets, and how it goes with each; and where they may go.
          */
-        get: operations["all_webhooks"];
+        get: operations["list_webhooks"];
         put?: never;
         /**
-         * Make Webhook
+         * Create Webhook
          * @description Make a webhook. Its secret is answered this once; deliveries are signed with it.
          */
-        post: operations["make_webhook"];
+        post: operations["create_webhook"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2528,7 +2609,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/webhooks/{webhook}/dead-letters/again": {
+    "/api/v1/webhooks/{webhook}/dead-letters/retry": {
         parameters: {
             query?: never;
             header?: never;
@@ -2538,70 +2619,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Send Again
+         * Retry Dead Letters
          * @description Try events once more that were given up.
          */
-        post: operations["send_again"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/why-not/goal": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Why Not Goal
-         * @description What keeps a predicate from being true, and whether the station could reach it; 422 `bad-predicate`.
-         */
-        post: operations["why_not_goal"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/why-not/{of}/{name}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Why Not
-         * @description What keeps an ability from starting, or an operation from being active or completed, and who could change it.
-         */
-        get: operations["why_not"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/work-by-order": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        /**
-         * Set By Order
-         * @description Let operations of work masters be active for job orders only, or whenever they can be. It takes control.
-         */
-        put: operations["set_by_order"];
-        post?: never;
+        post: operations["retry_dead_letters"];
         delete?: never;
         options?: never;
         head?: never;
@@ -8193,7 +8214,7 @@ export interface components {
         WatchState: "waiting" | "active" | "revoked" | "expired";
         /**
          * WatchStreamMessage
-         * @description Any message of `/api/v1/watches/stream`.
+         * @description Any message of `/api/v1/wearables/stream`.
          */
         WatchStreamMessage: components["schemas"]["WatchSnapshot"] | components["schemas"]["Silence"] | components["schemas"]["StreamError"];
         /**
@@ -8677,6 +8698,44 @@ export interface operations {
             };
         };
     };
+    ability_blockers: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WhyNotView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     ability_definition: {
         parameters: {
             query?: never;
@@ -8701,41 +8760,6 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    advice: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["AdviceView"];
-                };
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            409: components["responses"]["Problem409"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
@@ -9026,7 +9050,163 @@ export interface operations {
             };
         };
     };
-    ask_for_correction: {
+    list_api_keys: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeysAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_api_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["KeyBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NewKeyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_api_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                key: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    rotate_api_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                key: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RotationBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NewKeyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    request_correction_approval: {
         parameters: {
             query?: never;
             header?: never;
@@ -9069,7 +9249,7 @@ export interface operations {
             };
         };
     };
-    ask_for_force: {
+    request_force_approval: {
         parameters: {
             query?: never;
             header?: never;
@@ -9112,7 +9292,7 @@ export interface operations {
             };
         };
     };
-    ask_for_outputs: {
+    request_outputs_approval: {
         parameters: {
             query?: never;
             header?: never;
@@ -9286,7 +9466,53 @@ export interface operations {
             };
         };
     };
-    all_backups: {
+    set_availability: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                kind: components["schemas"]["ServiceKind"];
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ServiceBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_backups: {
         parameters: {
             query?: never;
             header?: never;
@@ -9320,7 +9546,7 @@ export interface operations {
             };
         };
     };
-    make: {
+    create_backup: {
         parameters: {
             query?: never;
             header?: never;
@@ -9363,7 +9589,7 @@ export interface operations {
             };
         };
     };
-    check: {
+    check_backup: {
         parameters: {
             query?: never;
             header?: never;
@@ -9691,188 +9917,6 @@ export interface operations {
             };
         };
     };
-    take_errand: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["ErrandBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    preview_goal: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["GoalBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["OfferView"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    preview_reset: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["ResetBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["OfferView"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    stop_errand: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["StopBody"];
-            };
-        };
-        responses: {
-            /** @description It was carried out, and is not in the journal yet */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["NotRecorded"];
-                };
-            };
-            /** @description It was carried out, and is in the journal */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
     read_events: {
         parameters: {
             query?: {
@@ -9898,48 +9942,6 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             410: components["responses"]["Problem410"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    first_administrator: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["FirstAdministratorBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            201: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["SessionAnswer"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -10021,6 +10023,49 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    goal_blockers: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["GoalBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WhyNotView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -10188,7 +10233,7 @@ export interface operations {
             };
         };
     };
-    time_line: {
+    timeline: {
         parameters: {
             query: {
                 since: number;
@@ -10227,7 +10272,7 @@ export interface operations {
             };
         };
     };
-    look_back: {
+    state_at: {
         parameters: {
             query?: never;
             header?: never;
@@ -10266,7 +10311,7 @@ export interface operations {
             };
         };
     };
-    take_branch: {
+    branch_history: {
         parameters: {
             query?: never;
             header?: never;
@@ -10608,162 +10653,6 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             410: components["responses"]["Problem410"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    all_keys: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["KeysAnswer"];
-                };
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    make_key: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["KeyBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            201: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["NewKeyAnswer"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    revoke_key: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                key: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    rotate_key: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                key: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["RotationBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            201: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["NewKeyAnswer"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -11383,49 +11272,6 @@ export interface operations {
             };
         };
     };
-    find_fits: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["Fitting"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["FitsView"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
     preview_pipelines: {
         parameters: {
             query?: never;
@@ -11513,7 +11359,50 @@ export interface operations {
             };
         };
     };
-    try_pipeline: {
+    suggest_stages: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Fitting"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FitsView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    run_pipeline_test: {
         parameters: {
             query?: never;
             header?: never;
@@ -11959,13 +11848,13 @@ export interface operations {
             };
         };
     };
-    read_order_of_work: {
+    operation_blockers: {
         parameters: {
-            query?: {
-                limit?: number;
-            };
+            query?: never;
             header?: never;
-            path?: never;
+            path: {
+                name: string;
+            };
             cookie?: never;
         };
         requestBody?: never;
@@ -11976,14 +11865,16 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["OrderOfWorkAnswer"];
+                    "application/json": components["schemas"]["WhyNotView"];
                 };
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -11995,7 +11886,7 @@ export interface operations {
             };
         };
     };
-    decide_outputs: {
+    execute_operator_plan: {
         parameters: {
             query?: never;
             header?: never;
@@ -12004,7 +11895,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["DecisionBody"];
+                "application/json": components["schemas"]["ErrandBody"];
             };
         };
         responses: {
@@ -12018,7 +11909,146 @@ export interface operations {
             400: components["responses"]["Problem400"];
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_goal: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["GoalBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OfferView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_reset: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ResetBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OfferView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    stop_operator_plan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StopBody"];
+            };
+        };
+        responses: {
+            /** @description It was carried out, and is not in the journal yet */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NotRecorded"];
+                };
+            };
+            /** @description It was carried out, and is in the journal */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
             408: components["responses"]["Problem408"];
             409: components["responses"]["Problem409"];
             413: components["responses"]["Problem413"];
@@ -12142,215 +12172,6 @@ export interface operations {
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    everybody: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["PeopleAnswer"];
-                };
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    create_person: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["PersonBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            201: {
-                headers: {
-                    /** @description The revision, as `If-Match` has to name it. */
-                    ETag: string;
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["PersonAnswer"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    change_person: {
-        parameters: {
-            query?: never;
-            header?: {
-                "if-match"?: string | null;
-            };
-            path: {
-                person: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["PersonChangeBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    /** @description The revision, as `If-Match` has to name it. */
-                    ETag: string;
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["PersonAnswer"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            412: components["responses"]["Problem412"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            428: components["responses"]["Problem428"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    give_password: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                person: string;
-            };
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["TemporaryPasswordBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    end_sessions: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                person: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
                 headers: {
@@ -12508,6 +12329,41 @@ export interface operations {
             };
         };
     };
+    recovery_proposals: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AdviceView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     resources: {
         parameters: {
             query?: never;
@@ -12625,6 +12481,49 @@ export interface operations {
             };
         };
     };
+    confirm_restored_outputs: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DecisionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     attach: {
         parameters: {
             query?: never;
@@ -12703,41 +12602,31 @@ export interface operations {
             };
         };
     };
-    set_service: {
+    read_schedule: {
         parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                of: components["schemas"]["ServiceKind"];
-                name: string;
+            query?: {
+                limit?: number;
             };
+            header?: never;
+            path?: never;
             cookie?: never;
         };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["ServiceBody"];
-            };
-        };
+        requestBody?: never;
         responses: {
             /** @description Successful Response */
-            204: {
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content?: never;
+                content: {
+                    "application/json": components["schemas"]["OrderOfWorkAnswer"];
+                };
             };
-            400: components["responses"]["Problem400"];
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -13007,6 +12896,90 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             408: components["responses"]["Problem408"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_job_mode: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ByOrderBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_up: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FirstAdministratorBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
@@ -13415,40 +13388,7 @@ export interface operations {
             };
         };
     };
-    topics: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["TopicsAnswer"];
-                };
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    try_ability: {
+    start_test_run: {
         parameters: {
             query?: never;
             header?: never;
@@ -13491,7 +13431,249 @@ export interface operations {
             };
         };
     };
-    all_watches: {
+    topics: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TopicsAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_users: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PeopleAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_user: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PersonBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    /** @description The revision, as `If-Match` has to name it. */
+                    ETag: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_user: {
+        parameters: {
+            query?: never;
+            header?: {
+                "if-match"?: string | null;
+            };
+            path: {
+                person: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PersonChangeBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description The revision, as `If-Match` has to name it. */
+                    ETag: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            412: components["responses"]["Problem412"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            428: components["responses"]["Problem428"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_user_password: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TemporaryPasswordBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    end_user_sessions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_wearables: {
         parameters: {
             query?: never;
             header?: never;
@@ -13602,7 +13784,7 @@ export interface operations {
             };
         };
     };
-    pair_watch: {
+    pair_wearable: {
         parameters: {
             query?: never;
             header?: never;
@@ -13644,7 +13826,7 @@ export interface operations {
             };
         };
     };
-    this_watch: {
+    this_wearable: {
         parameters: {
             query?: never;
             header?: never;
@@ -13677,7 +13859,7 @@ export interface operations {
             };
         };
     };
-    revoke_watch: {
+    revoke_wearable: {
         parameters: {
             query?: never;
             header?: never;
@@ -13712,7 +13894,7 @@ export interface operations {
             };
         };
     };
-    confirm_watch: {
+    confirm_wearable: {
         parameters: {
             query?: never;
             header?: never;
@@ -13756,7 +13938,7 @@ export interface operations {
             };
         };
     };
-    all_webhooks: {
+    list_webhooks: {
         parameters: {
             query?: never;
             header?: never;
@@ -13789,7 +13971,7 @@ export interface operations {
             };
         };
     };
-    make_webhook: {
+    create_webhook: {
         parameters: {
             query?: never;
             header?: never;
@@ -13946,7 +14128,7 @@ export interface operations {
             };
         };
     };
-    send_again: {
+    retry_dead_letters: {
         parameters: {
             query?: never;
             header?: never;
@@ -13980,130 +14162,6 @@ export interface operations {
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    why_not_goal: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["GoalBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["WhyNotView"];
-                };
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    why_not: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path: {
-                of: "ability" | "operation";
-                name: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["WhyNotView"];
-                };
-            };
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            404: components["responses"]["Problem404"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
-            /** @description A problem */
-            default: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["Problem"];
-                };
-            };
-        };
-    };
-    set_by_order: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["ByOrderBody"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            204: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
-            };
-            400: components["responses"]["Problem400"];
-            401: components["responses"]["Problem401"];
-            403: components["responses"]["Problem403"];
-            408: components["responses"]["Problem408"];
-            409: components["responses"]["Problem409"];
-            413: components["responses"]["Problem413"];
-            415: components["responses"]["Problem415"];
-            422: components["responses"]["Problem422"];
-            431: components["responses"]["Problem431"];
-            503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {

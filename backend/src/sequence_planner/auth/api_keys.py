@@ -56,7 +56,7 @@ def make_key(
 ) -> tuple[str, Key]:
     """A new key and its secret, `sp_<id>_<random>`, which works for so many days (1 to 730).
 
-    Raises `IdentityRefused` (422): `unfit-name`, `no-scope`, `unfit-days`.
+    Raises `IdentityRefused` (422): `invalid-name`, `no-scope`, `invalid-days`.
     """
     name = clean_name(name)
     _check_days(days)
@@ -127,16 +127,16 @@ def rotate_key(
     """Another secret for a key; the present one works for `overlap` hours more (0 to 720), and one before that no more.
 
     With `days` the key works for so many from now on, else as long as it would have. Raises `IdentityRefused`: `no-key`
-    (404), `key-over` (409) when it works no more, `unfit-days` and `unfit-overlap` (422).
+    (404), `key-expired` (409) when it works no more, `invalid-days` and `invalid-overlap` (422).
     """
     row = _row(connection, id)
     if days is not None:
         _check_days(days)
     if not 0 <= overlap <= LONGEST_OVERLAP:
         detail = f"The secret that is replaced works for 0 to {LONGEST_OVERLAP} hours more."
-        raise IdentityRefused("unfit-overlap", "Unfit overlap", detail, 422)
+        raise IdentityRefused("invalid-overlap", "Unfit overlap", detail, 422)
     if row.revoked is not None or row.expires <= now:
-        raise IdentityRefused("key-over", "The key works no more", "Make another key: this one works no more.")
+        raise IdentityRefused("key-expired", "The key works no more", "Make another key: this one works no more.")
     expires = row.expires if days is None else now + days * DAY
     changes = {"expires": expires, "former_until": min(now + overlap * HOUR, row.expires)}
     key = _key(row).model_copy(update=changes)
@@ -166,7 +166,7 @@ def _row(connection: Connection, id: str) -> Row[tuple[object, ...]]:
 
 def _check_days(days: int) -> None:
     if not 1 <= days <= LONGEST_LIFE:
-        raise IdentityRefused("unfit-days", "Unfit days", f"A key works for 1 to {LONGEST_LIFE} days.", 422)
+        raise IdentityRefused("invalid-days", "Unfit days", f"A key works for 1 to {LONGEST_LIFE} days.", 422)
 
 
 def _key(row: Row[tuple[object, ...]]) -> Key:

@@ -39,8 +39,8 @@ def link_usable(connection: Connection, token: str, now: float) -> bool:
 def use_link(connection: Connection, token: str, name: str, password_hash: str, now: float, *, address: str) -> Person:
     """Make the first administrator. The link works no more.
 
-    Raises `IdentityRefused`: `link-unusable` (403) when the link is unknown, used, replaced or too old, or there is an
-    administrator; `unfit-name` (422), `name-taken` (409), after which the link can be used again.
+    Raises `IdentityRefused`: `setup-link-invalid` (403) when the link is unknown, used, replaced or too old, or there
+    is an administrator; `invalid-name` (422), `name-taken` (409), after which the link can be used again.
     """
     if not link_usable(connection, token, now):
         raise unusable()
@@ -55,6 +55,6 @@ def unusable() -> IdentityRefused:
     """Return what to say of a link that does not work, whatever the reason."""
     detail = (
         "This link does not work, or no longer: it works once, for 15 minutes, while there is no administrator. "
-        "On the station's computer, sequence-planner people link prints a new one."
+        "On the station's computer, sequence-planner users setup-link prints a new one."
     )
-    return IdentityRefused("link-unusable", "Link does not work", detail, 403)
+    return IdentityRefused("setup-link-invalid", "Link does not work", detail, 403)

@@ -128,7 +128,7 @@ def end_session_of_token(connection: Connection, token: str) -> str | None:
 def end_sessions_of(connection: Connection, person_id: str, by: Actor, now: float, *, but: str | None = None) -> int:
     """End all sessions of a person but one, and tell how many there were.
 
-    Raises `IdentityRefused` (`no-person`, 404).
+    Raises `IdentityRefused` (`no-user`, 404).
     """
     person = known(connection, person_id)
     ended = delete(SESSIONS).where(SESSIONS.c.person == person.id)

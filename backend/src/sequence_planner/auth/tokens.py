@@ -37,7 +37,7 @@ _ALIKE = {ord(pair[0]): pair[1] for pair in f"{_LATIN} {_CYRILLIC} {_GREEK}".spl
 def clean_name(text: str) -> str:
     """A name as it is kept: in normalisation form KC, with single blanks between words.
 
-    Raises `IdentityRefused` (`unfit-name`, 422) unless it has 1 to 100 characters, a letter or digit among them, and
+    Raises `IdentityRefused` (`invalid-name`, 422) unless it has 1 to 100 characters, a letter or digit among them, and
     none that does not show or changes the direction of writing.
     """
     if len(text) > 4 * LONGEST_NAME:
@@ -83,7 +83,7 @@ def _piled(name: str) -> bool:
 
 
 def _unfit(why: str) -> IdentityRefused:
-    return IdentityRefused("unfit-name", "Not a name", f"This cannot be a name: {why}.", 422)
+    return IdentityRefused("invalid-name", "Not a name", f"This cannot be a name: {why}.", 422)
 
 
 # Entries of this package in the journal.

@@ -60,7 +60,7 @@ def create(
 ) -> Person:
     """A new person; with `temporary` the password has to be changed at the first sign-in.
 
-    Raises `IdentityRefused`: `unfit-name` (422), `name-taken` (409) when another's name is this one or looks like it.
+    Raises `IdentityRefused`: `invalid-name` (422), `name-taken` (409) when another's name is this one or looks like it.
     """
     person = add(connection, name, role, password_hash, now, temporary=temporary)
     details = {"id": person.id, "role": role.value}
@@ -129,13 +129,13 @@ def change(
 
     Sessions of a person whose role changes, or who is disabled, end.
 
-    Raises `IdentityRefused`: `no-person` (404), `person-changed` (412) since that revision, `last-administrator` (409)
+    Raises `IdentityRefused`: `no-user` (404), `user-changed` (412) since that revision, `last-administrator` (409)
     when nobody would be left who can manage people, `role-from-provider` (409) where a provider says who has which.
     """
     person = known(connection, id)
     if revision is not None and person.revision != revision:
         detail = f"{person.name} has been changed meanwhile: look at what is there now, and change that."
-        raise IdentityRefused("person-changed", "Changed meanwhile", detail, 412)
+        raise IdentityRefused("user-changed", "Changed meanwhile", detail, 412)
     wanted = {"role": role, "disabled": disabled}
     changes = {key: value for key, value in wanted.items() if value is not None and value != getattr(person, key)}
     if not changes:
@@ -167,7 +167,7 @@ def set_password(
     """Give a person another password. All sessions of the person end, and wrong attempts so far are forgotten.
 
     For whom a provider vouches has none, but an administrator in a `recovery`, until the provider signs that one in
-    again. Raises `IdentityRefused`: `no-person` (404), `no-password-here` (409).
+    again. Raises `IdentityRefused`: `no-user` (404), `no-password-here` (409).
     """
     person = known(connection, id)
     check_has_password(person, recovery=recovery)
@@ -207,11 +207,11 @@ def administrator_exists(connection: Connection, *, but: str | None = None) -> b
 
 
 def known(connection: Connection, id: str) -> Person:
-    """The person with this id. Raises `IdentityRefused` (`no-person`, 404)."""
+    """The person with this id. Raises `IdentityRefused` (`no-user`, 404)."""
     person = find(connection, id)
     if person is None:
         raise IdentityRefused(
-            "no-person", "No such person", "There is no person with this id. Look at who there is.", 404
+            "no-user", "No such person", "There is no person with this id. Look at who there is.", 404
         )
     return person
 

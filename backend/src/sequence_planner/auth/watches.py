@@ -77,11 +77,11 @@ class Watch(BaseModel):
 
 
 def confirm(connection: Connection, id: str, by: Actor, now: float) -> Watch:
-    """Let a watch in that waits. Raises `IdentityRefused`: `no-watch` (404), `watch-not-waiting` (409)."""
+    """Let a watch in that waits. Raises `IdentityRefused`: `no-wearable` (404), `wearable-not-waiting` (409)."""
     watch = _known(connection, id, now)
     if watch.state is not WatchState.WAITING:
         detail = f"The watch {watch.name} does not wait to be let in: it is {watch.state.value}."
-        raise IdentityRefused("watch-not-waiting", "Watch does not wait", detail, 409)
+        raise IdentityRefused("wearable-not-waiting", "Watch does not wait", detail, 409)
     changes = {"paired_by": by.name, "expires": now + LIFE}
     connection.execute(update(WATCHES).where(WATCHES.c.id == id).values(**changes, confirmed=now))
     _record(connection, watch, "watch-confirmed", by, now)
@@ -110,7 +110,7 @@ def all_watches(connection: Connection, now: float) -> list[Watch]:
 def revoke(connection: Connection, id: str, by: Actor, now: float) -> None:
     """Let a watch work no more; nothing happens when it works no more already.
 
-    Raises `IdentityRefused` (`no-watch`, 404).
+    Raises `IdentityRefused` (`no-wearable`, 404).
     """
     watch = _known(connection, id, now)
     if watch.state in (WatchState.WAITING, WatchState.ACTIVE):
@@ -142,7 +142,7 @@ def _known(connection: Connection, id: str, now: float) -> Watch:
     row = connection.execute(found).first() if is_id(id) else None
     if row is None:
         detail = "There is no watch with this id, or nobody has let it in within two minutes."
-        raise IdentityRefused("no-watch", "No such watch", detail, 404)
+        raise IdentityRefused("no-wearable", "No such watch", detail, 404)
     return watch_of(row, now)
 
 
@@ -173,13 +173,13 @@ class PairingOffer(BaseModel):
 def offer(connection: Connection, name: str, resource: str, by: Actor, now: float) -> tuple[str, PairingOffer]:
     """Offer a place, and get its code, which is kept nowhere.
 
-    Raises `IdentityRefused`: `unfit-name` (422), `watch-exists` (409) when there is a watch or an offer of this name,
-    `too-many-offers` (409).
+    Raises `IdentityRefused`: `invalid-name` (422), `wearable-exists` (409) when there is a watch or an offer of this
+    name, `too-many-offers` (409).
     """
     name = clean_name(name)
     if _name_taken(connection, name, now):
         detail = f"There is a watch `{name}` already: take another name, or revoke that one."
-        raise IdentityRefused("watch-exists", "Watch exists", detail, 409)
+        raise IdentityRefused("wearable-exists", "Watch exists", detail, 409)
     if len(offers(connection, now)) >= MOST_OFFERS:
         detail = f"There are {MOST_OFFERS} offers already: withdraw one, or wait until they expire."
         raise IdentityRefused("too-many-offers", "Too many offers", detail, 409)

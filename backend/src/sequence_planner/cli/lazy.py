@@ -14,15 +14,31 @@ from typer.main import get_command
 from sequence_planner.process.gc_tuning import collection_put_off
 
 
+def renamed(old: str | None, new: str) -> None:
+    """Say that a word of the command line is another one now: it is understood until the next minor version."""
+    typer.echo(f"`{old}` is called `{new}` now: the next version knows no other name", err=True)
+
+
 class LazyCommand(TyperCommand):
     """A command in `place`, such as `check:check`: `line` is what the help of the program says of it. One that `forks`
-    has a fork server, which imports what a station needs while the command itself is imported.
+    has a fork server, which imports what a station needs while the command itself is imported. One that has another
+    name `now` is not shown, and says so.
 
     What is in that place is the function of a command, or a `Typer` with commands of its own.
     """
 
-    def __init__(self, name: str, place: str, line: str = "", hidden: bool = False, forks: bool = False) -> None:
-        super().__init__(name, short_help=line, hidden=hidden)
+    def __init__(
+        self,
+        name: str,
+        place: str,
+        line: str = "",
+        *,
+        hidden: bool = False,
+        forks: bool = False,
+        now: str | None = None,
+    ) -> None:
+        super().__init__(name, short_help=line, hidden=hidden or now is not None)
+        self.now = now
         self._place = place
         self._forks = forks
 
@@ -40,6 +56,8 @@ class LazyCommand(TyperCommand):
 
     def make_context(self, *arguments: Any, **settings: Any) -> Any:  # noqa: ANN401
         """Read a command line as the command itself does; its context is one of that command."""
+        if self.now is not None and not settings.get("resilient_parsing"):
+            renamed(self.name, self.now)
         if self._forks and "--help" not in sys.argv:
             from sequence_planner.forking.starting import OWN  # noqa: PLC0415
             from sequence_planner.startup.preloads import LATER, NOW  # noqa: PLC0415

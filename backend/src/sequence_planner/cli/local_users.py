@@ -41,8 +41,8 @@ class PeopleAtHand:
         with self.database.reading() as connection:
             person = find_by_name(connection, name)
         if person is None:
-            detail = f"There is nobody of the name `{name}`: `people list` shows who there is."
-            raise IdentityRefused("no-person", "No such person", detail, 404)
+            detail = f"There is nobody of the name `{name}`: `users list` shows who there is."
+            raise IdentityRefused("no-user", "No such person", detail, 404)
         hashed = _hash(ask(), person.name)
         with self.database.writing() as connection:
             set_password(connection, person.id, hashed, self.by, time.time(), temporary=True, recovery=True)

@@ -92,7 +92,7 @@ COMMANDS = (
         "by-hand", "station.simulate:by_hand", "Move an emulated device by hand, as somebody might move a real one."
     ),
     LazyCommand("fault", "station.simulate:fault", "Let an emulated device have a fault, or end faults."),
-    LazyCommand("people", "station.users:people", "Add people who may sign in, and set passwords that were forgotten."),
+    LazyCommand("users", "station.users:users", "Add people who may sign in, and set passwords that were forgotten."),
     LazyCommand(
         "journal",
         "station.journal:journal",
@@ -108,6 +108,7 @@ COMMANDS = (
         "station.backup:restore",
         "Put a backup in place where there is no database yet, verify it, and sign everybody out.",
     ),
+    LazyCommand("people", "station.users:users", now="users"),
     LazyCommand("controller", "station.controller:controller", hidden=True),
     LazyCommand("server", "station.run:server", hidden=True),
 )

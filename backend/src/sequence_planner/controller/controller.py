@@ -278,12 +278,12 @@ class Controller:
         if self.devices.network.rivals:
             text = "; ".join(self.devices.network.rivals.values())
             raise CommandRefused(
-                "other-commander", "Somebody else commands the devices", f"{text}. Stop the other one."
+                "other-controller", "Somebody else commands the devices", f"{text}. Stop the other one."
             )
         if self._doubting.undecided:
             named = ", ".join(self._doubting.undecided)
             detail = f"Devices would move as soon as it is published what {named} said before. Decide on each first."
-            raise CommandRefused("outputs-undecided", "It is not decided what devices shall do", detail)
+            raise CommandRefused("outputs-unconfirmed", "It is not decided what devices shall do", detail)
         self.execution.start_production()
 
     def _journalled(self) -> None:

@@ -85,4 +85,4 @@ def _not_kept(last_word: LastWord) -> CommandRefused:
         "It was carried out, but neither the journal nor the file beside it could be written: a controller that begins "
         f"anew would not know of it. Stay at the station, and make room for its database and for {last_word.path}."
     )
-    return CommandRefused("stop-not-kept", "The station is stopped, and it is not written down", detail, 503)
+    return CommandRefused("stop-not-recorded", "The station is stopped, and it is not written down", detail, 503)

@@ -191,13 +191,13 @@ def read(line: bytes | None) -> FromServer | Reply:
 def too_many() -> CommandRefused:
     """Somebody asks too much at once."""
     detail = f"{MOST_ASKS} questions wait for their answers already. Try again in a moment."
-    return CommandRefused("too-many-asks", "Too much is asked at once", detail, 503)
+    return CommandRefused("controller-busy", "Too much is asked at once", detail, 503)
 
 
 def late() -> CommandRefused:
     """Nobody waits for the answer any more."""
     detail = "The answer was not found in time. Nothing was changed by asking; try again."
-    return CommandRefused("answer-late", "The answer would come too late", detail, 504)
+    return CommandRefused("answer-timeout", "The answer would come too late", detail, 504)
 
 
 def failed(title: str) -> CommandRefused:
@@ -528,7 +528,7 @@ class ControllerClient:
         """Have `command` carried out; returns when it was, and whether the journal has it.
 
         Raises `CommandRefused`: with the controller's own words, `controller-unavailable` (503) when it was never
-        sent, `controller-no-answer` (504) when it is not known what became of it.
+        sent, `controller-timeout` (504) when it is not known what became of it.
         """
         expires = time.monotonic() + self._reply_deadline
         request: str | None = structlog.contextvars.get_contextvars().get("request")
@@ -575,7 +575,7 @@ class ControllerClient:
                 answer = await awaited
         except (TimeoutError, ConnectionError) as error:
             raise CommandRefused(
-                "controller-no-answer",
+                "controller-timeout",
                 "The controller did not answer",
                 silence,
                 504,

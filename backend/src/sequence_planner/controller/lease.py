@@ -77,4 +77,4 @@ def stands_by(keeper: LeaseKeeper) -> CommandRefused:
         return CommandRefused("lease-not-renewed", "The lease of the command is not renewed", detail, 503)
     where = "Another station" if holder is None or holder == keeper.standing.name else holder
     detail = f"{where} commands the devices, and this station stands by for it. Open that one's page."
-    return CommandRefused("stands-by", "This station stands by", detail, 503)
+    return CommandRefused("on-standby", "This station stands by", detail, 503)

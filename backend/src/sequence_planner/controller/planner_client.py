@@ -73,14 +73,14 @@ class AdvisorClient:
     async def answer(self, request: AdvisorRequest, deadline: float) -> AdvisorAnswer:
         """Return what the adviser answers within `deadline` seconds, of which it may have to wait for its turn.
 
-        Raises `CommandRefused`: `adviser-late` (504), `adviser-away` (503).
+        Raises `CommandRefused`: `advisor-timeout` (504), `advisor-unavailable` (503).
         """
         try:
             async with asyncio.timeout(deadline), self._turn:
                 return await self._asked(request)
         except TimeoutError:
             detail = "No answer was found in time; nothing was changed by asking. Try again."
-            raise CommandRefused("adviser-late", "The adviser was too slow", detail, 504) from None
+            raise CommandRefused("advisor-timeout", "The adviser was too slow", detail, 504) from None
 
     async def _asked(self, request: AdvisorRequest) -> AdvisorAnswer:
         process = self._process
@@ -106,7 +106,7 @@ class AdvisorClient:
 
 def _away(why: str) -> CommandRefused:
     detail = f"{why[:1].upper()}{why[1:]}. Nothing was changed by asking; try again in a moment."
-    return CommandRefused("adviser-away", "The adviser cannot answer", detail, 503)
+    return CommandRefused("advisor-unavailable", "The adviser cannot answer", detail, 503)
 
 
 # Plans to something that a person wants to hold, as the adviser finds them, and why there is none.

@@ -340,7 +340,7 @@ class Preparation:
         if self.trouble is not None:
             return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
         if self._others is not None:
-            return CommandRefused("other-commander", "Somebody else commands the devices", f"{self._others}.")
+            return CommandRefused("other-controller", "Somebody else commands the devices", f"{self._others}.")
         return CommandRefused(PREPARING, "The station is being prepared", "Try again in a moment.", 503)
 
 

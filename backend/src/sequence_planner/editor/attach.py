@@ -115,7 +115,7 @@ async def find_topic(
     others = [each for each in ends if each.direction == wanted] or ends
     types = sorted({each.type_name for each in others})
     if len(types) > 1:
-        raise AttachError("several-types", f"{name} is used with several types: {', '.join(types)}")
+        raise AttachError("ambiguous-type", f"{name} is used with several types: {', '.join(types)}")
     if not _MESSAGE.fullmatch(types[0]):
         raise AttachError("no-message", f"{name} has the type {types[0]}, which is no message of ROS 2")
     before = set(registry.found())

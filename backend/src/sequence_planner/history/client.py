@@ -38,7 +38,7 @@ class HistoryProcess:
             except TimeoutError:
                 self.close()
                 raise HistoryError(
-                    "history-late", f"there was no answer within {patience:g} s: ask for less, or try again later"
+                    "history-timeout", f"there was no answer within {patience:g} s: ask for less, or try again later"
                 ) from None
             except (EOFError, OSError):
                 self.close()

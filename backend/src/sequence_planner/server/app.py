@@ -84,6 +84,7 @@ from sequence_planner.server.http.middleware import (
     known_routes,
 )
 from sequence_planner.server.http.page_files import PageFiles
+from sequence_planner.server.http.renamed import Renamed
 from sequence_planner.server.metrics import ControllerFigures, Readiness, WayToDatabase
 from sequence_planner.server.openapi_document import describe
 from sequence_planner.server.services.backups import BackupService
@@ -108,9 +109,9 @@ PARTS = (
     commands.control_router,
     commands.corrections_router,
     commands.approvals_router,
-    commands.advice_router,
-    commands.errands_router,
-    queries.why_not_router,
+    commands.recovery_router,
+    commands.operator_plans_router,
+    queries.blockers_router,
     queries.abilities_router,
     attachments.attachments_router,
     queries.ros_router,
@@ -258,7 +259,7 @@ def _route(app: FastAPI, settings: Settings) -> None:
     for part in (*PARTS, health.health_router, metrics.metrics_router):
         app.router.routes.extend(part.routes)
     check_declared(app.routes)
-    app.router.default = PageFiles(settings.page)
+    app.router.default = Renamed(app.router, PageFiles(settings.page))
 
 
 def _surround(app: FastAPI, settings: Settings) -> None:

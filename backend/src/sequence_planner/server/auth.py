@@ -563,7 +563,7 @@ class Access:
     def _judge_watch(self, watch: Watch, address: str) -> Admitted:
         if watch.state is not WatchState.ACTIVE and not (self.waiting and watch.state is WatchState.WAITING):
             detail = "Whoever made the code must first confirm this watch."
-            raise ProblemFound(403, "watch-waiting", "The watch is not confirmed yet", detail)
+            raise ProblemFound(403, "wearable-unconfirmed", "The watch is not confirmed yet", detail)
         return Admitted(watch.actor(address), watch=watch)
 
 

@@ -1,6 +1,6 @@
 """Every refusal is a problem document (RFC 9457): the same members, a stable `type`, and words for a person.
 
-`type` is a reference below `/problems/` and never changes once it is published; a client decides by it. `detail` is
+`type` is a reference below `/problems/`, by which a client decides: whoever renames one writes it into CHANGELOG.md. `detail` is
 for reading. A document never shows a stack trace: what went wrong inside is written in the server's log.
 """
 
@@ -178,7 +178,7 @@ async def _work_ended(request: Request, error: Exception) -> Response:
     text = str(error)
     end = "" if text.endswith("?") else "."
     detail = f"{text[:1].upper()}{text[1:]}{end} Try again."
-    return problem_response(503, "workshop-failed", "It could not be found out", detail)
+    return problem_response(503, "worker-failed", "It could not be found out", detail)
 
 
 async def _refused(request: Request, error: Exception) -> Response:

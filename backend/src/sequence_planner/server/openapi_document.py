@@ -39,6 +39,7 @@ SERVERS: Final = [{"url": "/", "description": "The station that this document wa
 TAGS: Final[dict[str, str]] = {
     "abilities": "Trying an ability by itself.",
     "actions": "Tasks for people, work by order, production, and what devices are told in place of a person.",
+    "api keys": "Keys for other systems.",
     "alarms": "What wants a person's attention, and what people do about it.",
     "approvals": "What waits for a second person.",
     "audit": "The record of who did what.",
@@ -49,16 +50,15 @@ TAGS: Final[dict[str, str]] = {
     "health": "Whether the server is alive and ready, and its figures.",
     "history": "What has happened at the station.",
     "job orders": "What a MES orders, what became of it, and what has happened: the job control of ISA-95.",
-    "keys": "Keys for other systems.",
     "model": "The model: reading, editing, checking and deploying it.",
     "modes": "The mode of the station, and production.",
-    "people": "Who may sign in, and with which role.",
     "pipelines": "How messages become variables, and variables messages.",
-    "restart": "Ways back after something went wrong.",
+    "recovery": "Plans back to work after something went wrong.",
     "ros": "The network of ROS 2 that the station is on.",
     "session": "Signing in and out.",
     "station": "How the station stands now.",
-    "watches": "Watches of operators.",
+    "wearables": "Devices, such as watches, that show operators their tasks.",
+    "users": "Who may sign in, and with which role.",
     "webhooks": "Other systems that are told of events.",
 }
 
@@ -159,7 +159,7 @@ STREAMS: Final[dict[str, type[BaseModel]]] = {
     "/api/v1/ros/stream": NetworkStreamMessage,
     "/api/v1/pipelines/stream": FlowsStreamMessage,
     "/api/v1/model/stream": WorkshopStreamMessage,
-    "/api/v1/watches/stream": WatchStreamMessage,
+    "/api/v1/wearables/stream": WatchStreamMessage,
 }
 
 _WRITING: Final = threading.Lock()

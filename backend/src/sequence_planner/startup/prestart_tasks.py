@@ -92,9 +92,9 @@ def _first_start(model: Path, url: str, endpoint: Endpoint, *, at_terminal: bool
     except StorageError as error:
         return str(error)
     if token is None:
-        how = f"sequence-planner people link {model} --url {endpoint.address}"
+        how = f"sequence-planner users setup-link {model} --url {endpoint.address}"
         return (
             f"nobody can sign in yet: in a terminal, with the same database, `{how}` prints the link for the first "
             "administrator"
         )
-    return f"the first administrator opens, once and within 15 minutes: {endpoint.address}/first-start#{token}"
+    return f"the first administrator opens, once and within 15 minutes: {endpoint.address}/setup#{token}"

@@ -97,7 +97,7 @@ def test_nobody_acknowledges_an_alarm_that_came_after_the_one_that_was_seen() ->
     assert (again.state, again.count) == (AlarmState.UNACKNOWLEDGED, 2)
     with pytest.raises(CommandRefused, match="acknowledge this one") as refused:
         on.lives.acknowledge("a", seen, "Eva")
-    assert refused.value.slug == "alarm-came-again"
+    assert refused.value.slug == "alarm-recurred"
     on.lives.acknowledge("a", again.since, "Eva")
 
 

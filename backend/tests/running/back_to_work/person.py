@@ -92,7 +92,7 @@ class Person:
                 continue
             slug = problem(answer)
             if slug == "control-needed":
-                self._station.browser.put("control", json={"over": None}).raise_for_status()
+                self._station.browser.put("control-lock", json={"over": None}).raise_for_status()
             elif answer.status_code in AWAY:
                 time.sleep(0.5)
             else:
@@ -179,7 +179,7 @@ class Person:
     def _advice(self) -> Document:
         """Asked for again as long as there was too little time to find anything."""
         for _ in range(5):
-            advice = self.get("advice")
+            advice = self.get("recovery/proposals")
             if advice["offers"] or advice["complete"]:
                 break
             self.seen["advice asked for again"] += 1
@@ -197,16 +197,16 @@ class Person:
             value = quiet[0] if quiet else output["value"]
             self.tell(f"decides {name} := {value}")
             self.seen["outputs decided"] += 1
-            answer = self.act("PUT", "outputs", {"values": {name: value}, "reason": "it stays where it is"})
+            answer = self.act("PUT", "restored-outputs", {"values": {name: value}, "reason": "it stays where it is"})
             if problem(answer) == "output-unsafe":
-                self.do("PUT", "outputs", {"values": {name: output["value"]}, "reason": "it shall go on"})
+                self.do("PUT", "restored-outputs", {"values": {name: output["value"]}, "reason": "it shall go on"})
         self.do("POST", "production/start", {"reason": "to get back to work"})
 
     def _let_errands_end(self) -> None:
         if not self.until(lambda: self.get("station")["errand"] is None, LONGEST_ERRAND):
             self.tell("the errand does not end: stopped")
             self.seen["errands stopped"] += 1
-            self.do("POST", "errands/stop", {"reason": "nothing goes on"})
+            self.do("POST", "operator-plans/stop", {"reason": "nothing goes on"})
 
     def _correct_what_is_known(self) -> None:
         """The person has seen it: no advice is needed for that."""
@@ -219,7 +219,7 @@ class Person:
         if answer.status_code < 300:
             self.hands.known.clear()
             self.seen["corrections"] += 1
-        elif problem(answer) != "state-moved":
+        elif problem(answer) != "stale-revision":
             raise StuckError(f"{values}: {answer.text}")
 
     def _chosen(self, advice: Document, prefers: str) -> Document:
@@ -240,7 +240,7 @@ class Person:
                 self.hands.online(resource)
             self.until(lambda: self._online(offer["online"]), LONGEST_MOVING * 3)
             for name in offer["in_service"]:
-                self.do("PUT", f"service/ability/{name}", {"in_service": True, "reason": "it was looked after"})
+                self.do("PUT", f"availability/ability/{name}", {"in_service": True, "reason": "it was looked after"})
             if offer["physical"]:
                 self.hands.bring(brought(offer))
             self.seen["physical changes"] += 1
@@ -264,9 +264,9 @@ class Person:
             "corrections": corrections,
             "reason": "as advised",
         }
-        answer = self.act("POST", "errands", body)
+        answer = self.act("POST", "operator-plans", body)
         self.tell(f"takes {offer['kind']} {body['starts']} {corrections}: {problem(answer) or 'done'}")
-        if problem(answer) in ("state-moved", "offer-gone"):
+        if problem(answer) in ("stale-revision", "proposal-gone"):
             self.seen["offers asked for again"] += 1
             return False
         if answer.status_code >= 300:
@@ -283,7 +283,7 @@ class Person:
     def reset(self, operation: str) -> bool:
         """Reset an operation; False where there is no plan for that."""
         for _ in range(5):
-            answer = self.act("POST", "errands/reset-preview", {"operation": operation})
+            answer = self.act("POST", "operator-plans/reset-preview", {"operation": operation})
             if answer.status_code >= 300:
                 self.tell(f"reset of {operation}: {answer.text}")
                 return False

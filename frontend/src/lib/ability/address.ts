@@ -1,6 +1,6 @@
 /** Which ability a person looks at, as it stands in the page's address. */
 
-export const ABILITY = '/ability';
+export const ABILITY = '/abilities';
 
 /** The address of the page of an ability. */
 export function addressOf(name: string): string {

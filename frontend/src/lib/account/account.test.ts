@@ -15,7 +15,7 @@ test('each role includes those before it and itself, and nobody has none', () =>
 });
 
 test('pages have the lowest role that may see them', () => {
-	const pages = ['/', '/account', '/journal', '/watches', '/people', '/keys', '/nowhere'];
+	const pages = ['/', '/account', '/journal', '/wearables', '/users', '/api-keys', '/nowhere'];
 	expect(pages.map(roleOf)).toEqual([
 		'viewer',
 		'viewer',

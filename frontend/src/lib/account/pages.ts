@@ -37,7 +37,7 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 			{ address: '/model', title: 'model', role: 'viewer' },
 			{ address: '/station', title: 'station', role: 'viewer' },
 			{ address: '/pipelines', title: 'pipelines', role: 'viewer' },
-			{ address: '/ability', title: 'ability', role: 'viewer' },
+			{ address: '/abilities', title: 'ability', role: 'viewer' },
 			{ address: '/check', title: 'check', role: 'viewer' },
 			{ address: '/what-if', title: 'whatIf', role: 'engineer' },
 			{ address: '/deploy', title: 'deploy', role: 'viewer' }
@@ -50,9 +50,9 @@ export const MENU: readonly Page[] = [
 	{ address: ACCOUNT, title: 'account', role: 'viewer' },
 	{ address: WATCH, title: 'watch', role: 'viewer' },
 	{ address: '/journal', title: 'journal', role: 'operator' },
-	{ address: '/watches', title: 'watches', role: 'operator' },
-	{ address: '/people', title: 'people', role: 'administrator' },
-	{ address: '/keys', title: 'keys', role: 'administrator' },
+	{ address: '/wearables', title: 'watches', role: 'operator' },
+	{ address: '/users', title: 'people', role: 'administrator' },
+	{ address: '/api-keys', title: 'keys', role: 'administrator' },
 	{ address: '/webhooks', title: 'webhooks', role: 'administrator' },
 	{ address: '/backups', title: 'backups', role: 'administrator' },
 	{ address: '/storage', title: 'storage', role: 'administrator' }

@@ -166,7 +166,7 @@ export class Session {
 
 	/** Makes the first administrator, with the `token` of the link that the first start showed. */
 	beFirst(token: string, name: string, password: string): Promise<Refusal | null> {
-		return this.#change('POST', '/api/v1/first-administrator', { token, name, password });
+		return this.#change('POST', '/api/v1/setup', { token, name, password });
 	}
 
 	/** Ends the session. Refused, it lives on: only the server can end it. */

@@ -6,7 +6,7 @@ import { leadsTo, returnAddress, signInAddress } from './way.ts';
 const ORIGIN = 'https://station.example';
 
 describe('the address one returns to', () => {
-	test.each(['/', '/people', '/journal?action=sign-in&before=7', '/a%20b?c=%2F%2Fevil'])('may be %j', (to) => {
+	test.each(['/', '/users', '/journal?action=sign-in&before=7', '/a%20b?c=%2F%2Fevil'])('may be %j', (to) => {
 		expect(returnAddress(to)).toBe(to);
 	});
 
@@ -28,9 +28,9 @@ describe('the address one returns to', () => {
 		'https://evil',
 		'https:evil',
 		'javascript:alert(1)',
-		'/people\\..\\..\\evil',
-		'/sign-in?to=/people',
-		'/first-start'
+		'/users\\..\\..\\evil',
+		'/sign-in?to=/users',
+		'/setup'
 	])('is the start page instead of %j', (to) => {
 		expect(returnAddress(to)).toBe('/');
 	});
@@ -69,30 +69,30 @@ describe('a page', () => {
 
 	test('leads to the sign-in when nobody is signed in, but for those that need nobody', () => {
 		const out = sessionAnswer({ state: 'signed-out' });
-		expect(leadsTo(out, asked('/people?x=1'))).toBe('/sign-in?to=%2Fpeople%3Fx%3D1');
+		expect(leadsTo(out, asked('/users?x=1'))).toBe('/sign-in?to=%2Fusers%3Fx%3D1');
 		expect(leadsTo(out, asked('/'))).toBe('/sign-in');
-		for (const page of ['/sign-in?to=/people', '/watch', '/first-start']) expect(leadsTo(out, asked(page))).toBeNull();
+		for (const page of ['/sign-in?to=/users', '/operator', '/setup']) expect(leadsTo(out, asked(page))).toBeNull();
 	});
 
 	test('is shown to who is signed in, and the sign-in leads back to it', () => {
 		const within = sessionAnswer();
-		expect(leadsTo(within, asked('/people'))).toBeNull();
-		expect(leadsTo(within, asked('/sign-in?to=%2Fpeople%3Fx%3D1'))).toBe('/people?x=1');
+		expect(leadsTo(within, asked('/users'))).toBeNull();
+		expect(leadsTo(within, asked('/sign-in?to=%2Fusers%3Fx%3D1'))).toBe('/users?x=1');
 		expect(leadsTo(within, asked('/sign-in?to=//evil'))).toBe('/');
-		expect(leadsTo(within, asked('/first-start'))).toBe('/');
+		expect(leadsTo(within, asked('/setup'))).toBe('/');
 	});
 
 	test('leads to the account, and nowhere else, while a password must be chosen', () => {
 		const unready = sessionAnswer({ must_change_password: true });
-		for (const page of ['/', '/people', '/watch', '/sign-in?to=/people', '/first-start'])
+		for (const page of ['/', '/users', '/operator', '/sign-in?to=/users', '/setup'])
 			expect(leadsTo(unready, asked(page))).toBe('/account');
 		expect(leadsTo(unready, asked('/account'))).toBeNull();
 	});
 
 	test('leads to the first start while there is no administrator', () => {
 		const first = sessionAnswer({ state: 'first-start' });
-		for (const page of ['/', '/sign-in', '/people']) expect(leadsTo(first, asked(page))).toBe('/first-start');
-		expect(leadsTo(first, asked('/first-start'))).toBeNull();
+		for (const page of ['/', '/sign-in', '/users']) expect(leadsTo(first, asked(page))).toBe('/setup');
+		expect(leadsTo(first, asked('/setup'))).toBeNull();
 	});
 
 	test('leads to one that leads nowhere else', () => {

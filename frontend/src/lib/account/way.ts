@@ -10,10 +10,10 @@ export const HOME = '/';
 export const SIGN_IN = '/sign-in';
 /** Where a provider sends the browser back to. */
 export const FROM_PROVIDER = '/sign-in/provider';
-export const FIRST_START = '/first-start';
+export const FIRST_START = '/setup';
 export const ACCOUNT = '/account';
 /** The watch has a credential of its own, and pairs itself where it has none. */
-export const WATCH = '/watch';
+export const WATCH = '/operator';
 
 /** Any origin serves to resolve an address; this one can belong to nobody. */
 const HERE = 'https://here.invalid';

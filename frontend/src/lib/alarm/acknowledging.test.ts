@@ -29,7 +29,7 @@ test('each alarm is acknowledged as it was shown', async () => {
 });
 
 test('one that came again stays, one that is gone needs nothing, and the others are acknowledged', async () => {
-	const answers = { a: refusal('alarm-came-again', 409), b: refusal('alarm-gone', 409) };
+	const answers = { a: refusal('alarm-recurred', 409), b: refusal('alarm-gone', 409) };
 	expect(await sent(answers)).toEqual({ tried: ['a 0', 'b 1', 'c 2'], left: ['a'] });
 });
 

@@ -60,12 +60,12 @@ test('what an act is about stands in its address or body, names of the model as 
 	await solveProblem('a/b', 3);
 	await decideOutputs({ 'robot.go': false }, 'looked');
 	expect(fetch.mock.calls.map(([path, { method, body }]) => [method, path, body])).toEqual([
-		['PUT', '/api/v1/service/ability/robot.move(a%2Fb)', '{"in_service":true,"reason":"oiled"}'],
-		['PUT', '/api/v1/service/resource/robot', '{"in_service":false,"reason":"leaks"}'],
+		['PUT', '/api/v1/availability/ability/robot.move(a%2Fb)', '{"in_service":true,"reason":"oiled"}'],
+		['PUT', '/api/v1/availability/resource/robot', '{"in_service":false,"reason":"leaks"}'],
 		['POST', '/api/v1/alarms/acknowledge', '{"alarm":"silent /ur10/state","since":12.5}'],
 		['POST', '/api/v1/tasks/a%2Fb/problem', '{"revision":3,"what":"missing","reason":"no bolts"}'],
 		['POST', '/api/v1/tasks/a%2Fb/problem', '{"revision":3,"what":null}'],
 		['POST', '/api/v1/tasks/a%2Fb/problem/solved', '{"revision":3}'],
-		['PUT', '/api/v1/outputs', '{"values":{"robot.go":false},"reason":"looked"}']
+		['PUT', '/api/v1/restored-outputs', '{"values":{"robot.go":false},"reason":"looked"}']
 	]);
 });

@@ -35,27 +35,27 @@ export function leaveRestart(): Promise<Refusal | null> {
 export function takeOffer(offer: WayOffer, reason: string): Promise<Refusal | null> {
 	const starts = (offer.errand?.steps ?? []).map((step) => step.ability);
 	const corrections = Object.fromEntries(offer.corrections.map(({ name, then }) => [name, then]));
-	return command('POST', '/api/v1/errands', { body: { offer: offer.id, starts, corrections, reason } });
+	return command('POST', '/api/v1/operator-plans', { body: { offer: offer.id, starts, corrections, reason } });
 }
 
 /** Finds a plan to where the operation begins. Nothing is changed by asking. */
 export function findReset(operation: string): Promise<Answer<WayOffer>> {
-	return request('POST', '/api/v1/errands/reset-preview', { body: { operation }, patience: PLANNING });
+	return request('POST', '/api/v1/operator-plans/reset-preview', { body: { operation }, patience: PLANNING });
 }
 
 /** Finds a plan to where `predicate` holds. 422: it cannot be read. Nothing is changed by asking. */
 export function findGoal(predicate: string): Promise<Answer<WayOffer>> {
-	return request('POST', '/api/v1/errands/goal-preview', { body: { predicate }, patience: PLANNING });
+	return request('POST', '/api/v1/operator-plans/goal-preview', { body: { predicate }, patience: PLANNING });
 }
 
 /** Finds out why the operation is not active, or not done. */
 export function whyNotOperation(operation: string): Promise<Answer<WhyNot>> {
-	return request('GET', `/api/v1/why-not/operation/${encodeURIComponent(operation)}`, { patience: PLANNING });
+	return request('GET', `/api/v1/operations/${encodeURIComponent(operation)}/blockers`, { patience: PLANNING });
 }
 
 /** Finds out why `predicate` does not hold. 422: it cannot be read. */
 export function whyNotGoal(predicate: string): Promise<Answer<WhyNot>> {
-	return request('POST', '/api/v1/why-not/goal', { body: { predicate }, patience: PLANNING });
+	return request('POST', '/api/v1/goals/blockers', { body: { predicate }, patience: PLANNING });
 }
 
 /** Finds out what a correction would bring about. Nothing is changed by asking. */
@@ -66,12 +66,12 @@ export function previewCorrection(values: Readonly<Record<string, Value>>): Prom
 /** Has the ability run once, alone. 409: its guard, the supervisor or the mode does not allow it, or devices are real. */
 export function tryAbility(ability: string, realDevices: boolean, reason: string): Promise<Refusal | null> {
 	const body = { ability, real_devices: realDevices, reason: reason === '' ? null : reason };
-	return command('POST', '/api/v1/trials', { body });
+	return command('POST', '/api/v1/test-runs', { body });
 }
 
 /** Starts no further what is being carried out. */
 export function stopErrand(): Promise<Refusal | null> {
-	return command('POST', '/api/v1/errands/stop', { body: {} });
+	return command('POST', '/api/v1/operator-plans/stop', { body: {} });
 }
 
 /** Says that the alarm `key` has been seen as it was shown. 409: it has come again since. */
@@ -101,19 +101,19 @@ export function restoreAlarm(key: string): Promise<Refusal | null> {
 
 /** Takes out of service what is in it, until somebody puts it back. */
 export function takeOut(of: string, name: string, reason: string): Promise<Refusal | null> {
-	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
+	const path = `/api/v1/availability/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
 	return command('PUT', path, { body: { in_service: false, reason } });
 }
 
 /** Puts back into service what was taken out of it. */
 export function putBack({ of, name }: Pick<OutOfService, 'of' | 'name'>, reason: string): Promise<Refusal | null> {
-	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
+	const path = `/api/v1/availability/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
 	return command('PUT', path, { body: { in_service: true, reason } });
 }
 
 /** Decides which values outputs shall have that came back from the journal. */
 export function decideOutputs(values: Readonly<Record<string, Value>>, reason: string): Promise<Refusal | null> {
-	return command('PUT', '/api/v1/outputs', { body: { values, reason } });
+	return command('PUT', '/api/v1/restored-outputs', { body: { values, reason } });
 }
 
 /** Says that the estimates are as believed. 409: one of them is another by now. */
@@ -140,7 +140,7 @@ export function forceVariable(name: string, value: Value, seconds: number, reaso
 	return command('PUT', `/api/v1/forces/${encodeURIComponent(name)}`, { body: { value, seconds, reason } });
 }
 
-const ASKED: Record<ApprovedAct['kind'], string> = { correction: 'corrections', outputs: 'outputs', force: 'forces' };
+const ASKED: Record<ApprovedAct['kind'], string> = { correction: 'corrections', outputs: 'restored-outputs', force: 'forces' };
 
 /** Asks a second person to approve what was looked at in the state of `revision`. */
 export function askForApproval(act: ApprovedAct, revision: number, reason: string): Promise<Refusal | null> {
@@ -187,10 +187,10 @@ export function solveProblem(id: string, revision: number): Promise<Refusal | nu
 /** Takes control over from the session `over`, null when nobody is believed to hold it. 409: another holds it by now. */
 export function takeControl(over: string | null, reason: string): Promise<Refusal | null> {
 	const why = reason.trim();
-	return command('PUT', '/api/v1/control', { body: why === '' ? { over } : { over, reason: why } });
+	return command('PUT', '/api/v1/control-lock', { body: why === '' ? { over } : { over, reason: why } });
 }
 
 /** Gives control back: nobody holds it then. */
 export function releaseControl(): Promise<Refusal | null> {
-	return command('DELETE', '/api/v1/control');
+	return command('DELETE', '/api/v1/control-lock');
 }

@@ -104,7 +104,7 @@ export class Correction {
 		this.sending = false;
 		if (this.refusal === null) return true;
 		this.asked = false;
-		if (this.refusal.kind === 'state-moved') this.#overtaken = true;
+		if (this.refusal.kind === 'stale-revision') this.#overtaken = true;
 		return false;
 	}
 

@@ -62,7 +62,7 @@ describe('a correction', () => {
 
 	test('that is refused as the state moved keeps what was chosen, and has to be looked at again', async () => {
 		const { station } = standing();
-		answers([200, preview(4)], [409, { type: '/problems/state-moved' }], [200, preview(5)], [204, null]);
+		answers([200, preview(4)], [409, { type: '/problems/stale-revision' }], [200, preview(5)], [204, null]);
 		const correction = new Correction(station, ['b']);
 		correction.choose('b', 'empty');
 		correction.reason = 'seen';

@@ -9,7 +9,7 @@ const PATIENCE = 30_000;
 /** What could be put at an edge; with a field of it, also what that could become. */
 export function fitsAt(pipeline: string, edge: number, field: string | null = null): Promise<Answer<PipelineFits>> {
 	const body = { pipeline, edge, ...(field !== null && { field }) };
-	return request('POST', `${ADDRESS}/fits`, { body, patience: PATIENCE });
+	return request('POST', `${ADDRESS}/suggestions`, { body, patience: PATIENCE });
 }
 
 /** How the examples of a pipeline end. */
@@ -19,7 +19,7 @@ export function examplesOf(pipeline: string): Promise<Answer<PipelineRuns>> {
 
 /** What comes of one message, or of what stands for it. */
 export function triedWith(pipeline: string, given: object): Promise<Answer<PipelineRuns>> {
-	return request('POST', `${ADDRESS}/trials`, { body: { pipeline, steps: [{ at: 0, given }] }, patience: PATIENCE });
+	return request('POST', `${ADDRESS}/test-runs`, { body: { pipeline, steps: [{ at: 0, given }] }, patience: PATIENCE });
 }
 
 /** Makes an example of what the station has heard or said last. */

@@ -45,7 +45,7 @@ export class Advice {
 	async look(): Promise<void> {
 		if (this.pending) return;
 		this.pending = true;
-		const answer = await request<AdviceAnswer>('GET', '/api/v1/advice', { patience: PATIENCE });
+		const answer = await request<AdviceAnswer>('GET', '/api/v1/recovery/proposals', { patience: PATIENCE });
 		this.pending = false;
 		this.#last = performance.now();
 		if (!answer.ok) {

@@ -19,7 +19,7 @@ class Server {
 	build(number: number): void {
 		const script = `/_app/immutable/start.${number}.js`;
 		this.files = {
-			'/watch': `<link href=".${script}" rel="modulepreload"><script src="./theme.js"></script> import(".${script}")`,
+			'/operator': `<link href=".${script}" rel="modulepreload"><script src="./theme.js"></script> import(".${script}")`,
 			'/theme.js': `theme ${number}`,
 			[script]: `script ${number}`,
 			[`/_app/immutable/later.${number}.js`]: `later ${number}`
@@ -54,7 +54,7 @@ async function installed(): Promise<{ server: Server; cache: Cache; shell: Shell
 
 test('the files of a document are what it links to, loads and imports, each once', () => {
 	const html = `<link href="./_app/a.css" rel="stylesheet"><script src="./theme.js"></script>
-		<link rel="manifest" href="/manifest.webmanifest"><a href="/people">People</a> <a href="/">Operate</a>
+		<link rel="manifest" href="/manifest.webmanifest"><a href="/users">People</a> <a href="/">Operate</a>
 		import("./_app/b.js").then(import("./_app/b.js"))`;
 	expect(filesOf(html)).toEqual(['/_app/a.css', '/theme.js', '/manifest.webmanifest', '/_app/b.js']);
 });
@@ -108,6 +108,6 @@ describe('the watch', () => {
 		server.build(1);
 		delete server.files['/theme.js'];
 		await expect(new Shell(cache, server.load).install()).rejects.toThrow('/theme.js is answered with 404');
-		expect(cache.all.has('/watch')).toBe(false);
+		expect(cache.all.has('/operator')).toBe(false);
 	});
 });

@@ -7,7 +7,7 @@
  * before only when all that it names is there, so that what is kept always fits together.
  */
 
-export const PAGE = '/watch';
+export const PAGE = '/operator';
 /** The addresses of files whose names carry a hash of their content: what was read once never changes. */
 const IMMUTABLE = '/_app/immutable/';
 /** Milliseconds to wait for the server where there is something to show without it. */

@@ -18,7 +18,7 @@ export class Worn {
 
 	/** Takes up the offer of `code`; null: an operator can confirm it now. */
 	async pair(code: string): Promise<Refusal | null> {
-		const answer = await request<WatchSelf>('POST', '/api/v1/watches/pairing', { body: { code } });
+		const answer = await request<WatchSelf>('POST', '/api/v1/wearables/pairing', { body: { code } });
 		if (!answer.ok) return answer.refusal;
 		this.#take(after(this.#wearing, answer));
 		return null;
@@ -26,7 +26,7 @@ export class Worn {
 
 	/** Asks the server what this device is now. */
 	async look(): Promise<void> {
-		this.#take(after(this.#wearing, await request<WatchSelf>('GET', '/api/v1/watches/self')));
+		this.#take(after(this.#wearing, await request<WatchSelf>('GET', '/api/v1/wearables/self')));
 	}
 
 	#take(wearing: Wearing): void {

@@ -4,7 +4,7 @@ import { expect, test } from 'vitest';
 import { front } from './en-front.ts';
 
 const SOURCE = join(import.meta.dirname, '../..');
-const ENTRIES = ['routes/+layout.svelte', 'routes/+error.svelte', 'routes/watch', 'routes/sign-in', 'routes/first-start'];
+const ENTRIES = ['routes/+layout.svelte', 'routes/+error.svelte', 'routes/operator', 'routes/sign-in', 'routes/setup'];
 
 /** The files behind `entry`: itself, or all of a folder and of those in it. */
 function filesOf(entry: string): string[] {

@@ -36,7 +36,7 @@ def away(why: str) -> IdentityRefused:
 def unfit(why: str) -> IdentityRefused:
     """Return the refusal that says that what came from the provider is not taken."""
     detail = f"What came from the provider does not hold: {why}. Begin to sign in again."
-    return IdentityRefused("provider-answer-unfit", "Not signed in", detail, 403)
+    return IdentityRefused("provider-answer-invalid", "Not signed in", detail, 403)
 
 
 def not_begun() -> IdentityRefused:

@@ -179,7 +179,7 @@ class ProviderSignIn:
         """Finish: a new session and its token, and the page to go to; the session of the token `before` ends.
 
         `token` is what the browser has kept; it works once. Raises `IdentityRefused`: `sign-in-not-begun`,
-        `provider-answer-unfit`, `provider-refused`, `no-role`, `disabled` (403), `provider-unavailable` (503).
+        `provider-answer-invalid`, `provider-refused`, `no-role`, `disabled` (403), `provider-unavailable` (503).
         """
         try:
             flow, to = await asyncio.to_thread(self._take, token, answer.state, now)

@@ -1,4 +1,4 @@
-"""`people`: who may sign in, for whoever has the station's computer in hand."""
+"""`users`: who may sign in, managed on the station's own computer."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sequence_planner.auth.roles import IdentityRefused, Role
+from sequence_planner.cli.lazy import renamed
 from sequence_planner.cli.options import AsJson, DatabaseOption, database_url, print_json, refuse
 from sequence_planner.core.storage_error import StorageError
 
 if TYPE_CHECKING:
     from sequence_planner.cli.local_users import PeopleAtHand
 
-people = typer.Typer(
-    name="people",
+users = typer.Typer(
+    name="users",
     no_args_is_help=True,
     add_completion=False,
     help="Add people who may sign in, and set passwords that were forgotten.",
@@ -29,10 +30,11 @@ ItsModel = Annotated[
     Path | None, typer.Argument(metavar="[MODEL]", help="The station's folder; not needed with --database.")
 ]
 Name = Annotated[str, typer.Argument(metavar="NAME", help="The person's name.")]
+PageUrl = Annotated[str, typer.Option("--url", help="Where the page is.")]
 
 
-@people.command("list")
-def list_people(model: ItsModel = None, database: DatabaseOption = None, json: AsJson = False) -> None:
+@users.command("list")
+def list_users(model: ItsModel = None, database: DatabaseOption = None, json: AsJson = False) -> None:
     """List the people who may sign in, with their roles."""
     with _at_hand(model, database) as at_hand:
         everybody = at_hand.everybody()
@@ -53,7 +55,7 @@ def list_people(model: ItsModel = None, database: DatabaseOption = None, json: A
         typer.echo("  ".join([person.name.ljust(width), person.role.value.ljust(13), ", ".join(remarks)]).rstrip())
 
 
-@people.command()
+@users.command()
 def add(
     name: Name,
     role: Annotated[Role, typer.Option(help="What the person may do; each role includes those before it.")],
@@ -69,7 +71,7 @@ def add(
     typer.echo(f"{person.name} can sign in as {person.role.value}, and has to set another password then")
 
 
-@people.command()
+@users.command()
 def reset(name: Name, model: ItsModel = None, database: DatabaseOption = None) -> None:
     """Set another password for a person who has forgotten it; it has to be changed at the next sign-in.
 
@@ -82,16 +84,19 @@ def reset(name: Name, model: ItsModel = None, database: DatabaseOption = None) -
         typer.echo(f"{person.name} is disabled, and cannot sign in until an administrator enables them", err=True)
 
 
-@people.command()
-def link(
-    model: ItsModel = None,
-    database: DatabaseOption = None,
-    url: Annotated[str, typer.Option(help="Where the page is.")] = "http://127.0.0.1:8000",
-) -> None:
+@users.command()
+def setup_link(model: ItsModel = None, database: DatabaseOption = None, url: PageUrl = "http://127.0.0.1:8000") -> None:
     """Print a link with which the first administrator is made: it works once, for 15 minutes. Earlier ones do not."""
     with _at_hand(model, database) as at_hand:
         token = at_hand.link_token()
-    typer.echo(f"{url.rstrip('/')}/first-start#{token}")
+    typer.echo(f"{url.rstrip('/')}/setup#{token}")
+
+
+@users.command(hidden=True)
+def link(model: ItsModel = None, database: DatabaseOption = None, url: PageUrl = "http://127.0.0.1:8000") -> None:
+    """Print the link of `setup-link`, as this is called now."""
+    renamed("link", "setup-link")
+    setup_link(model, database, url)
 
 
 @contextlib.contextmanager

@@ -221,9 +221,9 @@ class AlarmRegistry:
         life = self._find(key)
         if life.aside is not None:
             detail = f"It is {life.state}, so nobody has to acknowledge it."
-            raise _refused("alarm-aside", "The alarm is put aside", detail)
+            raise _refused("alarm-set-aside", "The alarm is put aside", detail)
         if life.since != since:
-            raise _refused("alarm-came-again", "The alarm has come again", "Look at it, then acknowledge this one.")
+            raise _refused("alarm-recurred", "The alarm has come again", "Look at it, then acknowledge this one.")
         if not life.acknowledged:
             life.acknowledge(by)
             self._tell(key, life, "acknowledged")
@@ -233,7 +233,9 @@ class AlarmRegistry:
         """A person does not want to be told of it until then."""
         life = self._find(key)
         if life.aside is not None and life.aside.until is None:
-            raise _refused("alarm-aside", "The alarm is put aside", "It is out of service: an engineer can restore it.")
+            raise _refused(
+                "alarm-set-aside", "The alarm is put aside", "It is out of service: an engineer can restore it."
+            )
         self._put_aside(key, life, Suppression(by, why, until), "shelved")
 
     def suppress(self, key: str, by: str, why: str) -> None:

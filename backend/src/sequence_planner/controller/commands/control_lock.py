@@ -35,7 +35,7 @@ class ControlLock:
             return
         if holder is not None and holder.session != over:
             detail = f"{holder.name} has control by now. Speak to them, then take it over from them."
-            raise CommandRefused("control-moved", "Somebody else is in control", detail)
+            raise CommandRefused("control-changed", "Somebody else is in control", detail)
         self._holder = ControlView(
             session=actor.session,
             person=actor.id,

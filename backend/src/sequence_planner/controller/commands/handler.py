@@ -135,7 +135,7 @@ class ModeHandler:
             raise CommandRefused("not-in-restart", "The station is not in restart mode", detail)
         if execution.errand is not None:
             detail = f"{execution.errand.title} is being carried out. Wait for its end, or stop it."
-            raise CommandRefused("errand-under-way", "Something else is being carried out", detail)
+            raise CommandRefused("plan-running", "Something else is being carried out", detail)
         execution.change_mode(Mode.PAUSED, by, moment)
 
     def _take_step(self) -> None:

@@ -69,7 +69,7 @@ class JobHandler:
             raise CommandRefused("job-conflict", "There is another job of that id", detail)
         if not self._jobs.by_order:
             detail = "Its operations become active whenever they can. A person has to let it work by order first."
-            raise CommandRefused("not-by-order", "The station works freely", detail)
+            raise CommandRefused("not-in-job-mode", "The station works freely", detail)
         for other in self._jobs.under_way:
             if common := _in_common(master, masters[other.work_master]):
                 detail = f"Job {other.id} ({other.title}) is under way and has {_listed(common)} too. Wait for its end."
@@ -104,7 +104,7 @@ class JobHandler:
         except CycleError as error:
             circle = " → ".join(f"{job}/{name}" for job, name in reversed(error.args[1]))
             detail = f"Each of these would have to be completed before the next: {circle}."
-            raise CommandRefused("jobs-in-circle", "The order leads into a circle", detail, 422) from None
+            raise CommandRefused("cyclic-order", "The order leads into a circle", detail, 422) from None
 
     def _command(self, command: CommandJob, moment: Timestamp) -> None:
         job, act, execution = self._known(command.job), JobAct(command.what), self._execution

@@ -249,10 +249,10 @@ class Corrections:
         self._require_allowed()
         if command.revision != last.revision:
             detail = f"The last correction is another one by now, made by {last.by}. Look at it, then decide."
-            raise CommandRefused("state-moved", "The state has moved", detail)
+            raise CommandRefused("stale-revision", "The state has moved", detail)
         if not self._stayed:
             detail = "Something that was corrected has got another value since. Look at the state and correct that."
-            raise CommandRefused("state-moved", "The state has moved", detail)
+            raise CommandRefused("stale-revision", "The state has moved", detail)
         # Who takes it back has seen nothing: what counts is what was said before, unless work has gone on since.
         said = self._answered_before & self._execution.conduct.answers.keys()
         taken_back = frozenset(last.before) - said
@@ -277,7 +277,7 @@ class Corrections:
             raise CommandRefused("production-started", "Production is started", detail)
         if decided := sorted(values.keys() - execution.conduct.returned):
             detail = f"Nobody has to decide on {' and '.join(decided)}."
-            raise CommandRefused("nothing-to-decide", "There is nothing to decide", detail)
+            raise CommandRefused("nothing-to-confirm", "There is nothing to decide", detail)
         if leaves(execution.supervisor.safe, execution.state, execution.corrected(values)):
             detail = (
                 "With these values the station would be outside its safe states. Choose others, or several at once."
@@ -325,4 +325,4 @@ def _other_kind(name: str, is_: Kind, wanted: Kind) -> CommandRefused:
 
 def _moved() -> CommandRefused:
     detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
-    return CommandRefused("state-moved", "The state has moved", detail)
+    return CommandRefused("stale-revision", "The state has moved", detail)

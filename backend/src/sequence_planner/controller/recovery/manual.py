@@ -189,7 +189,7 @@ def _require_person(actor: Actor) -> None:
 
 def _moved() -> CommandRefused:
     detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
-    return CommandRefused("state-moved", "The state has moved", detail)
+    return CommandRefused("stale-revision", "The state has moved", detail)
 
 
 # What devices do that nothing commanded: somebody moved them by hand, or the model does not know them well enough.

@@ -177,11 +177,11 @@ class Offers:
         """Make the corrections of an offer and have its plan carried out. Raises `CommandRefused`."""
         kept = self._kept.get(command.offer)
         if kept is None:
-            raise CommandRefused("offer-gone", "The offer is gone", "Ask again what there is to do now.")
+            raise CommandRefused("proposal-gone", "The offer is gone", "Ask again what there is to do now.")
         offer, execution = kept.offer, self._execution
         if execution.revision != kept.revision:
             detail = "Something has changed at the station since this was offered. Ask again what there is to do now."
-            raise CommandRefused("state-moved", "The state has moved", detail)
+            raise CommandRefused("stale-revision", "The state has moved", detail)
         if (refusal := refusal_of(offer, execution)) is not None:
             raise refusal
         require_confirmation(offer, command)

@@ -147,7 +147,7 @@ class Trials:
             return errand_under_way(execution.errand)
         if execution.production is not Production.STARTED:
             detail = "No command is sent before production is started. Pause, then start production, then try it."
-            return CommandRefused("production-waiting", "Production waits", detail)
+            return CommandRefused("production-not-started", "Production waits", detail)
         if execution.mode is not Mode.PAUSED:
             detail = f"The mode is {execution.mode}: an ability is tried while the station is paused. Pause it first."
             return CommandRefused("wrong-mode", "The mode is another one", detail)

@@ -196,15 +196,15 @@ def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused |
         return errand_under_way(execution.errand)
     if offer.physical or offer.online or offer.in_service:
         detail = "Something has to be done at the station first. Do that, then ask again."
-        return CommandRefused("physical-first", "Something has to be done first", detail)
+        return CommandRefused("manual-step-required", "Something has to be done first", detail)
     if offer.errand is None:
         if offer.corrections:
             return correcting_refused(execution)
         detail = "Nothing has to be carried out. Leave restart mode if the station is in it, and go on."
-        return CommandRefused("nothing-to-take", "There is nothing to take", detail)
+        return CommandRefused("nothing-to-execute", "There is nothing to take", detail)
     if execution.production is not Production.STARTED:
         detail = "Production has not been started, so nothing can be. Start production, then ask again."
-        return CommandRefused("production-waiting", "Production waits", detail)
+        return CommandRefused("production-not-started", "Production waits", detail)
     return _wrong_mode(offer, execution.mode)
 
 
@@ -245,7 +245,7 @@ def _same(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
 def errand_under_way(errand: OperatorPlan) -> CommandRefused:
     """Nothing is offered beside an errand: the state moves with it."""
     detail = f"{errand.title} is being carried out. Wait for its end, or stop it."
-    return CommandRefused("errand-under-way", "Something else is being carried out", detail)
+    return CommandRefused("plan-running", "Something else is being carried out", detail)
 
 
 def no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:

@@ -179,7 +179,7 @@ def make(
     """A new webhook, told of the events after that one (None: after the last that there is), and its secret.
 
     `url` must be one that may be sent to. Raises `OrderRefused` (`too-many-webhooks`, 409; `events-gone`, 410), and
-    `IdentityRefused` (`unfit-name`, 422).
+    `IdentityRefused` (`invalid-name`, 422).
     """
     if (connection.execute(select(func.count()).select_from(WEBHOOKS)).scalar_one()) >= MOST_WEBHOOKS:
         detail = f"There are {MOST_WEBHOOKS} webhooks. Delete one that is not needed."

@@ -207,7 +207,7 @@ class SuppressBody(Body):
 
 @alarms_router.post("/acknowledge", status_code=204, dependencies=[OPERATOR])
 async def acknowledge_alarm(body: AcknowledgeBody, client: Controller, actor: Actor) -> None:
-    """Say that one has seen an alarm; 409 `alarm-came-again` where it came anew after the one that was seen."""
+    """Say that one has seen an alarm; 409 `alarm-recurred` where it came anew after the one that was seen."""
     await client.send(AcknowledgeAlarm(actor=actor, alarm=body.alarm, since=body.since, reason=body.reason))
 
 
@@ -288,7 +288,7 @@ class RefusalBody(Body):
 
 
 @approvals_router.post("/corrections", status_code=204, dependencies=[OPERATOR])
-async def ask_for_correction(body: CorrectionRequestBody, client: Controller, actor: Actor) -> None:
+async def request_correction_approval(body: CorrectionRequestBody, client: Controller, actor: Actor) -> None:
     """Ask a second person to approve a correction, within two minutes and in this state. It takes control.
 
     409 `no-approval-needed` where none of its variables asks for that.
@@ -296,14 +296,14 @@ async def ask_for_correction(body: CorrectionRequestBody, client: Controller, ac
     await client.send(RequestApproval(actor=actor, act=body.act, revision=body.revision, reason=body.reason))
 
 
-@approvals_router.post("/outputs", status_code=204, dependencies=[OPERATOR])
-async def ask_for_outputs(body: OutputsRequestBody, client: Controller, actor: Actor) -> None:
+@approvals_router.post("/restored-outputs", status_code=204, dependencies=[OPERATOR])
+async def request_outputs_approval(body: OutputsRequestBody, client: Controller, actor: Actor) -> None:
     """Ask a second person to approve a decision on outputs, as a correction."""
     await client.send(RequestApproval(actor=actor, act=body.act, revision=body.revision, reason=body.reason))
 
 
 @approvals_router.post("/forces", status_code=204, dependencies=[ENGINEER])
-async def ask_for_force(body: ForceRequestBody, client: Controller, actor: Actor) -> None:
+async def request_force_approval(body: ForceRequestBody, client: Controller, actor: Actor) -> None:
     """Ask a second person to approve a force, as a correction."""
     await client.send(RequestApproval(actor=actor, act=body.act, revision=body.revision, reason=body.reason))
 
@@ -326,7 +326,7 @@ async def decline_request(request: ApprovalNamed, body: RefusalBody, client: Con
 
 # Control: one session at a time may start what moves. To take it from somebody is an act of its own, seen by all.
 
-control_router = interface("/control", tags=["control"], responses=refused(409, 504))
+control_router = interface("/control-lock", tags=["control"], responses=refused(409, 504))
 
 
 class ControlBody(Body):
@@ -338,7 +338,7 @@ class ControlBody(Body):
 
 @control_router.put("", status_code=204, dependencies=[OPERATOR, JSON_ONLY])
 async def take_control(body: ControlBody, client: Controller, actor: Actor) -> None:
-    """Put this session in control; 409 `control-moved` when by now another is than the one that was seen."""
+    """Put this session in control; 409 `control-changed` when by now another is than the one that was seen."""
     await client.send(TakeControl(actor=actor, over=body.over, reason=body.reason))
 
 
@@ -399,7 +399,7 @@ async def preview_correction(body: ValuesBody, client: Controller) -> Correction
 async def correct(body: CorrectionBody, client: Controller, actor: Actor) -> None:
     """Give estimates other values, all at once: in restart mode, or before production is started. It takes control.
 
-    409 `state-moved` when the state is not at this revision any more; nothing has changed then.
+    409 `stale-revision` when the state is not at this revision any more; nothing has changed then.
     """
     await client.send(CorrectEstimates(actor=actor, values=body.values, revision=body.revision, reason=body.reason))
 
@@ -408,19 +408,19 @@ async def correct(body: CorrectionBody, client: Controller, actor: Actor) -> Non
 async def undo_correction(body: UndoBody, client: Controller, actor: Actor) -> None:
     """Take the last correction back, as long as its variables have the values that it gave them. It takes control.
 
-    409 `state-moved` when they have others, or when the last correction was made on another revision.
+    409 `stale-revision` when they have others, or when the last correction was made on another revision.
     """
     await client.send(UndoCorrection(actor=actor, revision=body.revision, reason=body.reason))
 
 
 @corrections_router.post("/corrections/confirm", status_code=204)
 async def confirm_correction(body: DecisionBody, client: Controller, actor: Actor) -> None:
-    """Say that these estimates are as the station believes; 409 `state-moved` when one is another by now."""
+    """Say that these estimates are as the station believes; 409 `stale-revision` when one is another by now."""
     await client.send(ConfirmEstimates(actor=actor, values=body.values, reason=body.reason))
 
 
-@corrections_router.put("/outputs", status_code=204)
-async def decide_outputs(body: DecisionBody, client: Controller, actor: Actor) -> None:
+@corrections_router.put("/restored-outputs", status_code=204)
+async def confirm_restored_outputs(body: DecisionBody, client: Controller, actor: Actor) -> None:
     """Decide on outputs that came back from the journal and would move devices; before production. It takes control."""
     await client.send(DecideOutputs(actor=actor, values=body.values, reason=body.reason))
 
@@ -431,8 +431,10 @@ async def decide_outputs(body: DecisionBody, client: Controller, actor: Actor) -
 # moved.
 
 MOST_STARTS = 150  # of a plan that a person confirms start by start; a body holds no more
-advice_router = interface(tags=["restart"], responses=refused(409, 504))
-errands_router = interface("/errands", tags=["restart"], dependencies=[JSON_ONLY], responses=refused(409, 504))
+recovery_router = interface(tags=["recovery"], responses=refused(409, 504))
+operator_plans_router = interface(
+    "/operator-plans", tags=["recovery"], dependencies=[JSON_ONLY], responses=refused(409, 504)
+)
 
 
 class GoalBody(Body):
@@ -462,16 +464,16 @@ class StopBody(Body):
     reason: Reason = None
 
 
-@advice_router.get("/advice", dependencies=[OPERATOR])
-async def advice(client: Controller) -> AdviceView:
+@recovery_router.get("/recovery/proposals", dependencies=[OPERATOR])
+async def recovery_proposals(client: Controller) -> AdviceView:
     """Proven ways on from the present state, the least effort first, each with its plan.
 
-    409 `errand-under-way` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
+    409 `plan-running` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
     """
     return await client.ask(AskAdvice())
 
 
-@errands_router.post("/goal-preview", dependencies=[ENGINEER])
+@operator_plans_router.post("/goal-preview", dependencies=[ENGINEER])
 async def preview_goal(body: GoalBody, client: Controller) -> OfferView:
     """A plan to whatever shall hold, to be looked at and perhaps taken.
 
@@ -480,17 +482,18 @@ async def preview_goal(body: GoalBody, client: Controller) -> OfferView:
     return await client.ask(AskGoal(predicate=body.predicate))
 
 
-@errands_router.post("/reset-preview", dependencies=[OPERATOR], responses=refused(404))
+@operator_plans_router.post("/reset-preview", dependencies=[OPERATOR], responses=refused(404))
 async def preview_reset(body: ResetBody, client: Controller) -> OfferView:
     """A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none."""
     return await client.ask(AskReset(operation=body.operation))
 
 
-@errands_router.post("", status_code=204, dependencies=[OPERATOR], responses=refused(422))
-async def take_errand(body: ErrandBody, client: Controller, actor: Actor) -> None:
+@operator_plans_router.post("", status_code=204, dependencies=[OPERATOR], responses=refused(422))
+async def execute_operator_plan(body: ErrandBody, client: Controller, actor: Actor) -> None:
     """Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
 
-    409 `offer-gone` and `state-moved` ask to look again; `not-confirmed`: starts and corrections are not the offer's.
+    409 `proposal-gone` and `stale-revision` ask to look again; `not-confirmed`: starts and corrections are not those
+    of the offer.
     """
     command = TakeErrand(
         actor=actor, offer=body.offer, starts=body.starts, corrections=body.corrections, reason=body.reason
@@ -498,8 +501,8 @@ async def take_errand(body: ErrandBody, client: Controller, actor: Actor) -> Non
     await client.send(command)
 
 
-@errands_router.post("/stop", status_code=204, dependencies=[OPERATOR], responses=CARRIED_OUT)
-async def stop_errand(body: StopBody, client: Controller, actor: Actor) -> Response:
+@operator_plans_router.post("/stop", status_code=204, dependencies=[OPERATOR], responses=CARRIED_OUT)
+async def stop_operator_plan(body: StopBody, client: Controller, actor: Actor) -> Response:
     """Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
 
     200 says that it was done and the journal does not have it yet.
@@ -573,8 +576,8 @@ class ForceBody(Body):
 async def set_mode(body: ModeBody, client: Controller, actor: Actor) -> Response:
     """Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused.
 
-    200 says that the station is stopped and the journal does not have it yet; 503 `stop-not-kept` that it is stopped
-    and nowhere written down.
+    200 says that the station is stopped and the journal does not have it yet; 503 `stop-not-recorded` that it is
+    stopped and nowhere written down.
     """
     return carried_out(await client.send(SetMode(actor=actor, mode=_MODES[body.mode], reason=body.reason)))
 
@@ -609,16 +612,16 @@ async def take_step(body: ReasonBody, client: Controller, actor: Actor) -> None:
     await client.send(TakeStep(actor=actor, reason=body.reason))
 
 
-@modes_router.put("/work-by-order", status_code=204, dependencies=[OPERATOR])
-async def set_by_order(body: ByOrderBody, client: Controller, actor: Actor) -> None:
+@modes_router.put("/settings/job-mode", status_code=204, dependencies=[OPERATOR])
+async def set_job_mode(body: ByOrderBody, client: Controller, actor: Actor) -> None:
     """Let operations of work masters be active for job orders only, or whenever they can be. It takes control."""
     await client.send(SetByOrder(actor=actor, on=body.on, reason=body.reason))
 
 
-@modes_router.put("/service/{of}/{name}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
-async def set_service(of: ServiceKind, name: Named, body: ServiceBody, client: Controller, actor: Actor) -> None:
+@modes_router.put("/availability/{kind}/{name}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
+async def set_availability(kind: ServiceKind, name: Named, body: ServiceBody, client: Controller, actor: Actor) -> None:
     """Take a resource, an ability or an operation out of service, or put it back. It takes control."""
-    command = SetService(actor=actor, of=of, name=name, in_service=body.in_service, reason=body.reason)
+    command = SetService(actor=actor, of=kind, name=name, in_service=body.in_service, reason=body.reason)
     await client.send(command)
 
 

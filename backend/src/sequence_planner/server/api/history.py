@@ -149,7 +149,7 @@ _REFUSALS = {
     "archive-unreadable": (409, "The archive cannot be read"),
     "not-estimated": (422, "This is no estimated variable"),
     "not-in-domain": (422, "This is no value of the variable"),
-    "history-late": (504, "There was no answer in time"),
+    "history-timeout": (504, "There was no answer in time"),
     "history-failed": (503, "The past cannot be looked at"),
     "storage-unavailable": (503, "The database does not answer"),
 }
@@ -212,7 +212,7 @@ async def read_history(
 
 
 @history_router.get("/line", dependencies=[OPERATOR], responses=refused(404, 409))
-async def time_line(identity: Identity, archive: TheArchive, since: Seconds, until: Seconds) -> LineView:
+async def timeline(identity: Identity, archive: TheArchive, since: Seconds, until: Seconds) -> LineView:
     """What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it."""
     found = await _read(identity, archive, partial(line, since=since, until=until))
     if found is None:
@@ -258,7 +258,7 @@ async def checkpoint(identity: Identity) -> Checkpoint:
 
 
 @history_router.get("/{number}", dependencies=[OPERATOR], responses=refused(404, 409, 503, 504))
-async def look_back(request: Request, number: Number) -> MomentView:
+async def state_at(request: Request, number: Number) -> MomentView:
     """A record, and how the station was right after it."""
     return await looked_back(request, number)
 
@@ -268,7 +268,7 @@ async def look_back(request: Request, number: Number) -> MomentView:
     dependencies=[JSON_ONLY, allowed(Role.ENGINEER)],
     responses=refused(404, 409, 503, 504),
 )
-async def take_branch(request: Request, number: Number, body: BranchBody) -> BranchView:
+async def branch_history(request: Request, number: Number, body: BranchBody) -> BranchView:
     """How the station would have gone on from there, with emulated devices. Nothing of it reaches the station."""
     question = TakeBranch(number, body.seconds, dict(body.corrections), BRANCHING)
     found = await _asked(request, question, BRANCHING + LOOKING_BACK)

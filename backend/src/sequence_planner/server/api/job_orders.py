@@ -533,7 +533,7 @@ LIMIT = 5.0  # seconds for an answer
 HELD_UP = 30.0  # seconds after which nobody waits any longer for a job of which nothing is active
 
 order_of_work_router = interface(
-    "/order-of-work", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)]
+    "/schedule", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)]
 )
 
 
@@ -684,7 +684,7 @@ class OrderOfWorkDesk:
 
 
 @order_of_work_router.get("")
-async def read_order_of_work(request: Request, limit: Annotated[int, Query(ge=1, le=MOST)] = MOST) -> OrderOfWorkAnswer:
+async def read_schedule(request: Request, limit: Annotated[int, Query(ge=1, le=MOST)] = MOST) -> OrderOfWorkAnswer:
     """When orders are expected to be worked, in the order in which they are to begin; only the first `limit`."""
     desk: OrderOfWorkDesk = request.app.state.order_of_work
     if desk.found is None:

@@ -91,7 +91,7 @@ async def workshop(connection: HTTPConnection) -> Workshop:
     client: ControllerClient = connection.app.state.controller
     if client.stands_by:
         detail = "The model is edited at the station that commands. Open its page."
-        raise ProblemFound(503, "stands-by", "This station stands by", detail)
+        raise ProblemFound(503, "on-standby", "This station stands by", detail)
     shop: Workshop | None = connection.app.state.workshop
     if shop is None:
         detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
@@ -339,7 +339,7 @@ async def _run(arguments: list[str]) -> dict[str, Any]:
             out, err = await process.communicate()
     except TimeoutError:
         detail = f"It took more than {LONGEST:g} s and was given up. Look at the model before trying again."
-        raise ProblemFound(504, "attach-no-answer", "The topic was not attached in time", detail) from None
+        raise ProblemFound(504, "attach-timeout", "The topic was not attached in time", detail) from None
     finally:
         if process.returncode is None:
             process.kill()
@@ -370,8 +370,10 @@ async def draft_pipelines(shop: TheWorkshop) -> Response:
     return await _found(shop, Everything())
 
 
-@draft_pipelines_router.post("/fits", dependencies=[VIEWER, JSON_ONLY], response_model=FitsView, responses=refused(422))
-async def find_fits(body: Fitting, shop: TheWorkshop) -> Response:
+@draft_pipelines_router.post(
+    "/suggestions", dependencies=[VIEWER, JSON_ONLY], response_model=FitsView, responses=refused(422)
+)
+async def suggest_stages(body: Fitting, shop: TheWorkshop) -> Response:
     """What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow."""
     return await _found(shop, body)
 
@@ -393,9 +395,9 @@ async def run_examples(body: Examples, shop: TheWorkshop) -> Response:
 
 
 @draft_pipelines_router.post(
-    "/trials", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422)
+    "/test-runs", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422)
 )
-async def try_pipeline(body: Trial, shop: TheWorkshop) -> Response:
+async def run_pipeline_test(body: Trial, shop: TheWorkshop) -> Response:
     """What comes of a message, or of several in time that is told, with the record at every edge."""
     return await _found(shop, body)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import Path, Query, WebSocket
 from pydantic import Field, StrictBool
@@ -47,13 +47,13 @@ async def ability_definition(
 
 
 @abilities_router.post(
-    "/trials",
+    "/test-runs",
     status_code=204,
     dependencies=[JSON_ONLY, allowed(Role.ENGINEER)],
     responses=refused(404, 409, 422, 504),
 )
-async def try_ability(body: TrialBody, client: Controller, actor: Actor) -> None:
-    """Start the ability alone, at once; `POST /errands/stop` ends that. It takes control, and the paused mode.
+async def start_test_run(body: TrialBody, client: Controller, actor: Actor) -> None:
+    """Start the ability alone, at once; `POST /operator-plans/stop` ends that. It takes control, and the paused mode.
 
     409 `not-startable` says what its guards or the supervisor lack; `real-devices`: they have not been confirmed.
     """
@@ -118,20 +118,26 @@ async def ros_stream(websocket: WebSocket) -> None:
     await serve(websocket, show.latest)
 
 
-# Why an ability does not start, an operation is not active or not done, or a goal does not hold.
+# What keeps an ability from starting, an operation from being active or done, or a goal from holding.
 
-why_not_router = interface("/why-not", tags=["station"], responses=refused(504))
-
-
-@why_not_router.get("/{of}/{name}", dependencies=[allowed(Role.VIEWER, scope=Scope.READ)], responses=refused(404))
-async def why_not(
-    of: Literal["ability", "operation"], name: Annotated[str, Path(max_length=400)], client: Controller
-) -> WhyNotView:
-    """What keeps an ability from starting, or an operation from being active or completed, and who could change it."""
-    return await client.ask(AskWhyNot(of=of, name=name))
+blockers_router = interface(tags=["station"], responses=refused(504))
+LOOKED_AT = allowed(Role.VIEWER, scope=Scope.READ)
+Blocked = Annotated[str, Path(max_length=400)]
 
 
-@why_not_router.post("/goal", dependencies=[ENGINEER, JSON_ONLY])
-async def why_not_goal(body: GoalBody, client: Controller) -> WhyNotView:
+@blockers_router.get("/abilities/{name}/blockers", dependencies=[LOOKED_AT], responses=refused(404))
+async def ability_blockers(name: Blocked, client: Controller) -> WhyNotView:
+    """What keeps an ability from starting, and who could change it."""
+    return await client.ask(AskWhyNot(of="ability", name=name))
+
+
+@blockers_router.get("/operations/{name}/blockers", dependencies=[LOOKED_AT], responses=refused(404))
+async def operation_blockers(name: Blocked, client: Controller) -> WhyNotView:
+    """What keeps an operation from being active or completed, and who could change it."""
+    return await client.ask(AskWhyNot(of="operation", name=name))
+
+
+@blockers_router.post("/goals/blockers", dependencies=[ENGINEER, JSON_ONLY])
+async def goal_blockers(body: GoalBody, client: Controller) -> WhyNotView:
     """What keeps a predicate from being true, and whether the station could reach it; 422 `bad-predicate`."""
     return await client.ask(AskWhyNot(of="goal", name=body.predicate))

@@ -102,7 +102,7 @@ async def revisions(shop: TheWorkshop) -> RevisionsView:
 
 @router.post("/revisions", status_code=201, dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
 async def save_revision(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> RevisionView:
-    """Save the draft as a revision; refused where somebody has changed it since (`draft-moved`)."""
+    """Save the draft as a revision; refused where somebody has changed it since (`stale-draft`)."""
     draft = await _at(shop, body.number)
     try:
         return await shop.save(draft, body.name, body.message, actor)
@@ -192,7 +192,7 @@ async def _at(shop: Workshop, number: int) -> Draft:
     draft = await shop.open()
     if draft.number != number:
         detail = "Somebody has changed the draft since you looked at it. Look at it again, then repeat this."
-        raise ProblemFound(409, "draft-moved", "The draft has changed", detail)
+        raise ProblemFound(409, "stale-draft", "The draft has changed", detail)
     return draft
 
 

@@ -232,7 +232,7 @@ async def finish_sign_in(
 ) -> ProviderSessionAnswer:
     """Finish what this browser has begun; the session that it had ends.
 
-    403 `sign-in-not-begun` where it has begun none, `provider-refused`, `provider-answer-unfit`, `no-role` or
+    403 `sign-in-not-begun` where it has begun none, `provider-refused`, `provider-answer-invalid`, `no-role` or
     `disabled`; 503 `provider-unavailable`.
     """
     token, signed_in, page = await _provider(identity).finish(
@@ -377,10 +377,8 @@ async def change_password(
     return await begin_session(request, response, token, again)
 
 
-@session_router.post(
-    "/first-administrator", status_code=201, dependencies=[EVERYBODY, JSON_ONLY], responses=refused(409, 503)
-)
-async def first_administrator(
+@session_router.post("/setup", status_code=201, dependencies=[EVERYBODY, JSON_ONLY], responses=refused(409, 503))
+async def set_up(
     body: FirstAdministratorBody,
     request: Request,
     response: Response,
@@ -390,7 +388,7 @@ async def first_administrator(
 ) -> SessionAnswer:
     """Make the first administrator with the link of the first start, which works once and for 15 minutes.
 
-    403 `link-unusable` when it does not.
+    403 `setup-link-invalid` when it does not.
     """
     begun = identity.now()
     if not await identity.read(lambda connection: first_start.link_usable(connection, body.token, begun)):

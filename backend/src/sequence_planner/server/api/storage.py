@@ -233,7 +233,7 @@ Backups = Annotated[BackupService, Depends(_backup_desk)]
 
 
 @backups_bodiless.get("")
-async def all_backups(desk: Backups) -> BackupsAnswer:
+async def list_backups(desk: Backups) -> BackupsAnswer:
     """Which backups there are, what is being done, and what would be in the way of another."""
     try:
         looked, recorded = await desk.look(), await desk.recorded()
@@ -243,7 +243,7 @@ async def all_backups(desk: Backups) -> BackupsAnswer:
 
 
 @backups_router.post("", status_code=202)
-async def make(body: NothingBody, desk: Backups, actor: Actor) -> BackupBusyAnswer:
+async def create_backup(body: NothingBody, desk: Backups, actor: Actor) -> BackupBusyAnswer:
     """Make a backup in the background. Whoever asks while one is being made gets that one."""
     try:
         return busy_answer(await desk.make(actor))
@@ -257,7 +257,7 @@ async def make(body: NothingBody, desk: Backups, actor: Actor) -> BackupBusyAnsw
 
 
 @backups_router.post("/{file}/check", status_code=202, responses=refused(404))
-async def check(file: Identifier, body: NothingBody, desk: Backups, actor: Actor) -> BackupBusyAnswer:
+async def check_backup(file: Identifier, body: NothingBody, desk: Backups, actor: Actor) -> BackupBusyAnswer:
     """Read a backup as a whole in the background, as if it were to be restored, but put nothing in place."""
     try:
         busy = await desk.check(file, actor)

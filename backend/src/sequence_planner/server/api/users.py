@@ -30,8 +30,8 @@ from sequence_planner.server.interface import interface
 # Keys, with which other systems read the station. A secret is answered once, when it is made.
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
-keys_bodiless = interface("/keys", tags=["keys"], dependencies=[ADMINISTRATOR])
-keys_router = interface("/keys", tags=["keys"], dependencies=[ADMINISTRATOR, JSON_ONLY])
+keys_bodiless = interface("/api-keys", tags=["api keys"], dependencies=[ADMINISTRATOR])
+keys_router = interface("/api-keys", tags=["api keys"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 
 
 class KeyAnswer(BaseModel):
@@ -80,13 +80,13 @@ class NewKeyAnswer(BaseModel):
 
 
 @keys_bodiless.get("")
-async def all_keys(identity: Identity) -> KeysAnswer:
+async def list_api_keys(identity: Identity) -> KeysAnswer:
     """All keys, without their secrets."""
     return KeysAnswer(keys=[_key_answer(key) for key in await identity.read(api_keys.all_keys)])
 
 
 @keys_router.post("", status_code=201)
-async def make_key(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
+async def create_api_key(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
     """Make a key. Its secret is answered this once: only a hash of it is kept."""
     now = identity.now()
     secret, key = await identity.write(
@@ -97,10 +97,10 @@ async def make_key(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAns
 
 
 @keys_router.post("/{key}/rotation", status_code=201, responses=refused(404, 409))
-async def rotate_key(key: Identifier, body: RotationBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
+async def rotate_api_key(key: Identifier, body: RotationBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
     """Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
 
-    409 `key-over` when the key works no more.
+    409 `key-expired` when the key works no more.
     """
     now = identity.now()
     secret, rotated = await identity.write(
@@ -110,7 +110,7 @@ async def rotate_key(key: Identifier, body: RotationBody, identity: Identity, ac
 
 
 @keys_bodiless.delete("/{key}", status_code=204, responses=refused(404))
-async def revoke_key(key: Identifier, identity: Identity, actor: Actor) -> None:
+async def revoke_api_key(key: Identifier, identity: Identity, actor: Actor) -> None:
     """Revoke a key: whoever bears it is refused from now on."""
     now = identity.now()
     await identity.write(lambda connection: api_keys.revoke_key(connection, key, actor, now), by=actor)
@@ -124,8 +124,8 @@ def _key_answer(key: Key) -> KeyAnswer:
 #
 # A change names the revision that was seen (`If-Match`), so that nobody overwrites what another has changed meanwhile.
 
-people_bodiless = interface("/people", tags=["people"], dependencies=[ADMINISTRATOR])
-people_router = interface("/people", tags=["people"], dependencies=[ADMINISTRATOR, JSON_ONLY])
+people_bodiless = interface("/users", tags=["users"], dependencies=[ADMINISTRATOR])
+people_router = interface("/users", tags=["users"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 # What is too short is told, but refused by `check_password`, in its words.
 TOLD = {"minLength": SHORTEST_PASSWORD}
 Password = Annotated[str, Field(min_length=1, max_length=LONGEST_PASSWORD, json_schema_extra=TOLD)]
@@ -197,7 +197,7 @@ class TemporaryPasswordBody(Body):
 
 
 @people_bodiless.get("")
-async def everybody(identity: Identity) -> PeopleAnswer:
+async def list_users(identity: Identity) -> PeopleAnswer:
     """Everybody, by name; those who may no longer sign in too."""
     now = identity.now()
 
@@ -209,7 +209,7 @@ async def everybody(identity: Identity) -> PeopleAnswer:
 
 
 @people_router.post("", status_code=201, responses={201: TAGGED, **refused(409)})
-async def create_person(body: PersonBody, identity: Identity, actor: Actor, response: Response) -> PersonAnswer:
+async def create_user(body: PersonBody, identity: Identity, actor: Actor, response: Response) -> PersonAnswer:
     """Enter a person, who signs in with the temporary password and then has to choose another."""
     check_password(body.password, body.name)
     hashed = await identity.passwords.hash(body.password)
@@ -223,7 +223,7 @@ async def create_person(body: PersonBody, identity: Identity, actor: Actor, resp
 
 
 @people_router.patch("/{person}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
-async def change_person(
+async def change_user(
     person: Identifier,
     body: PersonChangeBody,
     identity: Identity,
@@ -233,7 +233,7 @@ async def change_person(
 ) -> PersonAnswer:
     """Change the role, or whether the person may sign in; either ends all of that person's sessions.
 
-    428 without `If-Match`, which may be `*` for whatever revision there is; 412 `person-changed` when another has
+    428 without `If-Match`, which may be `*` for whatever revision there is; 412 `user-changed` when another has
     changed the person meanwhile; 409 `last-administrator` when nobody would be left to administer, or
     `role-from-provider` where that is not for here.
     """
@@ -250,7 +250,7 @@ async def change_person(
 
 
 @people_router.put("/{person}/password", status_code=204, responses=refused(404, 409))
-async def give_password(person: Identifier, body: TemporaryPasswordBody, identity: Identity, actor: Actor) -> None:
+async def set_user_password(person: Identifier, body: TemporaryPasswordBody, identity: Identity, actor: Actor) -> None:
     """Give a temporary password; it ends all of that person's sessions.
 
     409 `no-password-here` where the person signs in with a provider.
@@ -268,7 +268,7 @@ async def give_password(person: Identifier, body: TemporaryPasswordBody, identit
 
 
 @people_bodiless.delete("/{person}/sessions", status_code=204, responses=refused(404))
-async def end_sessions(person: Identifier, identity: Identity, actor: Actor) -> None:
+async def end_user_sessions(person: Identifier, identity: Identity, actor: Actor) -> None:
     """Sign the person out everywhere."""
     now = identity.now()
     await identity.write(lambda connection: end_sessions_of(connection, person, actor, now), by=actor)

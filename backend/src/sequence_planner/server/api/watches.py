@@ -32,7 +32,7 @@ from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
 from sequence_planner.server.stream.messages import Silence, StreamError, StreamPart
 
-# What is said of watches over REST, and on the WebSocket `/api/v1/watches/stream`.
+# What is said of watches over REST, and on the WebSocket `/api/v1/wearables/stream`.
 #
 # Times are in seconds since the epoch.
 
@@ -135,7 +135,7 @@ class WatchSnapshot(StreamPart):
 
 
 class WatchStreamMessage(RootModel[Annotated[WatchSnapshot | Silence | StreamError, Field(discriminator="kind")]]):
-    """Any message of `/api/v1/watches/stream`."""
+    """Any message of `/api/v1/wearables/stream`."""
 
 
 # Watches: devices at people's wrists that show the tasks of one resource and acknowledge them.
@@ -144,11 +144,11 @@ class WatchStreamMessage(RootModel[Annotated[WatchSnapshot | Silence | StreamErr
 # and confirms it. Only then is it told anything. Whatever is wrong with a code, the answer is the same.
 
 OPERATOR = allowed(Role.OPERATOR)
-router = interface("/watches", tags=["watches"])
+router = interface("/wearables", tags=["wearables"])
 
 
 @router.get("", dependencies=[OPERATOR])
-async def all_watches(identity: Identity, client: Controller) -> WatchesAnswer:
+async def list_wearables(identity: Identity, client: Controller) -> WatchesAnswer:
     """The watches there are or were, the offers that are open, and the resources that a watch can serve."""
     now = identity.now()
     found, offers = await identity.read(
@@ -165,7 +165,7 @@ async def all_watches(identity: Identity, client: Controller) -> WatchesAnswer:
 async def offer_pairing(body: OfferBody, identity: Identity, actor: Actor, view: LiveView) -> NewOfferAnswer:
     """Offer a pairing. Its code is answered this once and can be redeemed once, within two minutes."""
     if body.resource not in {each.name for each in _resources(view)}:
-        detail = f'"{body.resource}" has no tasks for people. Choose one of the resources that GET /watches lists.'
+        detail = f'"{body.resource}" has no tasks for people. Choose one of the resources that GET /wearables lists.'
         raise ProblemFound(422, "no-such-resource", "A watch cannot serve this resource", detail)
     now = identity.now()
     code, made = await identity.write(
@@ -182,7 +182,7 @@ async def withdraw_offer(offer: Identifier, identity: Identity, actor: Actor) ->
 
 
 @router.post("/pairing", status_code=201, dependencies=[allowed(None), JSON_ONLY], responses=refused(429, 503))
-async def pair_watch(
+async def pair_wearable(
     body: PairingBody, request: Request, response: Response, identity: Identity, address: Address, agent: Agent
 ) -> WatchSelfAnswer:
     """Redeem a code. The device gets its credential, which is worth nothing before an operator has confirmed it.
@@ -199,21 +199,21 @@ async def pair_watch(
 
 
 @router.post("/{watch}/confirmation", status_code=204, dependencies=[OPERATOR, JSON_ONLY], responses=refused(404, 409))
-async def confirm_watch(watch: Identifier, body: ConfirmationBody, identity: Identity, actor: Actor) -> None:
+async def confirm_wearable(watch: Identifier, body: ConfirmationBody, identity: Identity, actor: Actor) -> None:
     """Confirm that the device that has redeemed the code is the one that was meant; within two minutes."""
     now = identity.now()
     await identity.write(lambda connection: watches.confirm(connection, watch, actor, now), by=actor)
 
 
 @router.delete("/{watch}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
-async def revoke_watch(watch: Identifier, identity: Identity, actor: Actor) -> None:
+async def revoke_wearable(watch: Identifier, identity: Identity, actor: Actor) -> None:
     """Refuse a device that waits, or revoke one that was confirmed; within two seconds it is told nothing any more."""
     now = identity.now()
     await identity.write(lambda connection: watches.revoke(connection, watch, actor, now), by=actor)
 
 
 @router.get("/self", dependencies=[watch_only(waiting=True)])
-async def this_watch(request: Request) -> WatchSelfAnswer:
+async def this_wearable(request: Request) -> WatchSelfAnswer:
     """What the watch that asks is called, whose tasks it shows, and whether it was confirmed yet."""
     watch: Watch = request.state.watch
     return _itself(watch)

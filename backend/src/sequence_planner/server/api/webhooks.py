@@ -101,7 +101,7 @@ AllowedTargets = Annotated[Targets, Depends(_targets)]
 
 
 @bodiless.get("")
-async def all_webhooks(identity: Identity, targets: AllowedTargets) -> WebhooksAnswer:
+async def list_webhooks(identity: Identity, targets: AllowedTargets) -> WebhooksAnswer:
     """All webhooks, without their secrets, and how it goes with each; and where they may go."""
     networks = [str(each) for each in targets.networks]
     where = AllowedAnswer(hosts=targets.written, networks=networks, loopback=targets.loopback)
@@ -115,7 +115,7 @@ async def read_webhook(webhook: Identifier, identity: Identity) -> Webhook:
 
 
 @router.post("", status_code=201, responses={201: MADE, **refused(409)})
-async def make_webhook(
+async def create_webhook(
     body: WebhookBody,
     request: Request,
     response: Response,
@@ -159,8 +159,8 @@ async def dead_letters(
     return DeadLettersAnswer(dead_letters=found, next=found[-1].event.number if found else after)
 
 
-@router.post("/{webhook}/dead-letters/again", responses=refused(404))
-async def send_again(webhook: Identifier, body: AgainBody, identity: Identity, actor: Actor) -> AgainAnswer:
+@router.post("/{webhook}/dead-letters/retry", responses=refused(404))
+async def retry_dead_letters(webhook: Identifier, body: AgainBody, identity: Identity, actor: Actor) -> AgainAnswer:
     """Try events once more that were given up."""
     now = identity.now()
     count = await identity.write(

@@ -230,7 +230,7 @@ def _framing(headers: Headers) -> ProblemFound | None:
     if "content-length" not in headers or "transfer-encoding" not in headers:
         return None
     detail = "Send either Content-Length or Transfer-Encoding, not both."
-    return ProblemFound(400, "two-lengths", "The length is said twice", detail, {"Connection": "close"})
+    return ProblemFound(400, "conflicting-lengths", "The length is said twice", detail, {"Connection": "close"})
 
 
 def _address(scope: Scope) -> ProblemFound | None:

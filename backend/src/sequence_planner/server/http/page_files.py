@@ -52,7 +52,7 @@ class PageFiles:
         if path == ".":
             path = "index.html"
         elif not _is_file(self.folder / path):
-            path += ".html"  # `/watch` is `watch.html`
+            path += ".html"  # `/operator` is `operator.html`
         coding, suffix = self._compressed(path, Headers(scope=scope).get("accept-encoding", ""))
         response = await self._files.get_response(path + suffix, scope)
         if suffix:

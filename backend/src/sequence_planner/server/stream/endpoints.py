@@ -234,9 +234,9 @@ class WatchShow:
         ).model_dump_json()
 
 
-# The WebSocket `/api/v1/watches/stream`: what a confirmed watch is shown.
+# The WebSocket `/api/v1/wearables/stream`: what a confirmed watch is shown.
 
-watch_stream_router = interface("/watches")
+watch_stream_router = interface("/wearables")
 
 
 @watch_stream_router.websocket("/stream", dependencies=[watch_only()])

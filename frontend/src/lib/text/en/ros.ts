@@ -1,6 +1,6 @@
 /** The ROS graph. */
 export const ros = {
-	title: 'ROS',
+	title: 'ROS network',
 	about: 'Who and what is on the ROS network, and how the station stands to it: for those who look for a topic that is silent.',
 	noGraph: 'The network has not been read yet.',
 	read: (age: string): string => `Network read ${age}.`,

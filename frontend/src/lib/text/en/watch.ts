@@ -49,7 +49,7 @@ export const watch = {
 		title: 'Pair this watch',
 		code: (digits: number): string => `Code of ${digits} digits`,
 		pair: 'Pair',
-		where: 'The code is on the page Watches.',
+		where: 'The code is on the page Wearables.',
 		waiting: 'Waiting',
 		confirmBefore: 'Confirm',
 		confirmAfter: 'on the station’s page.',

@@ -2,7 +2,7 @@ import { count } from '../count.ts';
 
 /** What if: simulating the draft of the model. */
 export const whatIf = {
-	title: 'What if',
+	title: 'What-if',
 	about: 'How the station would go on with the model as it is edited: simulated, with emulated devices and people who do what they are asked. The station is not touched by it.',
 	role: 'Only engineers simulate. Ask one of them.',
 	from: 'Where it begins',

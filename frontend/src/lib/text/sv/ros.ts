@@ -1,7 +1,7 @@
 import type { Text } from '../text.svelte.ts';
 
 export const ros: Text['ros'] = {
-	title: 'ROS',
+	title: 'ROS-nätverk',
 	about: 'Vem och vad som finns på ROS-nätet, och hur stationen förhåller sig till det: för den som letar efter en topic som är tyst.',
 	noGraph: 'Nätet har inte lästs än.',
 	read: (age) => `Nätet lästes ${age}.`,

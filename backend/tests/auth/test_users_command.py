@@ -1,4 +1,4 @@
-"""`people` on the command line."""
+"""`users` on the command line."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ def url(tmp_path: Path) -> str:
 
 
 def add(url: str, name: str, role: str = "operator") -> tuple[int, str, str]:
-    return command("people", "add", name, "--role", role, "--database", url, given=f"{TEMPORARY}\n")
+    return command("users", "add", name, "--role", role, "--database", url, given=f"{TEMPORARY}\n")
 
 
 def test_people_are_added_and_listed(url: str) -> None:
-    assert command("people", "list", "--database", url) == (0, "", "")
+    assert command("users", "list", "--database", url) == (0, "", "")
     assert add(url, "Eva Lind", "administrator")[:2] == (
         0,
         "Eva Lind can sign in as administrator, and has to set another password then\n",
     )
     add(url, "Adam")
-    assert command("people", "list", "--database", url)[1].splitlines() == [
+    assert command("users", "list", "--database", url)[1].splitlines() == [
         "Adam      operator       has to set a password of their own",
         "Eva Lind  administrator  has to set a password of their own",
     ]
-    _, told = as_json("people", "list", "--database", url)
+    _, told = as_json("users", "list", "--database", url)
     assert [(person["name"], person["role"]) for person in told["people"]] == [
         ("Adam", "operator"),
         ("Eva Lind", "administrator"),
@@ -56,7 +56,7 @@ def test_people_are_added_and_listed(url: str) -> None:
 
 def test_a_forgotten_password_is_set_anew(url: str) -> None:
     add(url, "Eva", "administrator")
-    code, out, err = command("people", "reset", "eva", "--database", url, given=f"{PASSWORD}\n")
+    code, out, err = command("users", "reset", "eva", "--database", url, given=f"{PASSWORD}\n")
     assert (code, out, err) == (0, "Eva has to set another password at the next sign-in\n", "")
     database = Database.open(url)
     (entry,) = entries(database, "password-reset")
@@ -83,17 +83,17 @@ def test_a_forgotten_password_is_set_anew(url: str) -> None:
 )
 def test_what_is_refused_changes_nothing(url: str, arguments: list[str], given: str, told: str) -> None:
     add(url, "Eva", "administrator")
-    before = as_json("people", "list", "--database", url)
-    code, out, err = command("people", *arguments, "--database", url, given=given)
+    before = as_json("users", "list", "--database", url)
+    code, out, err = command("users", *arguments, "--database", url, given=given)
     assert (code, out) == (2, "")
     assert told in err
-    assert as_json("people", "list", "--database", url) == before
+    assert as_json("users", "list", "--database", url) == before
 
 
 def test_a_link_for_the_first_administrator(url: str) -> None:
-    code, out, _ = command("people", "link", "--database", url, "--url", "https://station.example/")
+    code, out, _ = command("users", "setup-link", "--database", url, "--url", "https://station.example/")
     address, token = out.strip().split("#")
-    assert (code, address) == (0, "https://station.example/first-start")
+    assert (code, address) == (0, "https://station.example/setup")
     database = Database.open(url)
     with database.reading() as connection:
         assert first_start.link_usable(connection, token, time.time())
@@ -105,21 +105,21 @@ def test_a_link_for_the_first_administrator(url: str) -> None:
 
 def test_which_station(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    assert command("people", "list")[0] == 2
-    assert "--database" in command("people", "list")[2]
-    code, _, err = command("people", "list", tmp_path)
+    assert command("users", "list")[0] == 2
+    assert "--database" in command("users", "list")[2]
+    code, _, err = command("users", "list", tmp_path)
     assert code == 2
     assert "a station is a folder" in err
-    code, _, _ = command("people", "add", "Eva", CELL, "--role", "viewer", given=TEMPORARY)
+    code, _, _ = command("users", "add", "Eva", CELL, "--role", "viewer", given=TEMPORARY)
     assert code == 0
-    assert "Eva" in command("people", "list", CELL)[1]
-    assert command("people", "list", "--database", "nonsense")[0] == 2
+    assert "Eva" in command("users", "list", CELL)[1]
+    assert command("users", "list", "--database", "nonsense")[0] == 2
 
 
 @pytest.mark.parametrize(("again", "code"), [(TEMPORARY, 0), ("something else", 2)])
 def test_at_a_terminal_it_asks_twice_and_shows_nothing(url: str, again: str, code: int) -> None:
     terminal, inside = pty.openpty()
-    line = ["people", "add", "Eva", "--role", "viewer", "--database", url]
+    line = ["users", "add", "Eva", "--role", "viewer", "--database", url]
     with subprocess.Popen(
         [Path(sys.executable).parent / "sequence-planner", *line],
         stdin=inside,
@@ -144,3 +144,17 @@ def _until(terminal: int, prompt: bytes) -> bytes:
     while not shown.endswith(prompt):
         shown += os.read(terminal, 1000)
     return shown
+
+
+def test_the_words_of_before_are_understood_and_say_what_they_are_now(url: str) -> None:
+    assert add(url, "Eva")[0] == 0
+    code, out, err = command("people", "list", "--database", url)
+    assert (code, out) == command("users", "list", "--database", url)[:2]
+    assert (out.split()[0], err) == ("Eva", "`people` is called `users` now: the next version knows no other name\n")
+    code, out, err = command("people", "link", "--database", url)
+    assert (code, out.partition("#")[0]) == (0, "http://127.0.0.1:8000/setup")
+    assert [line.split(" is called ")[1][:14] for line in err.splitlines()] == ["`users` now: t", "`setup-link` n"]
+    shown = command("--help")[1] + command("users", "--help")[1]
+    assert "setup-link" in shown
+    assert "│ people " not in shown
+    assert "│ link " not in shown
