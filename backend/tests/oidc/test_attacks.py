@@ -13,7 +13,7 @@ from oidc.conftest import SESSION, Scene
 from oidc.providing import CLIENT, SECRET, at_provider
 from sequence_planner.auth.roles import Role
 from sequence_planner.auth.tokens import new_token
-from sequence_planner.server.auth import flow_cookie, session_cookie
+from sequence_planner.server.http.credentials import flow_cookie, session_cookie
 from server.test_acting import problem
 
 UNFIT = "provider-answer-invalid"

@@ -16,7 +16,7 @@ from sequence_planner.auth.tokens import new_token
 from sequence_planner.auth.users import DEMONSTRATOR
 from sequence_planner.auth.watches import Watch
 from sequence_planner.core.actor import SYSTEM, ActorKind
-from sequence_planner.server.auth import session_cookie, watch_cookie
+from sequence_planner.server.http.credentials import session_cookie, watch_cookie
 
 from .running import Server
 

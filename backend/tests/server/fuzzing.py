@@ -22,7 +22,7 @@ from controller.test_network_watch import REPORTS
 from sequence_planner.auth.roles import Role
 from sequence_planner.auth.sessions import find_session
 from sequence_planner.controller.ipc import ControllerLink
-from sequence_planner.server.auth import session_cookie
+from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.settings import Settings
 
 from .running import Loop, Server, free_port, until

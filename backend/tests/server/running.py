@@ -28,9 +28,10 @@ from sequence_planner.controller.commands.production import Command
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.actor import SYSTEM, ActorKind
-from sequence_planner.server.auth import IdentityService, session_cookie
 from sequence_planner.server.binding import bind
+from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.server import uvicorn_config
+from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import Settings
 
 from .example_view import example_view

@@ -11,7 +11,7 @@ import pytest
 
 from sequence_planner.auth import first_start
 from sequence_planner.core.actor import ActorKind
-from sequence_planner.server.auth import session_cookie
+from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.settings import Settings
 
 from .example_view import example_view

@@ -20,7 +20,7 @@ from sequence_planner.controller.commands.production import WithdrawControl
 from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.server import metrics
-from sequence_planner.server.auth import watch_cookie
+from sequence_planner.server.http.credentials import watch_cookie
 
 from .bearers import key, watch
 from .example_view import example_view

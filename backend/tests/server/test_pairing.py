@@ -11,7 +11,7 @@ from sqlalchemy import select
 from websockets.exceptions import InvalidStatus
 
 from sequence_planner.db.metadata import METADATA
-from sequence_planner.server.auth import watch_cookie
+from sequence_planner.server.http.credentials import watch_cookie
 
 from .running import Controller, Server, until
 from .test_acting import problem

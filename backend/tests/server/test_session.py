@@ -15,7 +15,7 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.auth.users import Person
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.journal.audit import read
-from sequence_planner.server.auth import session_cookie
+from sequence_planner.server.http.credentials import session_cookie
 
 from .running import Server
 from .test_acting import problem

@@ -72,7 +72,7 @@ from sequence_planner.server.api import (
     storage as backups,
 )
 from sequence_planner.server.api.job_orders import OrderOfWorkDesk
-from sequence_planner.server.auth import IdentityService, Remembering, Sweeper, check_declared
+from sequence_planner.server.auth import Remembering, check_declared
 from sequence_planner.server.binding import check_endpoint
 from sequence_planner.server.errors import ErrorMiddleware
 from sequence_planner.server.http.middleware import (
@@ -89,6 +89,7 @@ from sequence_planner.server.metrics import ControllerFigures, Readiness, WayToD
 from sequence_planner.server.openapi_document import describe
 from sequence_planner.server.services.backups import BackupService
 from sequence_planner.server.services.editor import Workshop
+from sequence_planner.server.services.identity import IdentityService, Sweeper
 from sequence_planner.server.services.orders import OrderService
 from sequence_planner.server.services.retention import RetentionService
 from sequence_planner.server.settings import Settings

@@ -17,8 +17,9 @@ from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.actor import Actor as Acting
 from sequence_planner.journal.entry import LONGEST_REASON
-from sequence_planner.server.auth import IdentityService, address_of
+from sequence_planner.server.auth import address_of
 from sequence_planner.server.errors import ProblemFound
+from sequence_planner.server.services.identity import IdentityService
 
 # What requests have in common: bodies with nothing undeclared, names that people give, identifiers.
 

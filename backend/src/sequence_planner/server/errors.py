@@ -1,7 +1,7 @@
 """Every refusal is a problem document (RFC 9457): the same members, a stable `type`, and words for a person.
 
-`type` is a reference below `/problems/`, by which a client decides: whoever renames one writes it into CHANGELOG.md. `detail` is
-for reading. A document never shows a stack trace: what went wrong inside is written in the server's log.
+`type` is a reference below `/problems/`, by which a client decides: a new name of one goes into CHANGELOG.md. `detail`
+is for reading. A document never shows a stack trace: what went wrong inside is written in the server's log.
 """
 
 from __future__ import annotations

@@ -36,11 +36,12 @@ from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.process.restarts import read_restarts
-from sequence_planner.server.auth import IdentityService, allowed, beside_or
+from sequence_planner.server.auth import allowed, beside_or
 from sequence_planner.server.dependencies import Controller, Identity
 from sequence_planner.server.errors import problem_response, refused
 from sequence_planner.server.http.middleware import RequestMetrics
 from sequence_planner.server.interface import beside_interface
+from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.retention import RetentionService
 from sequence_planner.server.settings import Settings
 from sequence_planner.server.stream.messages import ControllerState

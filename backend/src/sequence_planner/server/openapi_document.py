@@ -21,8 +21,9 @@ from sequence_planner.editor.draft import ChangeBody
 from sequence_planner.editor.pipelines.schemas import Preview
 from sequence_planner.mes.webhooks import endpoints
 from sequence_planner.server.api.watches import WatchStreamMessage
-from sequence_planner.server.auth import NAME, SESSION_COOKIE, WATCH_COOKIE, Access, allowed, declared
+from sequence_planner.server.auth import Access, allowed, declared
 from sequence_planner.server.errors import Problem
+from sequence_planner.server.http.credentials import NAME, SESSION_COOKIE, WATCH_COOKIE
 from sequence_planner.server.interface import describe_refusals, interface
 from sequence_planner.server.stream.messages import (
     FlowsStreamMessage,

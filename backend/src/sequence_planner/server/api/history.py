@@ -38,10 +38,11 @@ from sequence_planner.journal.full_run import MOST_FILES, WholeRun
 from sequence_planner.journal.run_journal import RecordQuery, RunRecord
 from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
-from sequence_planner.server.auth import IdentityService, allowed
+from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import JSON_ONLY, Body, Identity
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
+from sequence_planner.server.services.identity import IdentityService
 
 # Reading the record of who did what. Nobody can change it over this interface or any other.
 

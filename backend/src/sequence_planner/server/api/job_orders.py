@@ -47,10 +47,11 @@ from sequence_planner.mes.scheduling.problem import (
 from sequence_planner.mes.scheduling.scheduler import Sequencer
 from sequence_planner.mes.tables import LONGEST_ID
 from sequence_planner.server.api.history import LARGEST_NUMBER, MOST_RECORDS
-from sequence_planner.server.auth import IdentityService, allowed
+from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Identity, LiveView, Reason
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
+from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.orders import OrderService
 
 # A job order as it is answered over REST.

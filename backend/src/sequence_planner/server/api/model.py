@@ -53,7 +53,7 @@ from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.model.files import read_files, write_files
 from sequence_planner.model.paths import EditError
-from sequence_planner.server.auth import IdentityService, allowed
+from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import (
     JSON_ONLY,
     Actor,
@@ -68,6 +68,7 @@ from sequence_planner.server.dependencies import (
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.editor import Workshop
+from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.stream.endpoints import serve
 
 # The model while it is edited: the draft that all engineers of the station share, and what is found in it.

@@ -20,20 +20,7 @@ from sequence_planner.controller.commands.commands import CommandRefused
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry
-from sequence_planner.server.auth import (
-    Credentials,
-    IdentityService,
-    allowed,
-    bearer_of,
-    credentials,
-    flow_token,
-    forget_flow,
-    forget_session,
-    keep_flow,
-    keep_session,
-    may_open_demonstration,
-    withdraw_control,
-)
+from sequence_planner.server.auth import allowed, bearer_of, may_open_demonstration
 from sequence_planner.server.dependencies import (
     JSON_ONLY,
     Actor,
@@ -46,7 +33,17 @@ from sequence_planner.server.dependencies import (
     Session,
 )
 from sequence_planner.server.errors import ProblemFound, refused
+from sequence_planner.server.http.credentials import (
+    Credentials,
+    credentials,
+    flow_token,
+    forget_flow,
+    forget_session,
+    keep_flow,
+    keep_session,
+)
 from sequence_planner.server.interface import interface
+from sequence_planner.server.services.identity import IdentityService, withdraw_control
 from sequence_planner.server.settings import Settings
 from sequence_planner.version import VERSION
 

@@ -14,7 +14,7 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.auth.watches import CONFIRMED_WITHIN, LIFE, PairingOffer, Watch, WatchState
 from sequence_planner.controller.views.station import StationStanding, StationView, TaskView
 from sequence_planner.execution.vocabulary import Mode
-from sequence_planner.server.auth import allowed, keep_watch, watch_only
+from sequence_planner.server.auth import allowed, watch_only
 from sequence_planner.server.dependencies import (
     JSON_ONLY,
     Actor,
@@ -28,6 +28,7 @@ from sequence_planner.server.dependencies import (
     Name,
 )
 from sequence_planner.server.errors import ProblemFound, refused
+from sequence_planner.server.http.credentials import keep_watch
 from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
 from sequence_planner.server.stream.messages import Silence, StreamError, StreamPart

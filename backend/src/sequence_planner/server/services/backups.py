@@ -32,7 +32,7 @@ from sequence_planner.backup.service import (
 from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.journal.entry import Outcome
-from sequence_planner.server.auth import IdentityService
+from sequence_planner.server.services.identity import IdentityService
 
 LOG = structlog.get_logger(__name__)
 T = TypeVar("T")

@@ -59,7 +59,7 @@ from sequence_planner.model.files import Files, FolderReader
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
 from sequence_planner.process.worker import worked
-from sequence_planner.server.auth import IdentityService
+from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import StreamLimits
 from sequence_planner.server.stream.broadcast import LatestValue
 from sequence_planner.server.stream.messages import WorkshopSnapshot

@@ -23,7 +23,7 @@ from sequence_planner.mes import orders
 from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState, Wish
 from sequence_planner.mes.queue import OrderOfWork, Queue, order_of_work, queue
 from sequence_planner.mes.tracker import OrderTracker
-from sequence_planner.server.auth import IdentityService
+from sequence_planner.server.services.identity import IdentityService
 
 # What is said to the controller of orders that the station works on or may have been given.
 #

@@ -35,7 +35,7 @@ from sequence_planner.retention.retention import (
     run_blocks,
 )
 from sequence_planner.retention.settings import Retention
-from sequence_planner.server.auth import IdentityService
+from sequence_planner.server.services.identity import IdentityService
 
 LOG = structlog.get_logger(__name__)
 FIRST_AFTER: Final = 60.0  # seconds after the start: what is needed to produce comes first
