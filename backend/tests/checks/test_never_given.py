@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from pipelines.station_writing import write_station
 from sequence_planner.analysis.checks.ungiven_values import may_give
+from sequence_planner.language.records.field_paths import FieldPath
+from sequence_planner.language.records.record import Record
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
-from sequence_planner.pipelines.field_paths import FieldPath
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.map import MapStage, Row, TableStage
+from sequence_planner.model.stages.map import MapStage, Row, TableStage
 from sequence_planner.station import prepare_station
 
 FIELDS = {"Scene": "string text\nuint8 code\nfloat64 height\n"}

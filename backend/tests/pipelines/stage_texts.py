@@ -7,14 +7,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from sequence_planner.language.records.field_paths import REAL, TEXT
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, Record, RecordType
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Place
 from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.base import Stage, StageInstance
+from sequence_planner.model.stages.registry import build_stage
+from sequence_planner.model.stages.support import Context
 from sequence_planner.model.yaml.reader import read_text
-from sequence_planner.pipelines.field_paths import REAL, TEXT
-from sequence_planner.pipelines.record import FieldType, ListType, NestedType, Record, RecordType
-from sequence_planner.pipelines.stages.base import Stage, StageInstance
-from sequence_planner.pipelines.stages.registry import build_stage
-from sequence_planner.pipelines.stages.support import Context
 
 BYTE = IntegerRange(0, 255)
 POINT = NestedType("geometry_msgs/msg/Point", {"x": REAL, "y": REAL})

@@ -14,12 +14,12 @@ from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, MODE
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.parser import parse
+from sequence_planner.language.records.expressions import read_calculation, read_condition
+from sequence_planner.language.records.field_paths import REAL, TEXT
+from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
-from sequence_planner.pipelines.expressions import read_calculation, read_condition
-from sequence_planner.pipelines.field_paths import REAL, TEXT
-from sequence_planner.pipelines.record import FieldType, RecordType
 
 RECORD: Mapping[str, object] = {
     "joints": [0.5, -1.0],

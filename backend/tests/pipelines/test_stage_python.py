@@ -16,11 +16,11 @@ from pipelines.stage_texts import MESSAGE, VARIABLES, build, findings
 from pipelines.station_writing import Heard, write_station
 from sequence_planner.core.secrets import CLIENT_SECRET, PASSWORD
 from sequence_planner.core.storage_error import DATABASE
+from sequence_planner.language.records.record import Record
+from sequence_planner.model.stages.base import NotInvertibleError
+from sequence_planner.model.stages.confinement import missing
+from sequence_planner.model.stages.python import PythonCourse, PythonStage
 from sequence_planner.pipelines.examples import failures, loading_failures
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.base import NotInvertibleError
-from sequence_planner.pipelines.stages.confinement import missing
-from sequence_planner.pipelines.stages.python import PythonCourse, PythonStage
 from sequence_planner.station import prepare_station
 
 PATIENCE = 20.0  # seconds for what must happen on a busy machine

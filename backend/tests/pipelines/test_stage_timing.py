@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import outgoing, stage, take
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.base import Overriding, StageInstance
+from sequence_planner.language.records.record import Record
+from sequence_planner.model.stages.base import Overriding, StageInstance
 
 
 @dataclass(frozen=True)

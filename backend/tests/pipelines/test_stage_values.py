@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, POSE, given, outgoing, stage, take, unchanged
+from sequence_planner.language.records.field_paths import TEXT
+from sequence_planner.language.records.record import Record
 from sequence_planner.language.types import BOOLEAN, IntegerRange
-from sequence_planner.pipelines.field_paths import TEXT
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.base import NotInvertibleError, Stage
+from sequence_planner.model.stages.base import NotInvertibleError, Stage
 
 POINTS = """
 discretise: {field: joints, variable: at, values: {home: [0, 0], out: [1, 0.5]}, tolerance: 0.1, otherwise: unknown}

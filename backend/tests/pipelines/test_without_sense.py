@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from core.budget import examples
 from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.pipelines.field_paths import REAL, fits
-from sequence_planner.pipelines.record import Record
+from sequence_planner.language.records.field_paths import REAL, fits
+from sequence_planner.language.records.record import Record
 from sequence_planner.ros.transport import Sample
 
 from .stage_texts import given, stage

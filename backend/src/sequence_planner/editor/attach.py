@@ -16,6 +16,16 @@ from typing import Literal
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS
 from sequence_planner.language.lexer import KEYWORDS
+from sequence_planner.language.records.record import (
+    FieldType as RecordFieldType,
+)
+from sequence_planner.language.records.record import (
+    ListType,
+    NestedType,
+    RealType,
+    RecordType,
+    TextType,
+)
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.paths import EditError
@@ -24,16 +34,6 @@ from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.model.yaml.saving import digest, edit_file
 from sequence_planner.pipelines.inference import MOST_VALUES
 from sequence_planner.pipelines.message_types import message_fields
-from sequence_planner.pipelines.record import (
-    FieldType as RecordFieldType,
-)
-from sequence_planner.pipelines.record import (
-    ListType,
-    NestedType,
-    RealType,
-    RecordType,
-    TextType,
-)
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NetworkEndpoint, Transport
 from sequence_planner.ros.types.definitions import FieldType

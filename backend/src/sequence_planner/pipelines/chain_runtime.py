@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from sequence_planner.automaton.automaton import State
+from sequence_planner.language.records.record import Record
+from sequence_planner.model.stages.base import Closable, Overriding, Patient, Stage, StageInstance
 from sequence_planner.pipelines.graph import Chain, Edge, EdgeView, OutgoingPipeline, PipelineView
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.base import Closable, Overriding, Patient, Stage, StageInstance
 
 # A chain of stages while it runs: records in, records out, time passing, and what has passed each edge.
 

@@ -8,15 +8,15 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from sequence_planner.language.records.field_paths import NoFieldError, find_field
+from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.model.stage_documents import MapDocument, Scalar, StageDocument
-from sequence_planner.pipelines.field_paths import NoFieldError, find_field
+from sequence_planner.model.stages.base import Stage
+from sequence_planner.model.stages.registry import build_stage
+from sequence_planner.model.stages.support import Context
 from sequence_planner.pipelines.graph import Chain
-from sequence_planner.pipelines.record import FieldType, RecordType
-from sequence_planner.pipelines.stages.base import Stage
-from sequence_planner.pipelines.stages.registry import build_stage
-from sequence_planner.pipelines.stages.support import Context
 
 # Stages that give the fields which they read, each from itself alone.
 _PASSING = frozenset({"fold", "debounce", "timeout", "override"})

@@ -8,12 +8,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.language.records.field_paths import fits, shown
+from sequence_planner.language.records.record import RealType, Record, RecordType
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import contains
 from sequence_planner.model.documents import ExampleDocument, ExampleStepDocument
 from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.model.stages.base import Loadable
 from sequence_planner.pipelines.chain_runtime import RunningChain, message_of
-from sequence_planner.pipelines.field_paths import fits, shown
 from sequence_planner.pipelines.graph import (
     EdgeView,
     Flow,
@@ -22,9 +24,7 @@ from sequence_planner.pipelines.graph import (
     OutgoingPipeline,
     StationPipelines,
 )
-from sequence_planner.pipelines.record import RealType, Record, RecordType
 from sequence_planner.pipelines.runtime import written_values
-from sequence_planner.pipelines.stages.base import Loadable
 from sequence_planner.ros.types.errors import MessageValueError
 from sequence_planner.ros.types.messages import MessageRegistry
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from sequence_planner.language.records.record import Record, RecordType
 from sequence_planner.language.types import Type
-from sequence_planner.pipelines.record import Record, RecordType
-from sequence_planner.pipelines.stages.base import Override, Stage
+from sequence_planner.model.stages.base import Override, Stage
 from sequence_planner.ros.qos import QualityOfService
 
 # What can become of the goal of an action, as a measured variable says it.

@@ -11,6 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from sequence_planner.automaton.declarations import FLAGS
+from sequence_planner.language.records.field_paths import NoFieldError, find_field
+from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.documents import ResourceDocument, TopicDocument, VariableDocument
 from sequence_planner.model.loader import Station
@@ -22,9 +24,7 @@ from sequence_planner.pipelines.client_builder import (
     with_client_variables,
     with_goal_states,
 )
-from sequence_planner.pipelines.field_paths import NoFieldError, find_field
 from sequence_planner.pipelines.message_types import message_fields
-from sequence_planner.pipelines.record import FieldType, RecordType
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, TextType
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
-from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, TextType
 from sequence_planner.ros.types import definitions as ros
 from sequence_planner.ros.types.messages import MessageRegistry
 

@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping, Set
 from dataclasses import dataclass, field
 
+from sequence_planner.language.records.field_paths import shown
+from sequence_planner.language.records.record import Record
 from sequence_planner.language.types import Value, contains
+from sequence_planner.model.stages.base import Overriding
 from sequence_planner.pipelines.chain_runtime import RunningChain
-from sequence_planner.pipelines.field_paths import shown
 from sequence_planner.pipelines.graph import (
     Flow,
     IncomingPipeline,
@@ -20,8 +22,6 @@ from sequence_planner.pipelines.graph import (
     StationPipelines,
     VariableField,
 )
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.base import Overriding
 
 
 @dataclass

@@ -10,9 +10,9 @@ from itertools import product
 
 from sequence_planner.automaton.automaton import Automaton, Effect, Kind, target
 from sequence_planner.automaton.tick import effect_writes
+from sequence_planner.language.records.field_paths import FieldPath, shown
 from sequence_planner.language.types import Value, contains
 from sequence_planner.pipelines.chain_runtime import first_message
-from sequence_planner.pipelines.field_paths import FieldPath, shown
 from sequence_planner.pipelines.graph import Flow, OutgoingPipeline, Setting, StationPipelines
 from sequence_planner.simulation.messages import CannotSpeakError, Message, glided, spoken
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence, Set
 
 from sequence_planner.automaton.automaton import State
+from sequence_planner.language.records.field_paths import FieldPath, NoFieldError, find_field
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.source import Finding
-from sequence_planner.pipelines.field_paths import FieldPath, NoFieldError, find_field
+from sequence_planner.model.stages.base import NotInvertibleError
 from sequence_planner.pipelines.graph import Chain, Flow, IncomingPipeline, Joining, StationPipelines
-from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, RecordType
-from sequence_planner.pipelines.stages.base import NotInvertibleError
 from sequence_planner.ros.transport import Sample, Transport, TransportError
 
 # The devices' way to the network: each resource has endpoints of its own, which can go and come again.

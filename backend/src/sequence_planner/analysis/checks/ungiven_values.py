@@ -8,12 +8,12 @@ from sequence_planner.analysis.checks.warning import ModelWarning, listed
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Value
+from sequence_planner.model.stages.base import NotInvertibleError, Stage
+from sequence_planner.model.stages.discretise import DiscretiseStage
+from sequence_planner.model.stages.map import MapStage, TableStage, is_same
+from sequence_planner.model.stages.match import MatchNamesStage
+from sequence_planner.model.stages.support import TransparentStage
 from sequence_planner.pipelines.graph import StationPipelines
-from sequence_planner.pipelines.stages.base import NotInvertibleError, Stage
-from sequence_planner.pipelines.stages.discretise import DiscretiseStage
-from sequence_planner.pipelines.stages.map import MapStage, TableStage, is_same
-from sequence_planner.pipelines.stages.match import MatchNamesStage
-from sequence_planner.pipelines.stages.support import TransparentStage
 
 
 def check_never_given(automaton: Automaton, pipelines: StationPipelines) -> Iterator[ModelWarning]:

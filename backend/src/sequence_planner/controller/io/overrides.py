@@ -12,10 +12,10 @@ from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.views.station import OverrideFieldView, OverrideView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.model.stages.base import Override, Overriding
+from sequence_planner.model.stages.timing import Bounds, OverrideStage
 from sequence_planner.pipelines.graph import Chain, IncomingPipeline, StationPipelines
 from sequence_planner.pipelines.runtime import RunningPipelines
-from sequence_planner.pipelines.stages.base import Override, Overriding
-from sequence_planner.pipelines.stages.timing import Bounds, OverrideStage
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from sequence_planner.controller.views.pipelines import (
     StageView,
     TypedEdgeView,
 )
+from sequence_planner.model.stages.base import Stage
 from sequence_planner.pipelines.graph import (
     Chain,
     Flow,
@@ -20,7 +21,6 @@ from sequence_planner.pipelines.graph import (
     StationPipelines,
     VariableField,
 )
-from sequence_planner.pipelines.stages.base import Stage
 
 NAMED = 4  # fields that a summary names at most on each side
 

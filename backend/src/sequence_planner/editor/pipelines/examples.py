@@ -32,11 +32,13 @@ from sequence_planner.editor.pipelines.schemas import (
     Trial,
     ValueView,
 )
+from sequence_planner.language.records.record import Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.documents import ExampleDocument, ExampleStepDocument
 from sequence_planner.model.files import Files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding
+from sequence_planner.model.stages.base import Loadable
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.editor import content_at
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
@@ -53,8 +55,6 @@ from sequence_planner.pipelines.examples import (
     plain,
 )
 from sequence_planner.pipelines.graph import Flow, IncomingPipeline, Joining, OutgoingPipeline
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.stages.base import Loadable
 
 # What edits of a draft would bring about, before anybody makes them.
 

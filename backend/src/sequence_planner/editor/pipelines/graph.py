@@ -29,15 +29,15 @@ from sequence_planner.editor.pipelines.schemas import (
     TypeKind,
     TypeView,
 )
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange
 from sequence_planner.model.source import Finding
+from sequence_planner.model.stages.base import Stage
 from sequence_planner.model.yaml.editor import plain
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
 from sequence_planner.pipelines.builder import flow_name
 from sequence_planner.pipelines.chains import ChainBuilding
 from sequence_planner.pipelines.graph import Flow, IncomingPipeline, OutgoingPipeline
-from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
-from sequence_planner.pipelines.stages.base import Stage
 from sequence_planner.ros.qos import QualityOfService
 
 # Which edges of what runs those of a draft are: what has not been changed is found again, wherever it stands now.

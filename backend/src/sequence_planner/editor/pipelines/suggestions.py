@@ -26,19 +26,19 @@ from sequence_planner.editor.pipelines.schemas import (
     TargetView,
 )
 from sequence_planner.language.lexer import KEYWORDS
+from sequence_planner.language.records.field_paths import domain, is_numeric, is_textual
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place, Type
 from sequence_planner.model.documents import FlowDocument, ResourceDocument, VariableDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.python import FOLDER
 from sequence_planner.model.validation import complaint
 from sequence_planner.pipelines.builder import build_what_is_sound
-from sequence_planner.pipelines.field_paths import domain, is_numeric, is_textual
 from sequence_planner.pipelines.inference import variables_inferred
 from sequence_planner.pipelines.message_types import feeds, fills
-from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
-from sequence_planner.pipelines.stages.python import FOLDER
 
 # Stages to begin with: of each kind some that the record at an edge suggests, for people to fill in further.
 #

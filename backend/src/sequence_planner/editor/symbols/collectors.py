@@ -21,6 +21,7 @@ from sequence_planner.editor.symbols.index import (
 from sequence_planner.editor.symbols.texts import entry, items, pairs
 from sequence_planner.language.lexer import Token
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
+from sequence_planner.language.records.expressions import words
 from sequence_planner.language.syntax import (
     NOWHERE,
     Assignment,
@@ -33,8 +34,7 @@ from sequence_planner.language.syntax import (
     children,
 )
 from sequence_planner.model.source import SourceText
-from sequence_planner.pipelines.expressions import words
-from sequence_planner.pipelines.stages.map import ANY
+from sequence_planner.model.stages.map import ANY
 
 # Which parts a dotted name names: what `NameScope` looks up in a sound model, in one that may be broken elsewhere.
 

@@ -8,13 +8,13 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from sequence_planner.editor.symbols.texts import entry, items, pairs, text_at
+from sequence_planner.language.records.field_paths import NoFieldError, find_field
+from sequence_planner.language.records.record import FieldType
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.source import SourceText
-from sequence_planner.pipelines.field_paths import NoFieldError, find_field
 from sequence_planner.pipelines.graph import GOAL_STATE
 from sequence_planner.pipelines.inference import MOST_VALUES
 from sequence_planner.pipelines.message_types import message_fields
-from sequence_planner.pipelines.record import FieldType
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
 

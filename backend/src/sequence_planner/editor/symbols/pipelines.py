@@ -35,12 +35,12 @@ from sequence_planner.editor.symbols.texts import (
     pairs,
     text_at,
 )
+from sequence_planner.language.records.field_paths import NoFieldError, find_field
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.yaml.editor import insert, remove, replace
 from sequence_planner.model.yaml.reader import EntryPath
-from sequence_planner.pipelines.field_paths import NoFieldError, find_field
 from sequence_planner.pipelines.graph import GOAL_STATE
 from sequence_planner.ros.types.messages import MessageRegistry
 

@@ -27,9 +27,9 @@ from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import Place
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.stages.map import ANY
 from sequence_planner.model.yaml.editor import same, scalar
 from sequence_planner.model.yaml.reader import EntryPath, read_text
-from sequence_planner.pipelines.stages.map import ANY
 from sequence_planner.process.gc_tuning import collection_put_off
 from sequence_planner.ros.names import check_topic
 from sequence_planner.ros.types.messages import MessageRegistry

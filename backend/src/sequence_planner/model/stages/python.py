@@ -23,14 +23,14 @@ from pathlib import Path
 from typing import ClassVar
 
 from sequence_planner.core.late_log import LateLog
+from sequence_planner.language.records.field_paths import REAL, TEXT, FieldPath, fits, is_numeric, is_textual, shown
+from sequence_planner.language.records.record import FieldType, ListType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import PythonDocument
-from sequence_planner.pipelines.field_paths import REAL, TEXT, FieldPath, fits, is_numeric, is_textual, shown
-from sequence_planner.pipelines.record import FieldType, ListType, Record
-from sequence_planner.pipelines.stages.base import NotInvertibleError
-from sequence_planner.pipelines.stages.support import Context
+from sequence_planner.model.stages.base import NotInvertibleError
+from sequence_planner.model.stages.support import Context
 
 # One process that runs a function, as its keeper sees it. All calls may wait, at most for the time they are given.
 

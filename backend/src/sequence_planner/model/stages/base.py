@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.language.types import Place
-from sequence_planner.pipelines.record import FieldType, Record
 
 
 class NotInvertibleError(Exception):

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from sequence_planner.language.records.field_paths import FieldPath, common_type, fits, shown
+from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.source import SourceText
-from sequence_planner.pipelines.field_paths import FieldPath, common_type, fits, shown
-from sequence_planner.pipelines.record import FieldType, Record
-from sequence_planner.pipelines.stages.support import Context, ImmediateStage, plain, wanted_type
+from sequence_planner.model.stages.support import Context, ImmediateStage, plain, wanted_type
 
 # `rename` and `constant`: fields under other names, and fields that never change.
 

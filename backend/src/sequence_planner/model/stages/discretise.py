@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 from typing import ClassVar, Protocol
 
+from sequence_planner.language.records.field_paths import REAL, FieldPath, is_number, is_numeric, shown
+from sequence_planner.language.records.record import FieldType, ListType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import DiscretiseDocument, UndiscretiseDocument
-from sequence_planner.pipelines.field_paths import REAL, FieldPath, is_number, is_numeric, shown
-from sequence_planner.pipelines.record import FieldType, ListType, Record
-from sequence_planner.pipelines.stages.base import NotInvertibleError
-from sequence_planner.pipelines.stages.support import Context, ImmediateStage, only, wanted_type
+from sequence_planner.model.stages.base import NotInvertibleError
+from sequence_planner.model.stages.support import Context, ImmediateStage, only, wanted_type
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
 

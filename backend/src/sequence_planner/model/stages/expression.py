@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from sequence_planner.language.records.expressions import Calculation, read_calculation, read_condition
+from sequence_planner.language.records.field_paths import as_written
+from sequence_planner.language.records.record import FieldType, Record, RecordType
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import Place
 from sequence_planner.model.source import SourceText
-from sequence_planner.pipelines.expressions import Calculation, read_calculation, read_condition
-from sequence_planner.pipelines.field_paths import as_written
-from sequence_planner.pipelines.record import FieldType, Record, RecordType
-from sequence_planner.pipelines.stages.map import is_same
-from sequence_planner.pipelines.stages.support import Context, ImmediateStage, candidates, put_at, solve
+from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.support import Context, ImmediateStage, candidates, put_at, solve
 
 # `expression` and `filter`: values computed from others, and records that do not go on.
 

@@ -11,9 +11,7 @@ from typing import Any
 
 from sequence_planner.language.evaluator import RELATIONS
 from sequence_planner.language.lexer import KEYWORDS, Token
-from sequence_planner.language.syntax import ExpressionError, Span
-from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange
-from sequence_planner.pipelines.field_paths import (
+from sequence_planner.language.records.field_paths import (
     REAL,
     FieldPath,
     NoFieldError,
@@ -22,7 +20,9 @@ from sequence_planner.pipelines.field_paths import (
     is_textual,
     shown,
 )
-from sequence_planner.pipelines.record import FieldType, ListType, RealType, RecordType, TextType
+from sequence_planner.language.records.record import FieldType, ListType, RealType, RecordType, TextType
+from sequence_planner.language.syntax import ExpressionError, Span
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange
 
 # Parts of an expression over records: each has a type, and says its value for a record.
 

@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from sequence_planner.model.stage_documents import StageDocument
-from sequence_planner.pipelines.stages.base import Stage
-from sequence_planner.pipelines.stages.discretise import build_discretise, build_undiscretise
-from sequence_planner.pipelines.stages.expression import build_expression, build_filter
-from sequence_planner.pipelines.stages.map import build_map, build_table
-from sequence_planner.pipelines.stages.match import build_match, build_member
-from sequence_planner.pipelines.stages.python import build_python
-from sequence_planner.pipelines.stages.rename import build_constant, build_rename
-from sequence_planner.pipelines.stages.support import Context
-from sequence_planner.pipelines.stages.timing import (
+from sequence_planner.model.stages.base import Stage
+from sequence_planner.model.stages.discretise import build_discretise, build_undiscretise
+from sequence_planner.model.stages.expression import build_expression, build_filter
+from sequence_planner.model.stages.map import build_map, build_table
+from sequence_planner.model.stages.match import build_match, build_member
+from sequence_planner.model.stages.python import build_python
+from sequence_planner.model.stages.rename import build_constant, build_rename
+from sequence_planner.model.stages.support import Context
+from sequence_planner.model.stages.timing import (
     build_debounce,
     build_fold,
     build_limit,

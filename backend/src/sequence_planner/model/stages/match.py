@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 
+from sequence_planner.language.records.field_paths import TEXT, FieldPath, is_number, is_textual, shown
+from sequence_planner.language.records.record import FieldType, ListType, RealType, Record
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import MatchDocument, MemberDocument
-from sequence_planner.pipelines.field_paths import TEXT, FieldPath, is_number, is_textual, shown
-from sequence_planner.pipelines.record import FieldType, ListType, RealType, Record
-from sequence_planner.pipelines.stages.map import is_same
-from sequence_planner.pipelines.stages.support import (
+from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.support import (
     Context,
     ImmediateStage,
     candidates,

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from sequence_planner.language.records.field_paths import FieldPath, as_written, domain, shown
+from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import MapDocument, TableDocument, TableRowDocument
-from sequence_planner.pipelines.field_paths import FieldPath, as_written, domain, shown
-from sequence_planner.pipelines.record import FieldType, Record
-from sequence_planner.pipelines.stages.base import NotInvertibleError
-from sequence_planner.pipelines.stages.support import (
+from sequence_planner.model.stages.base import NotInvertibleError
+from sequence_planner.model.stages.support import (
     Context,
     ImmediateStage,
     Passing,

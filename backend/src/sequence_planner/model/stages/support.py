@@ -9,10 +9,7 @@ from itertools import islice, product
 from pathlib import Path
 from typing import ClassVar
 
-from sequence_planner.language.resolver import suggestion
-from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
-from sequence_planner.model.source import SourceText
-from sequence_planner.pipelines.field_paths import (
+from sequence_planner.language.records.field_paths import (
     FieldPath,
     NoFieldError,
     as_written,
@@ -25,8 +22,11 @@ from sequence_planner.pipelines.field_paths import (
     shown,
     written,
 )
-from sequence_planner.pipelines.record import FieldType, ListType, RealType, Record, RecordType, TextType
-from sequence_planner.pipelines.stages.base import NotInvertibleError, StageInstance
+from sequence_planner.language.records.record import FieldType, ListType, RealType, Record, RecordType, TextType
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
+from sequence_planner.model.source import SourceText
+from sequence_planner.model.stages.base import NotInvertibleError, StageInstance
 
 # What the builder of a stage may know: the record before it, what is wanted of it, and where to say what is wrong.
 

@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.core.numerals import counted
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, contains
-from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
 
 # Fields of a record by their paths, such as `pose.position.x`, `joints[0]` or `transforms[0].header.frame_id`.
 #

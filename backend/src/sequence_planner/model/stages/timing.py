@@ -6,6 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from sequence_planner.language.records.field_paths import (
+    FieldPath,
+    as_written,
+    domain,
+    fits,
+    is_numeric,
+    shown,
+    written,
+)
+from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
@@ -17,19 +27,9 @@ from sequence_planner.model.stage_documents import (
     RememberDocument,
     TimeoutDocument,
 )
-from sequence_planner.pipelines.field_paths import (
-    FieldPath,
-    as_written,
-    domain,
-    fits,
-    is_numeric,
-    shown,
-    written,
-)
-from sequence_planner.pipelines.record import FieldType, Record
-from sequence_planner.pipelines.stages.base import Override
-from sequence_planner.pipelines.stages.map import is_same
-from sequence_planner.pipelines.stages.support import (
+from sequence_planner.model.stages.base import Override
+from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.support import (
     Context,
     Passing,
     TransparentStage,
