@@ -30,7 +30,7 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
 

@@ -15,21 +15,9 @@ from sequence_planner.model.documents import (
     ServiceDocument,
 )
 from sequence_planner.model.fields import DocumentPart
-from sequence_planner.model.stage_documents import (
-    BoundsDocument,
-    DiscretiseDocument,
-    MapDocument,
-    MatchDocument,
-    MemberDocument,
-    OverrideDocument,
-    PythonDocument,
-    RememberDocument,
-    StageDocument,
-    TableDocument,
-    TableRowDocument,
-    TimeoutDocument,
-    UndiscretiseDocument,
-)
+from sequence_planner.model.stages.map import TableRowDocument
+from sequence_planner.model.stages.registry import KINDS, StageDocument
+from sequence_planner.model.stages.timing import BoundsDocument, EveryDocument
 from sequence_planner.testing import Example, examples
 
 TEXT = (Path(__file__).parents[2] / "docs" / "pipelines.md").read_text(encoding="utf-8")
@@ -63,17 +51,9 @@ def test_the_examples_of_the_page_hold(made: list[Example]) -> None:
         ExampleStepDocument,
         StageDocument,
         BoundsDocument,
-        DiscretiseDocument,
-        MapDocument,
-        MatchDocument,
-        MemberDocument,
-        OverrideDocument,
-        PythonDocument,
-        RememberDocument,
-        TableDocument,
+        EveryDocument,
         TableRowDocument,
-        TimeoutDocument,
-        UndiscretiseDocument,
+        *(kind for kind in KINDS.values() if not kind.is_bare),
     ],
     ids=lambda part: part.__name__,
 )

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from sequence_planner.model.stages.registry import KINDS
 from sequence_planner.model.yaml.reader import MOST_ENTRIES, MOST_REPEATED
 from sequence_planner.station import prepare_station
 
@@ -18,10 +19,7 @@ ARM, STATION, OPERATIONS, SPECIFICATIONS = (
     "specifications.yaml",
 )
 NAMES = "names with their definitions"
-STAGE = (
-    "a stage is exactly one of rename, constant, expression, discretise, undiscretise, map, table, match, member, "
-    "remember, filter, debounce, limit, tick, override, fold, timeout, python"
-)
+STAGE = f"a stage is exactly one of {', '.join(KINDS)}"
 NOT_YAML = "this is not YAML:"
 INDENTATION = "this does not belong to what is above it: look at the indentation and the quotes"
 NO_NAME = "a `name:` stands here where none may: look at the indentation, and quote a text that has `: `"

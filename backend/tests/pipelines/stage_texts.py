@@ -10,10 +10,8 @@ from pathlib import Path
 from sequence_planner.language.records.field_paths import REAL, TEXT
 from sequence_planner.language.records.record import FieldType, ListType, NestedType, Record, RecordType
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Place
-from sequence_planner.model.stage_documents import StageDocument
-from sequence_planner.model.stages.base import Stage, StageInstance
-from sequence_planner.model.stages.registry import build_stage
-from sequence_planner.model.stages.support import Context
+from sequence_planner.model.stages.base import Context, Stage, StageInstance
+from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.yaml.reader import read_text
 
 BYTE = IntegerRange(0, 255)
@@ -67,7 +65,7 @@ def build(
         written.findings.append(f"{place.line}:{place.column}: {message}")
 
     context = Context(is_incoming, fields, wanted, folder, document.place, found)
-    written.stage = build_stage(document, context)
+    written.stage = document.check(context)
     assert (written.stage is None) == bool(written.findings)
     return written
 

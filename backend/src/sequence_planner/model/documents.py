@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.registry import StageDocument
 
 # What the services and actions of a resource may hold: the station is their client, the device their server.
 

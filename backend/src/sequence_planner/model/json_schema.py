@@ -25,7 +25,7 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.efa_document import PlainDocument
-from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.registry import StageDocument
 
 # The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
 FILES: Mapping[str, tuple[Any, str]] = {

@@ -15,10 +15,11 @@ from sequence_planner.language.types import BooleanType, EnumerationType, Intege
 from sequence_planner.model.documents import FlowDocument, ResourceDocument, TopicDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.model.stage_documents import StageDocument
-from sequence_planner.model.stages.base import Patient
+from sequence_planner.model.stages.base import NameUse, Patient
+from sequence_planner.model.stages.registry import StageDocument
+from sequence_planner.model.stages.timing import OverrideDocument
 from sequence_planner.pipelines.chain_runtime import first_message
-from sequence_planner.pipelines.chains import ChainBuilding, PipelineFindings, names_of_constants, used_up
+from sequence_planner.pipelines.chains import ChainBuilding, PipelineFindings, names_of_constants
 from sequence_planner.pipelines.client_builder import client_of, is_part, parts
 from sequence_planner.pipelines.graph import (
     ActionUse,
@@ -273,7 +274,7 @@ def incoming_pipeline(
         numbers = names_of_constants(constants, variable)
         if building.is_sound and isinstance(field, IntegerRange) and numbers is not None and name not in ignored:
             building.map_constants(name, name, numbers, building.name.place)
-    renamed = {str(field) for stage in document.pipeline for field in stage.rename or ()}
+    renamed = {str(field) for stage in document.pipeline for field in stage.named(True, NameUse.RENAMED)}
     names = set(building.chain.end) - ((ignored | renamed) - set(building.given))
     return IncomingPipeline(topic, document.deadline, building.chain, writings(resource, building, names))
 
@@ -346,7 +347,7 @@ def _is_set(resource: Resource, building: ChainBuilding, name: str) -> bool:
 
 def _check_ignored(document: TopicDocument, building: ChainBuilding, message: RecordType) -> None:
     given = set(building.given)
-    used = {field for stage in document.pipeline for field in used_up(stage)}
+    used = {field for stage in document.pipeline for field in stage.named(True, NameUse.CONSUMED, NameUse.RENAMED)}
     for field in document.ignore:
         if field not in message:
             building.findings.add(field.place, f"the message has no field `{field}`{suggestion(field, message)}")
@@ -376,8 +377,8 @@ def _names(resource: ResourceDocument) -> Iterator[SourceText]:
     pipelines += [flow.pipeline for flow in resource.flows.values()]
     for pipeline in pipelines:
         for stage in pipeline:
-            if stage.override is not None:
-                yield stage.override.name
+            if isinstance(stage.content, OverrideDocument):
+                yield stage.content.name
 
 
 # Pipelines from documents: the whole graph of a station, checked, with everything that is wrong with it at once.

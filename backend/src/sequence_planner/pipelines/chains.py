@@ -6,20 +6,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pydantic import BaseModel
-
 from sequence_planner.language.records.field_paths import NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.source import Finding, SourceText
-from sequence_planner.model.stage_documents import MapDocument, Scalar, StageDocument
-from sequence_planner.model.stages.base import Stage
-from sequence_planner.model.stages.registry import build_stage
-from sequence_planner.model.stages.support import Context
+from sequence_planner.model.stages.base import Context, NameUse, Scalar, Stage
+from sequence_planner.model.stages.discretise import DiscretiseDocument
+from sequence_planner.model.stages.map import MapDocument
+from sequence_planner.model.stages.registry import StageDocument
+from sequence_planner.model.stages.support import PassingStage
+from sequence_planner.model.stages.timing import FoldDocument
 from sequence_planner.pipelines.graph import Chain
-
-# Stages that give the fields which they read, each from itself alone.
-_PASSING = frozenset({"fold", "debounce", "timeout", "override"})
 
 
 @dataclass
@@ -69,7 +66,7 @@ class ChainBuilding:
 
         fields = self.fields[-1]
         context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found)
-        stage = build_stage(document, context)
+        stage = document.check(context)
         if stage is None or len(self.findings.found) > before:
             self.is_sound = False
             self.wrong = self.findings.found[before:]
@@ -91,7 +88,7 @@ class ChainBuilding:
                 pairs[text(str(number))] = text(name)
             else:
                 pairs[text(name)] = number
-        self._add(StageDocument(map=MapDocument(field=text(field), variable=text(variable), values=pairs)))
+        self._add(StageDocument.of(MapDocument(field=text(field), variable=text(variable), values=pairs)))
 
     @property
     def chain(self) -> Chain:
@@ -110,13 +107,14 @@ class ChainBuilding:
 
     def _is_about_all(self, index: int) -> bool:
         """Return whether a stage is about every field there is: that is no use of any."""
-        return self.documents[index].fold == []
+        content = self.documents[index].content
+        return isinstance(content, FoldDocument) and not content.fields
 
     @property
     def between(self) -> dict[str, str]:
         """The values that discretised names have between their points."""
-        made = (document.discretise for document in self.documents)
-        return {str(each.variable): str(each.otherwise) for each in made if each and each.otherwise is not None}
+        made = [each.content for each in self.documents if isinstance(each.content, DiscretiseDocument)]
+        return {str(each.variable): str(each.otherwise) for each in made if each.otherwise is not None}
 
     def place_of(self, name: str) -> Place:
         """Return where a name that a stage has given is written, or the pipeline itself."""
@@ -124,7 +122,8 @@ class ChainBuilding:
         if index is None:
             return self.name.place
         document = self.documents[index]
-        return next((text.place for text in _texts(document) if text == name), document.place)
+        given = document.named(self.is_incoming, NameUse.GIVEN, NameUse.KEPT)
+        return next((text.place for text in given if text == name), document.place)
 
     def edge(self, index: int) -> str:
         """A stage, as findings name it."""
@@ -161,16 +160,9 @@ class ChainBuilding:
             read = self.keys_read(index)
             together = frozenset().union(*(come.get(key, frozenset()) for key in read))
             for name in stage.gives:
-                own = stage.kind in _PASSING and name in come
+                own = isinstance(stage, PassingStage) and name in come
                 come[name] = come[name] if own else together
         return come
-
-
-def used_up(stage: StageDocument) -> frozenset[str]:
-    """The fields of an incoming message that a stage makes something else of: they are no variables themselves."""
-    single = (stage.discretise, stage.map, stage.match, stage.member)
-    renamed = () if stage.rename is None else stage.rename
-    return frozenset(map(str, (*renamed, *(each.field for each in single if each is not None))))
 
 
 def is_field(fields: RecordType, name: str) -> bool:
@@ -191,19 +183,3 @@ def names_of_constants(constants: Mapping[str, object], variable: FieldType) -> 
         return None
     numbers = {value: named[value] for value in variable.values}
     return numbers if len(set(numbers.values())) == len(numbers) else None
-
-
-def _texts(part: object) -> Iterator[SourceText]:
-    """The texts of a document, in order."""
-    if isinstance(part, SourceText):
-        yield part
-    elif isinstance(part, BaseModel):
-        for name in part.model_fields_set:
-            yield from _texts(getattr(part, name))
-    elif isinstance(part, Mapping):
-        for key, value in part.items():
-            yield from _texts(key)
-            yield from _texts(value)
-    elif isinstance(part, list | tuple):
-        for each in part:
-            yield from _texts(each)

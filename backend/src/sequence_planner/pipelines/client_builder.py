@@ -17,7 +17,7 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, SourceText
-from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.pipelines.graph import GOAL_STATE, STATUS_FIELD, STATUS_TYPE, GoalState
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry

@@ -45,9 +45,6 @@ STATUS_TYPE, STATUS_FIELD = "std_msgs/msg/String", "data"
 #
 # Everything here is immutable and shared; what changes while the station runs is in `runtime`.
 
-# Stages that look at the time, or ask something that may answer otherwise: the same record again is news to them.
-_TIMED = frozenset({"debounce", "limit", "tick", "override", "timeout", "python"})
-
 
 @dataclass(frozen=True)
 class Topic:
@@ -74,7 +71,7 @@ class Chain:
     @property
     def is_timed(self) -> bool:
         """True if a record that says the same as the one before can make a difference."""
-        return any(stage.kind in _TIMED for stage in self.stages)
+        return any(stage.is_timed for stage in self.stages)
 
 
 @dataclass(frozen=True)

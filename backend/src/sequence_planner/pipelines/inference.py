@@ -17,7 +17,8 @@ from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.documents import ResourceDocument, TopicDocument, VariableDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.base import NameUse
+from sequence_planner.model.stages.rename import RenameDocument
 from sequence_planner.pipelines.client_builder import (
     client_findings,
     parts,
@@ -90,10 +91,16 @@ def _mapped(
     topic: SourceText, document: TopicDocument, fields: RecordType
 ) -> Iterator[tuple[str, SourceText, FieldType]]:
     """The fields that no stage uses up and none is to be ignored, each with the name of its variable."""
-    renamed = {field: name for stage in document.pipeline for field, name in (stage.rename or {}).items()}
-    used = {*map(str, document.ignore), *map(str, renamed)}
+    renamed: dict[SourceText, SourceText] = {}
+    used = set(map(str, document.ignore))
     for stage in document.pipeline:
-        used |= _used(stage)
+        content = stage.content
+        if isinstance(content, RenameDocument):
+            renamed |= content.names
+            used |= set(map(str, content.names))
+        else:
+            names = stage.named(document.direction == "in", NameUse.CONSUMED, NameUse.COMBINED, NameUse.GIVEN)
+            used |= set(map(str, names))
     for field, variable in renamed.items():
         try:
             yield str(field), variable, find_field(fields, field)[1]
@@ -102,21 +109,6 @@ def _mapped(
     for name, type_ in fields.items():
         if name not in used:
             yield name, SourceText(name, topic.place, name), type_
-
-
-def _used(stage: StageDocument) -> set[str]:
-    """The fields and variables of a stage that are one thing before it and another behind it."""
-    used: set[str] = set(map(str, (*(stage.constant or ()), *(stage.expression or ()))))
-    for single in (stage.discretise, stage.undiscretise, stage.map, stage.match, stage.member):
-        if single is not None:
-            used |= {str(single.field), str(single.variable)}
-    if stage.table is not None:
-        used |= set(map(str, (*stage.table.fields, *stage.table.variables)))
-    if stage.remember is not None:
-        used.add(str(stage.remember.variable))
-    if stage.python is not None:
-        used |= set(map(str, stage.python.gives))
-    return used
 
 
 def _type(field: FieldType, variable: SourceText) -> SourceText | None:

@@ -21,7 +21,7 @@ from sequence_planner.editor.pipelines.suggestions import fits
 from sequence_planner.model.files import write_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.stages.registry import StageDocument
 
 from .drafts import MODELS, REACH, edited, files_of, graph_of, prepared, shipped
 

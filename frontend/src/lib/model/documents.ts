@@ -668,6 +668,11 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"help": "Values computed from others: `{name: expression}`.",
 				"required": false
 			},
+			"filter": {
+				"kind": "predicate",
+				"help": "Only records for which this holds go on.",
+				"required": false
+			},
 			"discretise": {
 				"kind": "part",
 				"part": "discretise",
@@ -708,11 +713,6 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"kind": "part",
 				"part": "remember",
 				"help": "Keep the last value of another variable; for incoming topics.",
-				"required": false
-			},
-			"filter": {
-				"kind": "predicate",
-				"help": "Only records for which this holds go on.",
 				"required": false
 			},
 			"debounce": {

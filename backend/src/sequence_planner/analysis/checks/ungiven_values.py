@@ -12,7 +12,7 @@ from sequence_planner.model.stages.base import NotInvertibleError, Stage
 from sequence_planner.model.stages.discretise import DiscretiseStage
 from sequence_planner.model.stages.map import MapStage, TableStage, is_same
 from sequence_planner.model.stages.match import MatchNamesStage
-from sequence_planner.model.stages.support import TransparentStage
+from sequence_planner.model.stages.support import PassingStage
 from sequence_planner.pipelines.graph import StationPipelines
 
 
@@ -31,7 +31,7 @@ def check_never_given(automaton: Automaton, pipelines: StationPipelines) -> Iter
 
 def _makes(stage: Stage, field: str) -> bool:
     """Return whether the values of a field come from a stage, and do not only pass it."""
-    return field in stage.gives and not isinstance(stage, TransparentStage)
+    return field in stage.gives and not isinstance(stage, PassingStage)
 
 
 def may_give(stage: Stage, field: str, value: Value) -> bool:

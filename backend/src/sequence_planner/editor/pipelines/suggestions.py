@@ -33,8 +33,8 @@ from sequence_planner.model.documents import FlowDocument, ResourceDocument, Var
 from sequence_planner.model.loader import Station
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stage_documents import StageDocument
 from sequence_planner.model.stages.python import FOLDER
+from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.validation import complaint
 from sequence_planner.pipelines.builder import build_what_is_sound
 from sequence_planner.pipelines.inference import variables_inferred

@@ -5,16 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
-from typing import ClassVar, Protocol
+from typing import Annotated, ClassVar, Protocol
+
+from pydantic import Field, model_validator
 
 from sequence_planner.language.records.field_paths import REAL, FieldPath, is_number, is_numeric, shown
 from sequence_planner.language.records.record import FieldType, ListType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
+from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stage_documents import DiscretiseDocument, UndiscretiseDocument
-from sequence_planner.model.stages.base import NotInvertibleError
-from sequence_planner.model.stages.support import Context, ImmediateStage, only, wanted_type
+from sequence_planner.model.stages.base import (
+    Context,
+    GivenValue,
+    MessageField,
+    ModelVariable,
+    NotInvertibleError,
+    ReadValue,
+    StageDeclaration,
+    StageInstance,
+)
+from sequence_planner.model.stages.support import ImmediateStage, wanted_type
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
 
@@ -148,210 +159,64 @@ class Ranges:
         return None
 
 
-# `discretise` and `undiscretise`: from numbers to the name of the region they are in, and back.
+# `discretise`: from numbers to the name of the region they are in.
 
-
-@dataclass(frozen=True)
-class DiscretiseStage:
-    """Numbers become the name of the region they are in, or `otherwise`; with none of these they are unknown.
-
-    With a hysteresis a region, once reached, is left only when the numbers are further outside than that.
-    """
-
-    place: Place
-    field: FieldPath
-    variable: str
-    type: EnumerationType
-    regions: Regions
-    otherwise: str | None
-    hysteresis: float
-    field_type: FieldType
-    kind: ClassVar[str] = "discretise"
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """The numbers."""
-        return frozenset({self.field.text})
-
-    @property
-    def gives(self) -> Mapping[str, FieldType]:
-        """The name."""
-        return {self.variable: self.type}
-
-    def begin(self) -> DiscretiseCourse:
-        """Begin in no region."""
-        return DiscretiseCourse(self)
-
-    def backwards(self, values: dict[str, object]) -> None:
-        """Numbers in the region of that name; for `otherwise` those there are already, or ones near them."""
-        name = values.get(self.variable)
-        if name is None:
-            return
-        region = name if isinstance(name, str) and name in self.regions.names else None
-        if region is None and name != self.otherwise:
-            what = f"it is neither among the values of `{self.kind}` nor its `otherwise`"
-            raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: {what}")
-        for numbers in self._tried(region, numbers_of(values.get(self.field.text), self.regions.axes)):
-            if numbers is not None and self.regions.find(fitting := _of_type(numbers, self.field_type)) == region:
-                values[self.field.text] = _as_field(fitting, self.field_type)
-                return
-        raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: leave a gap for it")
-
-    def _tried(self, region: str | None, now: Numbers | None) -> Iterator[Numbers | None]:
-        """Numbers in that region, or in none; the second ones outside are so far out that integers are, too."""
-        if region is not None:
-            yield self.regions.inside(region)
-        else:
-            yield self.regions.outside(self.hysteresis, now)
-            yield self.regions.outside(self.hysteresis + 1.0, now)
-
-
-@dataclass(slots=True)
-class DiscretiseCourse:
-    """Knows in which region the numbers were last."""
-
-    stage: DiscretiseStage
-    last: str | None = None
-    due: ClassVar[float | None] = None
-
-    def take(self, record: Record, now: float) -> Record:
-        """The record with the name of the region."""
-        stage = self.stage
-        raw = stage.field.get(record.values)
-        numbers = None if raw is None else numbers_of(raw, stage.regions.axes)
-        if numbers is None:
-            self.last = None
-            record.values[stage.variable] = None
-            if raw is not None:
-                record.troubles.append(f"{stage.field} is no position: {shown(raw)}")
-            return record
-        stays = stage.hysteresis > 0 and self.last is not None
-        if not stays or not stage.regions.holds(self.last or "", numbers, stage.hysteresis):
-            self.last = stage.regions.find(numbers)
-        record.values[stage.variable] = self.last or stage.otherwise
-        if self.last is None and stage.otherwise is None:
-            record.troubles.append(f"{stage.field} is {shown(raw)}, which is in none of the ranges")
-        return record
-
-    def wake(self, now: float) -> None:
-        """Nothing happens by itself."""
-
-
-@dataclass(frozen=True)
-class UndiscretiseStage(ImmediateStage):
-    """A name becomes the coordinates of its point."""
-
-    variable: FieldPath
-    field: str
-    type: FieldType
-    points: Mapping[str, Numbers]
-    kind: ClassVar[str] = "undiscretise"
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """The name."""
-        return frozenset({self.variable.text})
-
-    @property
-    def gives(self) -> Mapping[str, FieldType]:
-        """The coordinates."""
-        return {self.field: self.type}
-
-    def apply(self, record: Record) -> None:
-        """The field takes the coordinates."""
-        name = self.variable.get(record.values)
-        numbers = self.points.get(name) if isinstance(name, str) else None
-        record.values[self.field] = None if numbers is None else _as_field(numbers, self.type)
-        if name is not None and numbers is None:
-            record.troubles.append(f"{self.variable} is {shown(name)}, which has no coordinates")
-
-    def backwards(self, values: dict[str, object]) -> None:
-        """The name of the nearest point: a command is always one of them, but for rounding."""
-        raw = values.get(self.field)
-        if raw is None:
-            return
-        numbers = numbers_of(raw, len(next(iter(self.points.values()))))
-        if numbers is None:
-            raise NotInvertibleError(f"{self.field} is no position: {shown(raw)}")
-        values[self.variable.text] = Points(self.points, 0.0).nearest(numbers)
-
-
-def _of_type(numbers: Numbers, type_: FieldType) -> Numbers:
-    """`numbers` as the field can have them: rounded where it has integers."""
-    element = type_.element if isinstance(type_, ListType) else type_
-    return tuple(map(round, numbers)) if isinstance(element, IntegerRange) else numbers
-
-
-def _as_field(numbers: Numbers, type_: FieldType) -> object:
-    return list(numbers) if isinstance(type_, ListType) else numbers[0]
-
-
-# `discretise` and `undiscretise` from documents.
-
+Point = Annotated[list[float], Field(min_length=1)]
 Coordinates = Mapping[SourceText, Sequence[float]]
 Bounds = tuple[float | None, float | None]
 
 
-def build_discretise(document: DiscretiseDocument, context: Context) -> DiscretiseStage | None:
-    """From numbers to names."""
-    if not only(context, document.field.place, True, "discretise", "undiscretise"):
-        return None
-    found = context.field(document.field)
-    names = [*(document.values or document.ranges or {})]
-    names += [] if document.otherwise is None else [document.otherwise]
-    type_ = wanted_type(context, document.variable) or EnumerationType(tuple(dict.fromkeys(map(str, names))))
-    named = _are_names(context, document.field, names, type_)
-    if found is None or not named or not isinstance(type_, EnumerationType):
-        return None
-    path, field = found
-    regions = _regions(document, field, context)
-    if regions is None:
-        return None
-    otherwise = None if document.otherwise is None else str(document.otherwise)
-    variable, hysteresis = str(document.variable), document.hysteresis
-    return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, field)
+class DiscretiseDocument(StageDeclaration):
+    """Numbers become the value whose coordinates are within `tolerance` of each, else `otherwise`."""
 
+    kind: ClassVar[str] = "discretise"
+    about: ClassVar[str] = "From numbers to the name of a point; for incoming topics."
+    direction: ClassVar = "incoming"
+    instead: ClassVar[str] = "undiscretise"
 
-def build_undiscretise(document: UndiscretiseDocument, context: Context) -> UndiscretiseStage | None:
-    """From names to numbers."""
-    if not only(context, document.field.place, False, "undiscretise", "discretise"):
-        return None
-    found = context.field(document.variable)
-    axes = {len(point) for point in document.values.values()}
-    field = wanted_type(context, document.field) or ListType(REAL, next(iter(axes)) if len(axes) == 1 else None)
-    fits = _fit(context, document.field, document.values, field)
-    if found is None or not _are_names(context, document.field, document.values, found[1]) or not fits:
-        return None
-    path, type_ = found
-    missing = sorted(set(type_.values if isinstance(type_, EnumerationType) else ()) - set(map(str, document.values)))
-    if missing:
-        context.found(document.variable.place, f"no coordinates for {', '.join(missing)}")
-        return None
-    element = field.element if isinstance(field, ListType) else field
-    points = {str(name): _coordinates(context, name, at, element) for name, at in document.values.items()}
-    known = {name: point for name, point in points.items() if point is not None}
-    return UndiscretiseStage(context.place, path, str(document.field), field, known) if known == points else None
+    field: MessageField
+    """An array of numbers in the message, or a single number."""
+    variable: ModelVariable
+    """What gets the name of the point."""
+    values: Given[dict[GivenValue, Point]] = None
+    """The coordinates of each named point."""
+    ranges: Given[dict[GivenValue, Annotated[Bounds, Field(strict=False)]]] = None
+    """For a single number: the least and the greatest of each value, `null` where there is no bound."""
+    tolerance: Given[Annotated[float, Field(gt=0)]] = None
+    """How far from a point each number may be."""
+    otherwise: Given[GivenValue] = None
+    """The value between points or ranges."""
+    hysteresis: Annotated[float, Field(ge=0)] = 0.0
+    """How much further than that a number must go for the value to be left again."""
 
+    @model_validator(mode="after")
+    def _points_or_ranges(self) -> DiscretiseDocument:
+        if (self.values is None) == (self.ranges is None):
+            raise ValueError("write either `values`, the points with their coordinates, or `ranges` of a single number")
+        if self.values is not None and (self.tolerance is None or self.otherwise is None):
+            raise ValueError("`values` need a `tolerance`, and the value `otherwise` for what lies between them")
+        if self.ranges is not None and self.tolerance is not None:
+            raise ValueError("`ranges` have their bounds; `tolerance` belongs to `values`")
+        return self
 
-def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_: FieldType) -> Numbers | None:
-    """A point as it is sent; None, and findings, where the field cannot have it."""
-    if not isinstance(type_, IntegerRange):
-        return tuple(at)
-    strange = [number for number in at if not number.is_integer() or not type_.minimum <= number <= type_.maximum]
-    for number in strange:
-        context.found(name.place, f"`{name}` has the coordinate {number:g}, and the field has integers in {type_}")
-    return None if strange else tuple(map(int, at))
-
-
-def _are_names(context: Context, where: SourceText, names: Iterable[SourceText], type_: FieldType) -> bool:
-    if not isinstance(type_, EnumerationType):
-        message = f"points have names, so the variable must be an enumeration and not {type_}"
-        context.found(where.place, message)
-        return False
-    strange = [name for name in names if name not in type_.values]
-    for name in strange:
-        context.found(name.place, f"`{name}` is none of {type_}{suggestion(name, type_.values)}")
-    return not strange
+    def check(self, context: Context) -> DiscretiseStage | None:
+        """From numbers to names."""
+        if not self.is_for(context):
+            return None
+        found = context.field(self.field)
+        names = [*(self.values or self.ranges or {})]
+        names += [] if self.otherwise is None else [self.otherwise]
+        type_ = wanted_type(context, self.variable) or EnumerationType(tuple(dict.fromkeys(map(str, names))))
+        named = _are_names(context, self.field, names, type_)
+        if found is None or not named or not isinstance(type_, EnumerationType):
+            return None
+        path, field = found
+        regions = _regions(self, field, context)
+        if regions is None:
+            return None
+        otherwise = None if self.otherwise is None else str(self.otherwise)
+        variable, hysteresis = str(self.variable), self.hysteresis
+        return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, field)
 
 
 def _regions(document: DiscretiseDocument, field: FieldType, context: Context) -> Regions | None:
@@ -416,3 +281,198 @@ def _overlap(one: Bounds, other: Bounds) -> bool:
     least = max((bound for bound in (one[0], other[0]) if bound is not None), default=None)
     greatest = min((bound for bound in (one[1], other[1]) if bound is not None), default=None)
     return least is None or greatest is None or least < greatest
+
+
+@dataclass(frozen=True)
+class DiscretiseStage:
+    """Numbers become the name of the region they are in, or `otherwise`; with none of these they are unknown.
+
+    With a hysteresis a region, once reached, is left only when the numbers are further outside than that.
+    """
+
+    place: Place
+    field: FieldPath
+    variable: str
+    type: EnumerationType
+    regions: Regions
+    otherwise: str | None
+    hysteresis: float
+    field_type: FieldType
+    kind: ClassVar[str] = "discretise"
+    is_timed: ClassVar[bool] = False
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The numbers."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The name."""
+        return {self.variable: self.type}
+
+    def begin(self) -> DiscretiseCourse:
+        """Begin in no region."""
+        return DiscretiseCourse(self)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """Numbers in the region of that name; for `otherwise` those there are already, or ones near them."""
+        name = values.get(self.variable)
+        if name is None:
+            return
+        region = name if isinstance(name, str) and name in self.regions.names else None
+        if region is None and name != self.otherwise:
+            what = f"it is neither among the values of `{self.kind}` nor its `otherwise`"
+            raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: {what}")
+        for numbers in self._tried(region, numbers_of(values.get(self.field.text), self.regions.axes)):
+            if numbers is not None and self.regions.find(fitting := _of_type(numbers, self.field_type)) == region:
+                values[self.field.text] = _as_field(fitting, self.field_type)
+                return
+        raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: leave a gap for it")
+
+    def _tried(self, region: str | None, now: Numbers | None) -> Iterator[Numbers | None]:
+        """Numbers in that region, or in none; the second ones outside are so far out that integers are, too."""
+        if region is not None:
+            yield self.regions.inside(region)
+        else:
+            yield self.regions.outside(self.hysteresis, now)
+            yield self.regions.outside(self.hysteresis + 1.0, now)
+
+
+@dataclass(slots=True)
+class DiscretiseCourse(StageInstance):
+    """Knows in which region the numbers were last."""
+
+    stage: DiscretiseStage
+    last: str | None = None
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with the name of the region."""
+        stage = self.stage
+        raw = stage.field.get(record.values)
+        numbers = None if raw is None else numbers_of(raw, stage.regions.axes)
+        if numbers is None:
+            self.last = None
+            record.values[stage.variable] = None
+            if raw is not None:
+                record.troubles.append(f"{stage.field} is no position: {shown(raw)}")
+            return record
+        stays = stage.hysteresis > 0 and self.last is not None
+        if not stays or not stage.regions.holds(self.last or "", numbers, stage.hysteresis):
+            self.last = stage.regions.find(numbers)
+        record.values[stage.variable] = self.last or stage.otherwise
+        if self.last is None and stage.otherwise is None:
+            record.troubles.append(f"{stage.field} is {shown(raw)}, which is in none of the ranges")
+        return record
+
+
+# `undiscretise`: from the name of a point to its numbers.
+
+
+class UndiscretiseDocument(StageDeclaration):
+    """A value becomes its coordinates."""
+
+    kind: ClassVar[str] = "undiscretise"
+    about: ClassVar[str] = "From the name of a point to its numbers; for outgoing topics."
+    direction: ClassVar = "outgoing"
+    instead: ClassVar[str] = "discretise"
+
+    variable: ModelVariable
+    """The variable whose value names a point."""
+    field: MessageField
+    """The array of numbers in the message."""
+    values: dict[ReadValue, Point]
+    """The coordinates of every value."""
+
+    def check(self, context: Context) -> UndiscretiseStage | None:
+        """From names to numbers."""
+        if not self.is_for(context):
+            return None
+        found = context.field(self.variable)
+        axes = {len(point) for point in self.values.values()}
+        field = wanted_type(context, self.field) or ListType(REAL, next(iter(axes)) if len(axes) == 1 else None)
+        fits = _fit(context, self.field, self.values, field)
+        if found is None or not _are_names(context, self.field, self.values, found[1]) or not fits:
+            return None
+        path, type_ = found
+        missing = sorted(set(type_.values if isinstance(type_, EnumerationType) else ()) - set(map(str, self.values)))
+        if missing:
+            context.found(self.variable.place, f"no coordinates for {', '.join(missing)}")
+            return None
+        element = field.element if isinstance(field, ListType) else field
+        points = {str(name): _coordinates(context, name, at, element) for name, at in self.values.items()}
+        known = {name: point for name, point in points.items() if point is not None}
+        return UndiscretiseStage(context.place, path, str(self.field), field, known) if known == points else None
+
+
+def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_: FieldType) -> Numbers | None:
+    """A point as it is sent; None, and findings, where the field cannot have it."""
+    if not isinstance(type_, IntegerRange):
+        return tuple(at)
+    strange = [number for number in at if not number.is_integer() or not type_.minimum <= number <= type_.maximum]
+    for number in strange:
+        context.found(name.place, f"`{name}` has the coordinate {number:g}, and the field has integers in {type_}")
+    return None if strange else tuple(map(int, at))
+
+
+@dataclass(frozen=True)
+class UndiscretiseStage(ImmediateStage):
+    """A name becomes the coordinates of its point."""
+
+    variable: FieldPath
+    field: str
+    type: FieldType
+    points: Mapping[str, Numbers]
+    kind: ClassVar[str] = "undiscretise"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The name."""
+        return frozenset({self.variable.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The coordinates."""
+        return {self.field: self.type}
+
+    def apply(self, record: Record) -> None:
+        """The field takes the coordinates."""
+        name = self.variable.get(record.values)
+        numbers = self.points.get(name) if isinstance(name, str) else None
+        record.values[self.field] = None if numbers is None else _as_field(numbers, self.type)
+        if name is not None and numbers is None:
+            record.troubles.append(f"{self.variable} is {shown(name)}, which has no coordinates")
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The name of the nearest point: a command is always one of them, but for rounding."""
+        raw = values.get(self.field)
+        if raw is None:
+            return
+        numbers = numbers_of(raw, len(next(iter(self.points.values()))))
+        if numbers is None:
+            raise NotInvertibleError(f"{self.field} is no position: {shown(raw)}")
+        values[self.variable.text] = Points(self.points, 0.0).nearest(numbers)
+
+
+# What both have in common: points with names, and numbers as a field has them.
+
+
+def _are_names(context: Context, where: SourceText, names: Iterable[SourceText], type_: FieldType) -> bool:
+    if not isinstance(type_, EnumerationType):
+        message = f"points have names, so the variable must be an enumeration and not {type_}"
+        context.found(where.place, message)
+        return False
+    strange = [name for name in names if name not in type_.values]
+    for name in strange:
+        context.found(name.place, f"`{name}` is none of {type_}{suggestion(name, type_.values)}")
+    return not strange
+
+
+def _of_type(numbers: Numbers, type_: FieldType) -> Numbers:
+    """`numbers` as the field can have them: rounded where it has integers."""
+    element = type_.element if isinstance(type_, ListType) else type_
+    return tuple(map(round, numbers)) if isinstance(element, IntegerRange) else numbers
+
+
+def _as_field(numbers: Numbers, type_: FieldType) -> object:
+    return list(numbers) if isinstance(type_, ListType) else numbers[0]

@@ -4,18 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from sequence_planner.language.records.expressions import Calculation, read_calculation, read_condition
 from sequence_planner.language.records.field_paths import as_written
 from sequence_planner.language.records.record import FieldType, Record, RecordType
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import Place
+from sequence_planner.model.fields import Predicate
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.stages.base import Context, FormulaMark, GivenField, Scalar, StageDeclaration, StageInstance
 from sequence_planner.model.stages.map import is_same
-from sequence_planner.model.stages.support import Context, ImmediateStage, candidates, put_at, solve
+from sequence_planner.model.stages.support import ImmediateStage, candidates, put_at, solve
 
-# `expression` and `filter`: values computed from others, and records that do not go on.
+# `expression`: values computed from others.
+
+
+class ExpressionDocument(StageDeclaration):
+    """Values of expressions, all over the record as it is before the stage."""
+
+    kind: ClassVar[str] = "expression"
+    about: ClassVar[str] = "Values computed from others: `{name: expression}`."
+    is_bare: ClassVar[bool] = True
+
+    texts: dict[GivenField, Annotated[Scalar, FormulaMark()]]
+
+    def check(self, context: Context) -> ExpressionStage | None:
+        """`{name: expression}`, all over the record as it is before the stage."""
+        read = {str(name): _read(read_calculation, text, name.place, context) for name, text in self.texts.items()}
+        known = {name: calculation for name, calculation in read.items() if calculation is not None}
+        return ExpressionStage(context.place, known) if len(known) == len(read) else None
 
 
 @dataclass(frozen=True)
@@ -52,6 +70,24 @@ class ExpressionStage(ImmediateStage):
         )
 
 
+# `filter`: records that do not go on.
+
+
+class FilterDocument(StageDeclaration):
+    """A condition on records."""
+
+    kind: ClassVar[str] = "filter"
+    about: ClassVar[str] = "Only records for which this holds go on."
+    is_bare: ClassVar[bool] = True
+
+    condition: Annotated[Predicate, FormulaMark()]
+
+    def check(self, context: Context) -> FilterStage | None:
+        """A condition on records."""
+        condition = _read(read_condition, self.condition, context.place, context)
+        return None if condition is None else FilterStage(context.place, condition)
+
+
 @dataclass(frozen=True)
 class FilterStage:
     """Only records for which a condition holds go on; where it is undetermined they do not."""
@@ -59,6 +95,7 @@ class FilterStage:
     place: Place
     condition: Calculation
     kind: ClassVar[str] = "filter"
+    is_timed: ClassVar[bool] = False
     gives: ClassVar[Mapping[str, FieldType]] = {}
 
     @property
@@ -76,18 +113,27 @@ class FilterStage:
 
 
 @dataclass(frozen=True, slots=True)
-class FilterCourse:
+class FilterCourse(StageInstance):
     """Lets go on what fulfils the condition."""
 
     condition: Calculation
-    due: ClassVar[float | None] = None
 
     def take(self, record: Record, now: float) -> Record | None:
         """The record, if the condition holds for it."""
         return record if self.condition.value(record.values, record.troubles) is True else None
 
-    def wake(self, now: float) -> None:
-        """Nothing happens by itself."""
+
+# What both have in common: expressions as written, and values of their fields for which they have a value.
+
+
+def _read(
+    reader: Callable[[str, RecordType], Calculation], text: Scalar, place: Place, context: Context
+) -> Calculation | None:
+    try:
+        return reader(text if isinstance(text, str) else as_written(text), context.fields)
+    except ExpressionError as error:
+        context.found(text.at(error.span) if isinstance(text, SourceText) else place, error.message)
+        return None
 
 
 def _fields(names: Iterable[str]) -> str:
@@ -108,31 +154,3 @@ def _solve(
         return all(is_same(calculation.value(record, []), value) for calculation, value in wanted)
 
     solve(tried, agrees, values, gives, complaint)
-
-
-# `expression` and `filter` from documents.
-
-Scalar = SourceText | bool | int | float
-
-
-def build_expression(texts: Mapping[SourceText, Scalar], context: Context) -> ExpressionStage | None:
-    """`{name: expression}`, all over the record as it is before the stage."""
-    read = {str(name): _read(read_calculation, text, name.place, context) for name, text in texts.items()}
-    known = {name: calculation for name, calculation in read.items() if calculation is not None}
-    return ExpressionStage(context.place, known) if len(known) == len(read) else None
-
-
-def build_filter(text: SourceText | bool, context: Context) -> FilterStage | None:
-    """A condition on records."""
-    condition = _read(read_condition, text, context.place, context)
-    return None if condition is None else FilterStage(context.place, condition)
-
-
-def _read(
-    reader: Callable[[str, RecordType], Calculation], text: Scalar, place: Place, context: Context
-) -> Calculation | None:
-    try:
-        return reader(text if isinstance(text, str) else as_written(text), context.fields)
-    except ExpressionError as error:
-        context.found(text.at(error.span) if isinstance(text, SourceText) else place, error.message)
-        return None

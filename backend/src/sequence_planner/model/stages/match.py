@@ -4,26 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal, get_args
+from typing import Annotated, ClassVar, Literal, get_args
+
+from pydantic import Field, model_validator
 
 from sequence_planner.language.records.field_paths import TEXT, FieldPath, is_number, is_textual, shown
 from sequence_planner.language.records.record import FieldType, ListType, RealType, Record
 from sequence_planner.language.types import BOOLEAN
+from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stage_documents import MatchDocument, MemberDocument
+from sequence_planner.model.stages.base import (
+    Context,
+    GivenValue,
+    MessageField,
+    ModelVariable,
+    Scalar,
+    StageDeclaration,
+)
 from sequence_planner.model.stages.map import is_same
 from sequence_planner.model.stages.support import (
-    Context,
     ImmediateStage,
     candidates,
-    only,
     solve,
     type_for,
     value_of,
     values_of,
 )
 
-# `match` and `member`: texts that are recognised, and lists that contain something.
+# `match`: texts that are recognised.
 
 Way = Literal["contains", "begins", "ends", "equals"]
 
@@ -33,6 +41,81 @@ _RECOGNISES: Mapping[Way, Callable[[str, str], bool]] = {
     "ends": str.endswith,
     "equals": str.__eq__,
 }
+
+
+class MatchDocument(StageDeclaration):
+    """Texts are recognised: one kind of text makes a truth value, several make an enumeration."""
+
+    kind: ClassVar[str] = "match"
+    about: ClassVar[str] = "From texts to truth values or names; for incoming topics."
+    direction: ClassVar = "incoming"
+
+    field: MessageField
+    """A text of the message."""
+    variable: ModelVariable
+    """What becomes of it."""
+    contains: Given[SourceText] = None
+    """True for texts that contain this."""
+    begins: Given[SourceText] = None
+    """True for texts that begin so."""
+    ends: Given[SourceText] = None
+    """True for texts that end so."""
+    equals: Given[SourceText] = None
+    """True for exactly this text."""
+    values: Given[Annotated[dict[GivenValue, list[SourceText]], Field(min_length=1)]] = None
+    """The texts that mean each value."""
+    otherwise: Given[GivenValue] = None
+    """The value of all other texts; without it they are unknown."""
+
+    @model_validator(mode="after")
+    def _one_way(self) -> MatchDocument:
+        ways = (self.contains, self.begins, self.ends, self.equals, self.values)
+        if sum(way is not None for way in ways) != 1:
+            raise ValueError("`match` has exactly one of contains, begins, ends, equals, values")
+        if self.values is None and self.otherwise is not None:
+            raise ValueError("`otherwise` belongs to `values`: any other match is true or false")
+        return self
+
+    def check(self, context: Context) -> MatchStage | MatchNamesStage | None:
+        """Texts recognised in one way, or listed by what they mean."""
+        if not self.is_for(context):
+            return None
+        found = context.field(self.field)
+        if found is None:
+            return None
+        path, type_ = found
+        if not is_textual(type_):
+            context.found(self.field.place, f"`{self.field}` is {type_}, and only texts are matched")
+            return None
+        if self.values is not None:
+            return _names(self, self.values, path, context)
+        ways: tuple[Way, ...] = get_args(Way)
+        way, text = next((way, text) for way in ways if (text := getattr(self, way)) is not None)
+        return MatchStage(context.place, path, str(self.variable), way, str(text))
+
+
+def _names(
+    document: MatchDocument, values: Mapping[SourceText, Sequence[SourceText]], path: FieldPath, context: Context
+) -> MatchNamesStage | None:
+    names = [*values, *([] if document.otherwise is None else [document.otherwise])]
+    type_ = type_for(context, document.variable, names)
+    meant = None if type_ is None else values_of(context, type_, names, document.variable.place)
+    twice = _texts_with_two_meanings(values)
+    for text, other in twice:
+        context.found(text.place, f"`{text}` means `{other}` already")
+    if type_ is None or meant is None or twice:
+        return None
+    meanings = {str(text): name for name, texts in zip(meant, values.values(), strict=False) for text in texts}
+    otherwise = None if document.otherwise is None else meant[-1]
+    return MatchNamesStage(context.place, path, str(document.variable), type_, meanings, otherwise)
+
+
+def _texts_with_two_meanings(
+    values: Mapping[SourceText, Sequence[SourceText]],
+) -> list[tuple[SourceText, SourceText]]:
+    first: dict[SourceText, SourceText] = {}
+    listed = [(text, name) for name, texts in values.items() for text in texts]
+    return [(text, other) for text, name in listed if (other := first.setdefault(text, name)) is not name]
 
 
 @dataclass(frozen=True)
@@ -116,6 +199,38 @@ class MatchNamesStage(ImmediateStage):
         )
 
 
+# `member`: lists that contain something.
+
+
+class MemberDocument(StageDeclaration):
+    """Whether a list contains an item."""
+
+    kind: ClassVar[str] = "member"
+    about: ClassVar[str] = "Whether a list contains an item; for incoming topics."
+    direction: ClassVar = "incoming"
+
+    field: MessageField
+    """A list of the message."""
+    item: Scalar
+    """What is looked for."""
+    variable: ModelVariable
+    """True when it is there."""
+
+    def check(self, context: Context) -> MemberStage | None:
+        """Whether a list contains an item."""
+        if not self.is_for(context):
+            return None
+        found = context.field(self.field)
+        if found is None:
+            return None
+        path, type_ = found
+        if not isinstance(type_, ListType):
+            context.found(self.field.place, f"`{self.field}` is {type_}, and no list")
+            return None
+        item = value_of(context, type_.element, self.item, self.field.place)
+        return None if item is None else MemberStage(context.place, path, type_, item, str(self.variable))
+
+
 @dataclass(frozen=True)
 class MemberStage(ImmediateStage):
     """Whether a list contains an item."""
@@ -164,63 +279,3 @@ class MemberStage(ImmediateStage):
             else:
                 known = [item for item in known if not is_same(item, self.item)] + [self.item] * (wanted is True)
         values[self.field.text] = known
-
-
-# `match` and `member` from documents.
-
-
-def build_match(document: MatchDocument, context: Context) -> MatchStage | MatchNamesStage | None:
-    """Texts recognised in one way, or listed by what they mean."""
-    if not only(context, document.field.place, True, "match"):
-        return None
-    found = context.field(document.field)
-    if found is None:
-        return None
-    path, type_ = found
-    if not is_textual(type_):
-        context.found(document.field.place, f"`{document.field}` is {type_}, and only texts are matched")
-        return None
-    if document.values is not None:
-        return _names(document, document.values, path, context)
-    ways: tuple[Way, ...] = get_args(Way)
-    way, text = next((way, text) for way in ways if (text := getattr(document, way)) is not None)
-    return MatchStage(context.place, path, str(document.variable), way, str(text))
-
-
-def _names(
-    document: MatchDocument, values: Mapping[SourceText, Sequence[SourceText]], path: FieldPath, context: Context
-) -> MatchNamesStage | None:
-    names = [*values, *([] if document.otherwise is None else [document.otherwise])]
-    type_ = type_for(context, document.variable, names)
-    meant = None if type_ is None else values_of(context, type_, names, document.variable.place)
-    twice = _texts_with_two_meanings(values)
-    for text, other in twice:
-        context.found(text.place, f"`{text}` means `{other}` already")
-    if type_ is None or meant is None or twice:
-        return None
-    meanings = {str(text): name for name, texts in zip(meant, values.values(), strict=False) for text in texts}
-    otherwise = None if document.otherwise is None else meant[-1]
-    return MatchNamesStage(context.place, path, str(document.variable), type_, meanings, otherwise)
-
-
-def _texts_with_two_meanings(
-    values: Mapping[SourceText, Sequence[SourceText]],
-) -> list[tuple[SourceText, SourceText]]:
-    first: dict[SourceText, SourceText] = {}
-    listed = [(text, name) for name, texts in values.items() for text in texts]
-    return [(text, other) for text, name in listed if (other := first.setdefault(text, name)) is not name]
-
-
-def build_member(document: MemberDocument, context: Context) -> MemberStage | None:
-    """Whether a list contains an item."""
-    if not only(context, document.field.place, True, "member"):
-        return None
-    found = context.field(document.field)
-    if found is None:
-        return None
-    path, type_ = found
-    if not isinstance(type_, ListType):
-        context.found(document.field.place, f"`{document.field}` is {type_}, and no list")
-        return None
-    item = value_of(context, type_.element, document.item, document.field.place)
-    return None if item is None else MemberStage(context.place, path, type_, item, str(document.variable))

@@ -20,7 +20,9 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar
+
+from pydantic import Field
 
 from sequence_planner.core.late_log import LateLog
 from sequence_planner.language.records.field_paths import REAL, TEXT, FieldPath, fits, is_numeric, is_textual, shown
@@ -28,9 +30,14 @@ from sequence_planner.language.records.record import FieldType, ListType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stage_documents import PythonDocument
-from sequence_planner.model.stages.base import NotInvertibleError
-from sequence_planner.model.stages.support import Context
+from sequence_planner.model.stages.base import (
+    Context,
+    NameMark,
+    NameUse,
+    NotInvertibleError,
+    StageDeclaration,
+    StageInstance,
+)
 
 # One process that runs a function, as its keeper sees it. All calls may wait, at most for the time they are given.
 
@@ -319,6 +326,7 @@ class PythonStage:
     gives: Mapping[str, FieldType]
     deadline: float
     kind: ClassVar[str] = "python"
+    is_timed: ClassVar[bool] = True
 
     @property
     def reads(self) -> frozenset[str]:
@@ -386,8 +394,10 @@ class PythonStage:
         return record
 
 
-class PythonCourse:
+class PythonCourse(StageInstance):
     """Has the record for which an answer is awaited, and the newest of those that came since."""
+
+    due: float | None = None
 
     def __init__(self, stage: PythonStage, is_patient: bool) -> None:
         self._stage = stage
@@ -395,7 +405,6 @@ class PythonCourse:
         self._keeper = PythonWorker(stage.function)
         self._asked: tuple[Record, Future[object]] | None = None
         self._waiting: Record | None = None
-        self.due: float | None = None
         self.close = weakref.finalize(self, self._keeper.close)
 
     def take(self, record: Record, now: float) -> Record | None:
@@ -434,18 +443,44 @@ _NAMES = re.compile(r"\{\s*(\w+(?:\s*,\s*\w+)*)\s*\}")
 _LIST = re.compile(r"(.+)\[(\d*)\]")
 
 
-def build_python(document: PythonDocument, context: Context) -> PythonStage | None:
-    """A function whose file, parameters and types fit."""
-    path = _file(document, context)
-    is_function = path is not None and _has_function(path, document, context)
-    arguments = [_argument(name, type_, context) for name, type_ in document.reads.items()]
-    gives = {str(name): _type(text, context) for name, text in document.gives.items()}
-    read = tuple(argument for argument in arguments if argument is not None)
-    given = {name: type_ for name, type_ in gives.items() if type_ is not None}
-    if path is None or not is_function or len(read) != len(arguments) or len(given) != len(gives):
-        return None
-    function = Function(str(document.file), str(document.function), path, path.parent)
-    return PythonStage(context.place, function, read, given, document.deadline)
+_FUNCTION = "the function of a `python` stage"
+
+
+class PythonDocument(StageDeclaration):
+    """A function of the station's own, in a file of its folder `stages`."""
+
+    kind: ClassVar[str] = "python"
+    about: ClassVar[str] = "A function of the station's own."
+
+    file: SourceText
+    """The file, as in `stages/force.py`."""
+    function: SourceText
+    """The function's name. It is called with the fields it reads, and returns a dict of what it gives."""
+    reads: dict[
+        Annotated[SourceText, NameMark(NameUse.READ, NameUse.READ, outsider=_FUNCTION)],
+        SourceText,
+    ]
+    """The fields it is called with, and their types: `bool`, `0..9`, `{a, b}`, `real`, `text`."""
+    gives: Annotated[
+        dict[Annotated[SourceText, NameMark(NameUse.GIVEN, NameUse.GIVEN, outsider=_FUNCTION)], SourceText],
+        Field(min_length=1),
+    ]
+    """What it returns, and the types."""
+    deadline: Annotated[float, Field(gt=0, le=60)] = 0.05
+    """Seconds within which it answers."""
+
+    def check(self, context: Context) -> PythonStage | None:
+        """A function whose file, parameters and types fit."""
+        path = _file(self, context)
+        is_function = path is not None and _has_function(path, self, context)
+        arguments = [_argument(name, type_, context) for name, type_ in self.reads.items()]
+        gives = {str(name): _type(text, context) for name, text in self.gives.items()}
+        read = tuple(argument for argument in arguments if argument is not None)
+        given = {name: type_ for name, type_ in gives.items() if type_ is not None}
+        if path is None or not is_function or len(read) != len(arguments) or len(given) != len(gives):
+            return None
+        function = Function(str(self.file), str(self.function), path, path.parent)
+        return PythonStage(context.place, function, read, given, self.deadline)
 
 
 def _file(document: PythonDocument, context: Context) -> Path | None:

@@ -4,15 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar
 
 from sequence_planner.language.records.field_paths import FieldPath, common_type, fits, shown
 from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.support import Context, ImmediateStage, plain, wanted_type
+from sequence_planner.model.stages.base import Context, NameMark, NameUse, StageDeclaration
+from sequence_planner.model.stages.support import ImmediateStage, plain, wanted_type
 
-# `rename` and `constant`: fields under other names, and fields that never change.
+# `rename`: fields under other names.
+
+
+class RenameDocument(StageDeclaration):
+    """Fields also under other names."""
+
+    kind: ClassVar[str] = "rename"
+    about: ClassVar[str] = "Which field is which variable, where their names differ: `{field: variable}`."
+    is_bare: ClassVar[bool] = True
+
+    names: dict[
+        Annotated[SourceText, NameMark(NameUse.RENAMED, NameUse.GIVEN, alike=True)],
+        Annotated[SourceText, NameMark(NameUse.GIVEN, NameUse.RENAMED, alike=True)],
+    ]
+
+    def check(self, context: Context) -> RenameStage | None:
+        """`{field: variable}`: the variable is given for incoming topics, and read for outgoing ones."""
+        pairs = [
+            (field, variable) if context.is_incoming else (variable, field) for field, variable in self.names.items()
+        ]
+        seen: set[str] = set()
+        for _, target in pairs:
+            if target in seen:
+                context.found(target.place, f"`{target}` is given twice here")
+            seen.add(target)
+        found = [(context.field(source), target) for source, target in pairs]
+        renamings = [Renaming(field[0], str(target), field[1]) for field, target in found if field is not None]
+        complete = len(renamings) == len(seen) == len(pairs)
+        return RenameStage(context.place, tuple(renamings)) if complete else None
 
 
 @dataclass(frozen=True)
@@ -55,6 +84,47 @@ class RenameStage(ImmediateStage):
         }
 
 
+# `constant`: fields that never change.
+
+
+class ConstantDocument(StageDeclaration):
+    """Fields with a fixed value."""
+
+    kind: ClassVar[str] = "constant"
+    about: ClassVar[str] = "Fields with a fixed value; for outgoing topics."
+    is_bare: ClassVar[bool] = True
+    direction: ClassVar = "outgoing"
+
+    fields: Mapping[Annotated[SourceText, NameMark(None, NameUse.GIVEN)], Any]
+
+    def check(self, context: Context) -> ConstantStage | None:
+        """Fixed values, each of the type of its field in the message."""
+        if not self.is_for(context):
+            return None
+        types = {str(name): _type(context, name, plain(value)) for name, value in self.fields.items()}
+        known = {name: type_ for name, type_ in types.items() if type_ is not None}
+        values = {str(name): plain(value) for name, value in self.fields.items()}
+        return ConstantStage(context.place, values, known) if len(known) == len(types) else None
+
+    def is_for(self, context: Context) -> bool:
+        """Say of each field of an incoming topic that the message has its own."""
+        for name in self.fields if context.is_incoming else ():
+            context.found(name.place, "`constant` is for outgoing topics: an incoming message has its own values")
+        return not context.is_incoming
+
+
+def _type(context: Context, name: SourceText, value: object) -> FieldType | None:
+    type_ = wanted_type(context, name)
+    if type_ is None:
+        type_ = None if isinstance(value, list | dict) else common_type([value])
+        if type_ is None:
+            context.found(name.place, f"the message has no field `{name}`{suggestion(name, context.wanted)}")
+    elif not fits(type_, value):
+        context.found(name.place, f"`{name}` is {type_}, and {shown(value)} is no value of that type")
+        return None
+    return type_
+
+
 @dataclass(frozen=True)
 class ConstantStage(ImmediateStage):
     """Fields that never change."""
@@ -74,44 +144,3 @@ class ConstantStage(ImmediateStage):
 
     def backwards(self, values: dict[str, object]) -> None:
         """They say nothing about other fields."""
-
-
-# `rename` and `constant` from documents.
-
-
-def build_rename(names: Mapping[SourceText, SourceText], context: Context) -> RenameStage | None:
-    """`{field: variable}`: the variable is given for incoming topics, and read for outgoing ones."""
-    pairs = [(field, variable) if context.is_incoming else (variable, field) for field, variable in names.items()]
-    seen: set[str] = set()
-    for _, target in pairs:
-        if target in seen:
-            context.found(target.place, f"`{target}` is given twice here")
-        seen.add(target)
-    found = [(context.field(source), target) for source, target in pairs]
-    renamings = [Renaming(field[0], str(target), field[1]) for field, target in found if field is not None]
-    complete = len(renamings) == len(seen) == len(pairs)
-    return RenameStage(context.place, tuple(renamings)) if complete else None
-
-
-def build_constant(fields: Mapping[SourceText, object], context: Context) -> ConstantStage | None:
-    """Fixed values, each of the type of its field in the message."""
-    if context.is_incoming:
-        for name in fields:
-            context.found(name.place, "`constant` is for outgoing topics: an incoming message has its own values")
-        return None
-    types = {str(name): _type(context, name, plain(value)) for name, value in fields.items()}
-    known = {name: type_ for name, type_ in types.items() if type_ is not None}
-    values = {str(name): plain(value) for name, value in fields.items()}
-    return ConstantStage(context.place, values, known) if len(known) == len(types) else None
-
-
-def _type(context: Context, name: SourceText, value: object) -> FieldType | None:
-    type_ = wanted_type(context, name)
-    if type_ is None:
-        type_ = None if isinstance(value, list | dict) else common_type([value])
-        if type_ is None:
-            context.found(name.place, f"the message has no field `{name}`{suggestion(name, context.wanted)}")
-    elif not fits(type_, value):
-        context.found(name.place, f"`{name}` is {type_}, and {shown(value)} is no value of that type")
-        return None
-    return type_

@@ -6,7 +6,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
-from pathlib import Path
 from typing import ClassVar
 
 from sequence_planner.language.records.field_paths import (
@@ -22,58 +21,34 @@ from sequence_planner.language.records.field_paths import (
     shown,
     written,
 )
-from sequence_planner.language.records.record import FieldType, ListType, RealType, Record, RecordType, TextType
+from sequence_planner.language.records.record import FieldType, ListType, RealType, Record, TextType
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import NotInvertibleError, StageInstance
-
-# What the builder of a stage may know: the record before it, what is wanted of it, and where to say what is wrong.
-
-
-@dataclass(frozen=True)
-class Context:
-    """The place of a stage.
-
-    `is_incoming` holds for incoming topics and flows. `fields` are those of the record before the stage. `wanted` are
-    the names for which there is a use at the end, with their types: the measured variables of the resource without its
-    name (incoming), or the fields of the message (outgoing). A stage may give others, which a later one reads.
-    `found` notes what is wrong at a place; it adds which pipeline and which stage.
-    """
-
-    is_incoming: bool
-    fields: RecordType
-    wanted: Mapping[str, FieldType]
-    folder: Path
-    place: Place
-    found: Callable[[Place, str], None]
-
-    def field(self, path: SourceText) -> tuple[FieldPath, FieldType] | None:
-        """A field that the stage reads, by its path; None, and a finding, when there is none."""
-        try:
-            return find_field(self.fields, path)
-        except NoFieldError as error:
-            self.found(path.place, str(error))
-            return None
-
+from sequence_planner.model.stages.base import (
+    Context,
+    Marked,
+    NameMark,
+    NameUse,
+    NotInvertibleError,
+    Stage,
+    StageDeclaration,
+    StageInstance,
+)
 
 # Stages that remember nothing: what goes on is decided by the record alone, and at once.
 
 
 @dataclass(frozen=True, slots=True)
-class ImmediateCourse:
+class ImmediateCourse(StageInstance):
     """The course of a stage that changes each record and lets it go on."""
 
     apply: Callable[[Record], None]
-    due: ClassVar[float | None] = None
 
     def take(self, record: Record, now: float) -> Record:
         """The record with what the stage gives."""
         self.apply(record)
         return record
-
-    def wake(self, now: float) -> None:
-        """Nothing happens by itself."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +56,7 @@ class ImmediateStage(ABC):
     """A stage without a memory."""
 
     place: Place
+    is_timed: ClassVar[bool] = False
 
     @abstractmethod
     def apply(self, record: Record) -> None:
@@ -172,12 +148,45 @@ class Passing:
     type: FieldType
 
 
+class PassingDeclaration(StageDeclaration):
+    """A stage that gives the fields which it keeps, each from itself alone.
+
+    Where it is not timed, the same record again makes no difference to it.
+    """
+
+    is_timed: ClassVar[bool] = True
+
+    def check(self, context: Context) -> Stage | None:
+        """The stage with its fields, each of which must be there and fit."""
+        fields = self.passing(context) if self.is_for(context) else None
+        return None if fields is None else PassingStage(context.place, fields, self)
+
+    def passing(self, context: Context) -> tuple[Passing, ...] | None:
+        """The fields that are kept; None, and findings, when some do not exist or fit."""
+        return passing(context, self.marked(self))
+
+    @abstractmethod
+    def begin(self, stage: PassingStage) -> StageInstance:
+        """Start it afresh, with nothing remembered."""
+
+
 @dataclass(frozen=True)
-class TransparentStage:
+class PassingStage:
     """A stage that gives what it reads. Read backwards nothing has to be added."""
 
     place: Place
     fields: tuple[Passing, ...]
+    written: PassingDeclaration
+
+    @property
+    def kind(self) -> str:
+        """The key by which documents name it."""
+        return self.written.kind
+
+    @property
+    def is_timed(self) -> bool:
+        """True if the same record again is news."""
+        return self.written.is_timed
 
     @property
     def reads(self) -> frozenset[str]:
@@ -188,6 +197,10 @@ class TransparentStage:
     def gives(self) -> Mapping[str, FieldType]:
         """The same."""
         return {field.path.text: field.type for field in self.fields}
+
+    def begin(self) -> StageInstance:
+        """Start it afresh, with nothing remembered."""
+        return self.written.begin(self)
 
     def get(self, record: Record) -> tuple[object, ...]:
         """The values of the fields."""
@@ -276,16 +289,18 @@ def type_for(context: Context, name: SourceText, values: Iterable[object]) -> Fi
     return type_
 
 
-def passing(context: Context, names: Iterable[SourceText]) -> tuple[Passing, ...] | None:
-    """The fields of these names; None, and findings, when some do not exist."""
-    found = [context.field(name) for name in names]
-    known = [Passing(*field) for field in found if field is not None]
-    return tuple(known) if len(known) == len(found) else None
-
-
-def only(context: Context, place: Place, incoming: bool, kind: str, instead: str = "") -> bool:
-    """Check whether the stage is of the right direction; a finding when it is not."""
-    if context.is_incoming is not incoming:
-        use = f"; use `{instead}` here" if instead else ""
-        context.found(place, f"`{kind}` is for {'incoming' if incoming else 'outgoing'} topics{use}")
-    return context.is_incoming is incoming
+def passing(context: Context, written: Iterable[Marked]) -> tuple[Passing, ...] | None:
+    """The fields among what is written; None, and findings, when some do not exist, or are not what the stage needs."""
+    known = []
+    is_sound = True
+    for text, _, mark in written:
+        if not isinstance(mark, NameMark) or mark.use(context.is_incoming) is NameUse.GIVEN:
+            continue
+        found = context.field(text)
+        if found is not None and mark.fits is not None and not mark.fits(found[1]):
+            context.found(text.place, f"`{text}` must be {mark.what}, and is {found[1]}")
+            found = None
+        is_sound = is_sound and found is not None
+        if found is not None:
+            known.append(Passing(*found))
+    return tuple(known) if is_sound else None

@@ -1,10 +1,12 @@
-"""Stages with memory or time: `remember`, `fold`, `debounce`, `limit`, `tick`, `timeout`, `override`."""
+"""Stages with memory or time: `remember`, `debounce`, `limit`, `tick`, `override`, `fold`, `timeout`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Annotated, ClassVar
+
+from pydantic import Field, model_validator
 
 from sequence_planner.language.records.field_paths import (
     FieldPath,
@@ -18,31 +20,350 @@ from sequence_planner.language.records.field_paths import (
 from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
+from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stage_documents import (
-    BoundsDocument,
-    DebounceDocument,
-    EveryDocument,
-    OverrideDocument,
-    RememberDocument,
-    TimeoutDocument,
+from sequence_planner.model.stages.base import (
+    READ_VALUE,
+    Context,
+    KeptField,
+    NameMark,
+    NameUse,
+    Override,
+    ReadField,
+    Scalar,
+    StageDeclaration,
+    StageInstance,
 )
-from sequence_planner.model.stages.base import Override
 from sequence_planner.model.stages.map import is_same
 from sequence_planner.model.stages.support import (
-    Context,
     Passing,
-    TransparentStage,
+    PassingDeclaration,
+    PassingStage,
     again,
     are_alike,
     narrowest,
-    only,
-    passing,
     values_of,
     wanted_type,
 )
 
+Period = Annotated[float, Field(gt=0, le=86_400)]
+KeptFields = Annotated[list[KeptField], Field(min_length=1)]
+_NOTHING = Record({})
+
+# `remember`: values of earlier records.
+
+
+class RememberDocument(StageDeclaration):
+    """A variable keeps the last value of another, but for the values in `except`."""
+
+    kind: ClassVar[str] = "remember"
+    about: ClassVar[str] = "Keep the last value of another variable; for incoming topics."
+    direction: ClassVar = "incoming"
+
+    variable: Annotated[SourceText, NameMark(NameUse.GIVEN, NameUse.GIVEN, alike=True)]
+    """The variable that keeps the value."""
+    of: ReadField
+    """The field or variable, of the same pipeline, whose value is kept."""
+    ignored: list[Annotated[SourceText, READ_VALUE]] = Field(default_factory=list, alias="except")
+    """Values that are not kept."""
+
+    def check(self, context: Context) -> RememberStage | None:
+        """A variable that keeps the last value of another."""
+        if not self.is_for(context):
+            return None
+        found = context.field(self.of)
+        if found is None:
+            return None
+        path, given = found
+        of = narrowest(context, path, given)
+        type_ = wanted_type(context, self.variable) or of
+        if not are_alike(of, type_):
+            remedy = "make one of the other by a stage before this"
+            context.found(self.of.place, f"`{path}` is {of} here, and `{self.variable}` is {type_}: {remedy}")
+            return None
+        ignored = {value: written(of, value) for value in self.ignored}
+        for value, meant in ignored.items():
+            if meant is None:
+                near = suggestion(value, of.values) if isinstance(of, EnumerationType) else ""
+                context.found(value.place, f"`{value}` is no value of `{self.of}`{near}")
+        kept = set(domain(of) or ()) - set(ignored.values())
+        if (holds := domain(type_)) is not None and (extra := kept - set(holds)):
+            names = ", ".join(sorted(map(as_written, extra)))
+            context.found(self.variable.place, f"`{self.variable}` cannot be {names}: put it into `except`")
+            return None
+        if None in ignored.values():
+            return None
+        return RememberStage(context.place, str(self.variable), type_, path, frozenset(ignored.values()))
+
+
+@dataclass(frozen=True)
+class RememberStage:
+    """A variable keeps the last known value of another field, but for those that are ignored."""
+
+    place: Place
+    variable: str
+    type: FieldType
+    of: FieldPath
+    ignored: frozenset[object]
+    kind: ClassVar[str] = "remember"
+    is_timed: ClassVar[bool] = False
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The field whose value is kept."""
+        return frozenset({self.of.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The value kept."""
+        return {self.variable: self.type}
+
+    def begin(self) -> RememberCourse:
+        """Begin with nothing remembered."""
+        return RememberCourse(self)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """A device says what is so now: where the state does not tell that, it is what is remembered."""
+        if self.of.text not in values and values.get(self.variable) is not None:
+            values[self.of.text] = values[self.variable]
+
+
+@dataclass(slots=True)
+class RememberCourse(StageInstance):
+    """Has the value that is kept."""
+
+    stage: RememberStage
+    kept: object = None
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with the value kept, after this one has been looked at."""
+        value = self.stage.of.read(record.values, record.troubles)
+        if value is not None and value not in self.stage.ignored:
+            self.kept = value
+        record.values[self.stage.variable] = self.kept
+        return record
+
+
+# `debounce`, `limit` and `tick`: when values count, and when records go on.
+
+
+class DebounceDocument(PassingDeclaration):
+    """A new value counts when it has been there for some time; until then the old one does."""
+
+    kind: ClassVar[str] = "debounce"
+    about: ClassVar[str] = "A new value counts when it has been there for some time; for incoming topics."
+    direction: ClassVar = "incoming"
+
+    fields: KeptFields
+    """The fields, which change together."""
+    seconds: Period
+    """How long it must have been there."""
+
+    def begin(self, stage: PassingStage) -> StageInstance:
+        """Begin with no value that counts."""
+        return DebounceCourse(stage, self.seconds)
+
+
+@dataclass(slots=True)
+class DebounceCourse(StageInstance):
+    """Has the values that count and, with the time when they came, those that may soon.
+
+    The first one counts at once, for there is no old one; what becomes unknown is so at once.
+    """
+
+    stage: PassingStage
+    seconds: float
+    due: float | None = None
+    _counting: tuple[object, ...] | None = None
+    _coming: tuple[object, ...] = ()
+    _last: Record = field(default_factory=lambda: _NOTHING)
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record with the values that count."""
+        self._settle(now)
+        values = self.stage.get(record)
+        counting = values if self._counting is None else self._counting
+        counting = tuple(None if new is None else old for old, new in zip(counting, values, strict=True))
+        if values == counting:
+            self.due = None
+        elif self.due is None or values != self._coming:
+            self._coming, self.due = values, now + self.seconds
+        self._counting = counting
+        self._last = again(record)
+        return self.stage.put(record, counting)
+
+    def wake(self, now: float) -> Record | None:
+        """The last record with the values that have been there for long enough."""
+        return self.stage.put(again(self._last), self._counting or ()) if self._settle(now) else None
+
+    def _settle(self, now: float) -> bool:
+        if self.due is None or now < self.due:
+            return False
+        self._counting, self.due = self._coming, None
+        return True
+
+
+class EveryDocument(DocumentPart):
+    """A period."""
+
+    every: Period
+    """Seconds between two records."""
+
+
+class LimitDocument(PassingDeclaration):
+    """At most one record in a period, the newest; the last one held back goes on when its time comes."""
+
+    kind: ClassVar[str] = "limit"
+    about: ClassVar[str] = "At most one record per time, the newest."
+    is_bare: ClassVar[bool] = True
+
+    period: EveryDocument
+
+    def begin(self, stage: PassingStage) -> StageInstance:
+        """Begin with the way free."""
+        return LimitCourse(self.period.every)
+
+
+@dataclass(slots=True)
+class LimitCourse(StageInstance):
+    """Has the record held back, and from when on the next may go."""
+
+    every: float
+    _free: float | None = None
+    _held: Record | None = None
+
+    @property
+    def due(self) -> float | None:
+        """The time at which the record held back may go."""
+        return None if self._held is None else self._free
+
+    def take(self, record: Record, now: float) -> Record | None:
+        """The record, if enough time has passed since the last."""
+        if self._held is not None:  # what made no sense is not lost with the record that is
+            record.troubles = record.troubles or self._held.troubles
+        self._held = record
+        return self.wake(now)
+
+    def wake(self, now: float) -> Record | None:
+        """The record held back, if its time has come."""
+        if self._held is None or (self._free is not None and now < self._free):
+            return None
+        record, self._held = self._held, None
+        self._free = now + self.every
+        return record
+
+
+class TickDocument(PassingDeclaration):
+    """The last record again, a period after it last went on."""
+
+    kind: ClassVar[str] = "tick"
+    about: ClassVar[str] = "The last record again, every so often."
+    is_bare: ClassVar[bool] = True
+
+    period: EveryDocument
+
+    def begin(self, stage: PassingStage) -> StageInstance:
+        """Begin with no record."""
+        return TickCourse(self.period.every)
+
+
+@dataclass(slots=True)
+class TickCourse(StageInstance):
+    """Has the last record."""
+
+    every: float
+    due: float | None = None
+    _last: Record = field(default_factory=lambda: _NOTHING)
+
+    def take(self, record: Record, now: float) -> Record:
+        """The record, at once."""
+        self._last = again(record)
+        self.due = now + self.every
+        return record
+
+    def wake(self, now: float) -> Record | None:
+        """The last record again."""
+        if self.due is None or now < self.due:
+            return None
+        self.due = now + self.every
+        return again(self._last)
+
+
 # `override`: a person's live values, within bounds, for a while.
+
+
+class BoundsDocument(DocumentPart):
+    """Which values a person may give to a field."""
+
+    between: Given[Annotated[tuple[float, float], Field(strict=False)]] = None
+    """The least and the greatest number."""
+    among: Given[Annotated[list[Annotated[Scalar, READ_VALUE]], Field(min_length=1)]] = Field(default=None, alias="in")
+    """The values themselves."""
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> BoundsDocument:
+        if (self.between is None) == (self.among is None):
+            raise ValueError("write either `between: [least, greatest]` or `in: [values]`")
+        if self.between is not None and self.between[0] > self.between[1]:
+            raise ValueError("`between` has the least number first")
+        return self
+
+
+class OverrideDocument(PassingDeclaration):
+    """A person's live values for some fields, within bounds, for a while."""
+
+    kind: ClassVar[str] = "override"
+    about: ClassVar[str] = "A person's live values, within bounds."
+
+    name: SourceText
+    """What it is called where it is set."""
+    fields: Annotated[dict[KeptField, BoundsDocument], Field(min_length=1)]
+    """The fields, each with the values allowed."""
+    expires: Period
+    """Seconds after which it is gone."""
+
+    def check(self, context: Context) -> OverrideStage | None:
+        """Fields that a person may set. One that no record has yet must be a field of the message."""
+        fields: list[Passing] = []
+        bounds: dict[str, Bounds] = {}
+        for name, written_bounds in self.fields.items():
+            wanted = wanted_type(context, name)
+            is_new = not context.is_incoming and wanted is not None and str(name) not in context.fields
+            found = (FieldPath(str(name), str(name)), wanted) if is_new and wanted is not None else context.field(name)
+            if found is None:
+                continue
+            path, type_ = found
+            allowed = _bounds(context, name, written_bounds, narrowest(context, path, type_))
+            if allowed is not None:
+                fields.append(Passing(path, type_))
+                bounds[str(name)] = allowed
+        if len(fields) != len(self.fields):
+            return None
+        return OverrideStage(context.place, tuple(fields), self, bounds)
+
+    def begin(self, stage: PassingStage) -> StageInstance:
+        """Begin with nothing set."""
+        assert isinstance(stage, OverrideStage)
+        return OverrideCourse(stage)
+
+
+def _bounds(context: Context, name: SourceText, document: BoundsDocument, type_: FieldType) -> Bounds | None:
+    if document.between is None:
+        among = values_of(context, type_, document.among or [], name.place)
+        return None if among is None else Bounds(among=tuple(among))
+    if not is_numeric(type_):
+        context.found(name.place, f"`{name}` is {type_}, which is not between two numbers: write `in: [values]`")
+        return None
+    return Bounds(document.between) if _reachable(context, name.place, document.between, type_) else None
+
+
+def _reachable(context: Context, place: Place, between: tuple[float, float], type_: FieldType) -> bool:
+    if not isinstance(type_, IntegerRange):
+        return True
+    beyond = [bound for bound in between if not type_.minimum <= bound <= type_.maximum]
+    for bound in beyond:
+        context.found(place, f"the field ranges over {type_}, and cannot be {bound:g}")
+    return not beyond
 
 
 @dataclass(frozen=True)
@@ -69,17 +390,21 @@ class Bounds:
 
 
 @dataclass(frozen=True)
-class OverrideStage(TransparentStage):
-    """Fields that a person may set, each within its bounds, for so many seconds."""
+class OverrideStage(PassingStage):
+    """Fields that a person may set, each within its bounds."""
 
-    name: str
+    written: OverrideDocument
     bounds: Mapping[str, Bounds]
-    expires: float
-    kind: ClassVar[str] = "override"
 
-    def begin(self) -> OverrideCourse:
-        """Begin with nothing set."""
-        return OverrideCourse(self)
+    @property
+    def name(self) -> str:
+        """What it is called where it is set."""
+        return str(self.written.name)
+
+    @property
+    def expires(self) -> float:
+        """Seconds after which what is set is gone."""
+        return self.written.expires
 
     def check(self, fields: Mapping[str, object]) -> None:
         """Raises ValueError, with what is allowed, unless all of these values are."""
@@ -95,7 +420,7 @@ class OverrideStage(TransparentStage):
 
 
 @dataclass(slots=True)
-class OverrideCourse:
+class OverrideCourse(StageInstance):
     """Has what is set, and the last record as it came."""
 
     stage: OverrideStage
@@ -155,78 +480,35 @@ class OverrideCourse:
         return record
 
 
-# `remember` and `fold`: values of earlier records.
+# `fold` and `timeout`: fields of which nothing comes.
 
 
-@dataclass(frozen=True)
-class RememberStage:
-    """A variable keeps the last known value of another field, but for those that are ignored."""
-
-    place: Place
-    variable: str
-    type: FieldType
-    of: FieldPath
-    ignored: frozenset[object]
-    kind: ClassVar[str] = "remember"
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """The field whose value is kept."""
-        return frozenset({self.of.text})
-
-    @property
-    def gives(self) -> Mapping[str, FieldType]:
-        """The value kept."""
-        return {self.variable: self.type}
-
-    def begin(self) -> RememberCourse:
-        """Begin with nothing remembered."""
-        return RememberCourse(self)
-
-    def backwards(self, values: dict[str, object]) -> None:
-        """A device says what is so now: where the state does not tell that, it is what is remembered."""
-        if self.of.text not in values and values.get(self.variable) is not None:
-            values[self.of.text] = values[self.variable]
-
-
-@dataclass(slots=True)
-class RememberCourse:
-    """Has the value that is kept."""
-
-    stage: RememberStage
-    kept: object = None
-    due: ClassVar[float | None] = None
-
-    def take(self, record: Record, now: float) -> Record:
-        """The record with the value kept, after this one has been looked at."""
-        value = self.stage.of.read(record.values, record.troubles)
-        if value is not None and value not in self.stage.ignored:
-            self.kept = value
-        record.values[self.stage.variable] = self.kept
-        return record
-
-    def wake(self, now: float) -> None:
-        """Nothing happens by itself."""
-
-
-@dataclass(frozen=True)
-class FoldStage(TransparentStage):
+class FoldDocument(PassingDeclaration):
     """Fields that are unknown or missing keep the value of the last record that had one."""
 
     kind: ClassVar[str] = "fold"
+    about: ClassVar[str] = "Fields that are unknown keep their last value; an empty list means all."
+    is_bare: ClassVar[bool] = True
+    is_timed: ClassVar[bool] = False
 
-    def begin(self) -> FoldCourse:
+    fields: list[KeptField]
+
+    def passing(self, context: Context) -> tuple[Passing, ...] | None:
+        """Those named, or all."""
+        every = (Passing(FieldPath(name, name), type_) for name, type_ in context.fields.items())
+        return super().passing(context) if self.fields else tuple(every)
+
+    def begin(self, stage: PassingStage) -> StageInstance:
         """Begin with nothing remembered."""
-        return FoldCourse(self)
+        return FoldCourse(stage)
 
 
 @dataclass(slots=True)
-class FoldCourse:
+class FoldCourse(StageInstance):
     """Has the last known value of each field."""
 
-    stage: FoldStage
+    stage: PassingStage
     known: dict[str, object] = field(default_factory=dict)
-    due: ClassVar[float | None] = None
 
     def take(self, record: Record, now: float) -> Record:
         """The record with what earlier ones said where it says nothing."""
@@ -236,164 +518,37 @@ class FoldCourse:
         values |= {each.path.text: self.known.get(each.path.text) for each in self.stage.fields}
         return record
 
-    def wake(self, now: float) -> None:
-        """Nothing happens by itself."""
 
+class TimeoutDocument(PassingDeclaration):
+    """Fields are unknown when no record has come for some time."""
 
-# `debounce`, `limit`, `tick` and `timeout`: when values count, and when records go on.
-
-_NOTHING = Record({})
-
-
-@dataclass(frozen=True)
-class DebounceStage(TransparentStage):
-    """A new value of the fields together counts when it has been there for `seconds`; until then the old one does.
-
-    The first one counts at once, for there is no old one; what becomes unknown is so at once.
-    """
-
-    seconds: float
-    kind: ClassVar[str] = "debounce"
-
-    def begin(self) -> DebounceCourse:
-        """Begin with no value that counts."""
-        return DebounceCourse(self)
-
-
-@dataclass(slots=True)
-class DebounceCourse:
-    """Has the values that count and, with the time when they came, those that may soon."""
-
-    stage: DebounceStage
-    due: float | None = None
-    _counting: tuple[object, ...] | None = None
-    _coming: tuple[object, ...] = ()
-    _last: Record = field(default_factory=lambda: _NOTHING)
-
-    def take(self, record: Record, now: float) -> Record:
-        """The record with the values that count."""
-        self._settle(now)
-        values = self.stage.get(record)
-        counting = values if self._counting is None else self._counting
-        counting = tuple(None if new is None else old for old, new in zip(counting, values, strict=True))
-        if values == counting:
-            self.due = None
-        elif self.due is None or values != self._coming:
-            self._coming, self.due = values, now + self.stage.seconds
-        self._counting = counting
-        self._last = again(record)
-        return self.stage.put(record, counting)
-
-    def wake(self, now: float) -> Record | None:
-        """The last record with the values that have been there for long enough."""
-        return self.stage.put(again(self._last), self._counting or ()) if self._settle(now) else None
-
-    def _settle(self, now: float) -> bool:
-        if self.due is None or now < self.due:
-            return False
-        self._counting, self.due = self._coming, None
-        return True
-
-
-@dataclass(frozen=True)
-class LimitStage(TransparentStage):
-    """At most one record in `every` seconds, the newest; the last one held back goes on when its time comes."""
-
-    every: float
-    kind: ClassVar[str] = "limit"
-
-    def begin(self) -> LimitCourse:
-        """Begin with the way free."""
-        return LimitCourse(self)
-
-
-@dataclass(slots=True)
-class LimitCourse:
-    """Has the record held back, and from when on the next may go."""
-
-    stage: LimitStage
-    _free: float | None = None
-    _held: Record | None = None
-
-    @property
-    def due(self) -> float | None:
-        """The time at which the record held back may go."""
-        return None if self._held is None else self._free
-
-    def take(self, record: Record, now: float) -> Record | None:
-        """The record, if enough time has passed since the last."""
-        if self._held is not None:  # what made no sense is not lost with the record that is
-            record.troubles = record.troubles or self._held.troubles
-        self._held = record
-        return self.wake(now)
-
-    def wake(self, now: float) -> Record | None:
-        """The record held back, if its time has come."""
-        if self._held is None or (self._free is not None and now < self._free):
-            return None
-        record, self._held = self._held, None
-        self._free = now + self.stage.every
-        return record
-
-
-@dataclass(frozen=True)
-class TickStage(TransparentStage):
-    """The last record again, `every` so many seconds after it last went on."""
-
-    every: float
-    kind: ClassVar[str] = "tick"
-
-    def begin(self) -> TickCourse:
-        """Begin with no record."""
-        return TickCourse(self)
-
-
-@dataclass(slots=True)
-class TickCourse:
-    """Has the last record."""
-
-    stage: TickStage
-    due: float | None = None
-    _last: Record = field(default_factory=lambda: _NOTHING)
-
-    def take(self, record: Record, now: float) -> Record:
-        """The record, at once."""
-        self._last = again(record)
-        self.due = now + self.stage.every
-        return record
-
-    def wake(self, now: float) -> Record | None:
-        """The last record again."""
-        if self.due is None or now < self.due:
-            return None
-        self.due = now + self.stage.every
-        return again(self._last)
-
-
-@dataclass(frozen=True)
-class TimeoutStage(TransparentStage):
-    """The fields are unknown when no record has come for `seconds`."""
-
-    seconds: float
     kind: ClassVar[str] = "timeout"
+    about: ClassVar[str] = "Fields are unknown when no record has come for some time; for incoming topics."
+    direction: ClassVar = "incoming"
 
-    def begin(self) -> TimeoutCourse:
+    fields: KeptFields
+    """The fields."""
+    seconds: Period
+    """How long they count."""
+
+    def begin(self, stage: PassingStage) -> StageInstance:
         """Begin with no record."""
-        return TimeoutCourse(self)
+        return TimeoutCourse(stage, self.seconds)
 
 
 @dataclass(slots=True)
-class TimeoutCourse:
+class TimeoutCourse(StageInstance):
     """Has the last record, and when it counts no more."""
 
-    stage: TimeoutStage
+    stage: PassingStage
+    seconds: float
     due: float | None = None
     _last: Record = field(default_factory=lambda: _NOTHING)
 
     def take(self, record: Record, now: float) -> Record:
         """The record as it is."""
         self._last = again(record)
-        self.due = now + self.stage.seconds
+        self.due = now + self.seconds
         return self.stage.put(record, self.stage.get(record))
 
     def wake(self, now: float) -> Record | None:
@@ -402,107 +557,3 @@ class TimeoutCourse:
             return None
         self.due = None
         return self.stage.put(again(self._last), (None,) * len(self.stage.fields))
-
-
-# Stages through which fields pass, from documents: memory, times and overrides.
-
-
-def build_remember(document: RememberDocument, context: Context) -> RememberStage | None:
-    """A variable that keeps the last value of another."""
-    if not only(context, document.variable.place, True, "remember"):
-        return None
-    found = context.field(document.of)
-    if found is None:
-        return None
-    path, given = found
-    of = narrowest(context, path, given)
-    type_ = wanted_type(context, document.variable) or of
-    if not are_alike(of, type_):
-        remedy = "make one of the other by a stage before this"
-        context.found(document.of.place, f"`{path}` is {of} here, and `{document.variable}` is {type_}: {remedy}")
-        return None
-    ignored = {value: written(of, value) for value in document.ignored}
-    for value, meant in ignored.items():
-        if meant is None:
-            near = suggestion(value, of.values) if isinstance(of, EnumerationType) else ""
-            context.found(value.place, f"`{value}` is no value of `{document.of}`{near}")
-    kept = set(domain(of) or ()) - set(ignored.values())
-    if (holds := domain(type_)) is not None and (extra := kept - set(holds)):
-        names = ", ".join(sorted(map(as_written, extra)))
-        context.found(document.variable.place, f"`{document.variable}` cannot be {names}: put it into `except`")
-        return None
-    if None in ignored.values():
-        return None
-    return RememberStage(context.place, str(document.variable), type_, path, frozenset(ignored.values()))
-
-
-def build_fold(names: Sequence[SourceText], context: Context) -> FoldStage | None:
-    """Fields that keep their last value: those named, or all."""
-    if not names:
-        every = (Passing(FieldPath(name, name), type_) for name, type_ in context.fields.items())
-        return FoldStage(context.place, tuple(every))
-    fields = passing(context, names)
-    return None if fields is None else FoldStage(context.place, fields)
-
-
-def build_debounce(document: DebounceDocument, context: Context) -> DebounceStage | None:
-    """Fields whose values count when they have been there for some time."""
-    right = only(context, document.fields[0].place, True, "debounce")
-    fields = passing(context, document.fields) if right else None
-    return None if fields is None else DebounceStage(context.place, fields, document.seconds)
-
-
-def build_timeout(document: TimeoutDocument, context: Context) -> TimeoutStage | None:
-    """Fields that are unknown after a silence."""
-    right = only(context, document.fields[0].place, True, "timeout")
-    fields = passing(context, document.fields) if right else None
-    return None if fields is None else TimeoutStage(context.place, fields, document.seconds)
-
-
-def build_limit(document: EveryDocument, context: Context) -> LimitStage:
-    """At most one record per time."""
-    return LimitStage(context.place, (), document.every)
-
-
-def build_tick(document: EveryDocument, context: Context) -> TickStage:
-    """The last record again and again."""
-    return TickStage(context.place, (), document.every)
-
-
-def build_override(document: OverrideDocument, context: Context) -> OverrideStage | None:
-    """Fields that a person may set. One that no record has yet must be a field of the message."""
-    fields: list[Passing] = []
-    bounds: dict[str, Bounds] = {}
-    for name, written_bounds in document.fields.items():
-        wanted = wanted_type(context, name)
-        is_new = not context.is_incoming and wanted is not None and str(name) not in context.fields
-        found = (FieldPath(str(name), str(name)), wanted) if is_new and wanted is not None else context.field(name)
-        if found is None:
-            continue
-        path, type_ = found
-        allowed = _bounds(context, name, written_bounds, narrowest(context, path, type_))
-        if allowed is not None:
-            fields.append(Passing(path, type_))
-            bounds[str(name)] = allowed
-    if len(fields) != len(document.fields):
-        return None
-    return OverrideStage(context.place, tuple(fields), str(document.name), bounds, document.expires)
-
-
-def _bounds(context: Context, name: SourceText, document: BoundsDocument, type_: FieldType) -> Bounds | None:
-    if document.between is None:
-        among = values_of(context, type_, document.among or [], name.place)
-        return None if among is None else Bounds(among=tuple(among))
-    if not is_numeric(type_):
-        context.found(name.place, f"`{name}` is {type_}, which is not between two numbers: write `in: [values]`")
-        return None
-    return Bounds(document.between) if _reachable(context, name.place, document.between, type_) else None
-
-
-def _reachable(context: Context, place: Place, between: tuple[float, float], type_: FieldType) -> bool:
-    if not isinstance(type_, IntegerRange):
-        return True
-    beyond = [bound for bound in between if not type_.minimum <= bound <= type_.maximum]
-    for bound in beyond:
-        context.found(place, f"the field ranges over {type_}, and cannot be {bound:g}")
-    return not beyond
