@@ -28,7 +28,7 @@ from argon2 import PasswordHasher
 from stations.processes import part
 
 from sequence_planner.auth.passwords import COSTS
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AboutFlows
 from sequence_planner.controller.ipc import ControllerClient
 

@@ -14,8 +14,8 @@ from typing import cast
 import pytest
 
 from core.actors import EVA
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import Deploy
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.deployment_folder import (
     NAME,
     DeploymentFolder,

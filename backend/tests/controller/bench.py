@@ -16,7 +16,7 @@ from pathlib import Path
 
 from controller.journalling import journal
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.production import StartProduction
+from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.previous_run import what_is_known
 from sequence_planner.controller.views.station import StationIdentity

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from controller.carrying_out import carry_out
 from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Automaton, WorkMaster
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.command import Command
+from sequence_planner.controller.commands.jobs import (
     CommandJob,
     ForgetJob,
-    JobCommand,
     JobOperation,
     JobWait,
     SequenceJobs,
     SetByOrder,
     TakeJob,
 )
-from sequence_planner.controller.commands.job_handler import JobHandler
+from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.controller.views.jobs import job_views
 from sequence_planner.controller.views.station import JobView
 from sequence_planner.core.actor import SYSTEM
@@ -118,8 +119,8 @@ class Bench:
         """The state of each operation of a job."""
         return {name: str(step.state) for name, step in self.jobs[job].steps.items()}
 
-    def ask(self, command: JobCommand) -> None:
-        self.desk.carry_out(command, self.now)
+    def ask(self, command: Command) -> None:
+        carry_out(self.desk, command, self.now)
 
     def by_order(self, on: bool = True) -> None:
         self.ask(SetByOrder(actor=SYSTEM, on=on, reason="so"))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from controller.carrying_out import carry_out
 from core.actors import EVA
 from sequence_planner.analysis.mutual_exclusion import NeverTogether, never_together
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.commands.commands import CorrectEstimates
+from sequence_planner.controller.commands.recovery import CorrectEstimates
 from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.core.clock import Timestamp
@@ -38,6 +39,7 @@ def corrections(
         Planning(),
         Beliefs(execution) if beliefs is None else beliefs,
         ConsistencyMonitor(execution) if doubting is None else doubting,
+        lambda names: None,
     )
 
 
@@ -64,7 +66,7 @@ class Station:
     def correct(self, values: Mapping[str, Value], revision: int | None = None) -> None:
         seen = self.execution.revision if revision is None else revision
         command = CorrectEstimates(actor=EVA, reason=WHY, values=dict(values), revision=seen)
-        self.corrections.carry_out(command, self.now)
+        carry_out(self.corrections, command, self.now)
 
 
 def what_is_never_together() -> NeverTogether:

@@ -18,8 +18,9 @@ import pytest
 from controller.journalling import journal
 from controller.rig import truck_engine
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.commands.commands import AcknowledgeTask, CommandRefused
-from sequence_planner.controller.commands.production import StartProduction
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import StartProduction
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.views.station import StationIdentity
 from sequence_planner.core.actor import SYSTEM

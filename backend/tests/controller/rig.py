@@ -11,9 +11,11 @@ from functools import cache
 from pathlib import Path
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.tasks import TaskHandler, WaitingTask
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
+from sequence_planner.controller.features.tasks import TaskHandler, WaitingTask
 from sequence_planner.controller.planner_client import BETTER_EVERY
+from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -104,7 +106,8 @@ class Rig:
         for id_, task in list(self.desk.open.items()):
             if self.acknowledges(task, self.now):
                 try:
-                    self.desk.acknowledge(id_, task.revision)
+                    done = AcknowledgeTask(actor=SYSTEM, task=id_, revision=task.revision)
+                    self.desk.acknowledge(done, Timestamp(self.now, self.now))
                 except CommandRefused:
                     continue
         measured, now = self.measured() | self.desk.measured(), Timestamp(self.now, self.now)

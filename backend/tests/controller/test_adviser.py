@@ -13,7 +13,7 @@ import pytest
 from controller.bench import cell, until
 from core.building import predicate_of
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children

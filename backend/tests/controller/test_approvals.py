@@ -22,27 +22,28 @@ from controller.journalling import journal
 from core.actors import ADAM, EVA, person
 from core.budget import examples
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.approvals import (
     Act,
     ApproveRequest,
-    CommandBase,
-    CommandRefused,
-    ConfirmEstimates,
-    CorrectEstimates,
     CorrectionAct,
-    DecideOutputs,
     DeclineRequest,
     ForceAct,
     ForceVariable,
     OutputsAct,
     ReleaseForce,
     RequestApproval,
+)
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
+from sequence_planner.controller.commands.recovery import (
+    ConfirmEstimates,
+    CorrectEstimates,
+    DecideOutputs,
     TakeErrand,
     UndoCorrection,
 )
-from sequence_planner.controller.commands.production import Command, ReleaseControl, TakeControl
 from sequence_planner.controller.controller import Controller
-from sequence_planner.controller.recovery.manual import PATIENCE, SHOWN
+from sequence_planner.controller.features.approvals import PATIENCE, SHOWN
 from sequence_planner.controller.views.station import ApprovalState, ApprovalView
 from sequence_planner.core.actor import SYSTEM, Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
@@ -103,13 +104,13 @@ class Cell:
 
     @property
     def approvals(self) -> dict[str, ApprovalView]:
-        return self.controller._orders.approvals.view(self.moment)
+        return self.controller._approvals.view(self.moment)
 
     def value(self, name: str) -> object:
         return self.controller.execution.state[name]
 
     def do(self, command: Command) -> None:
-        self.controller._orders.carry_out(command, self.moment)
+        self.controller._bus.execute(command, self.moment)
 
     def refusal(self, command: Command) -> str:
         with pytest.raises(CommandRefused) as refused:
@@ -118,9 +119,9 @@ class Cell:
 
     def control(self, actor: Actor | None) -> None:
         """Let somebody be in control, or nobody."""
-        held = self.controller._orders.in_control.view()
+        held = self.controller._in_control.view()
         if held is not None:
-            self.controller._orders.in_control.withdraw(held.session)
+            self.do(WithdrawControl(actor=SYSTEM, session=held.session))
         if actor is not None:
             self.do(TakeControl(actor=actor))
 
@@ -141,7 +142,7 @@ class Cell:
     def begin(self) -> None:
         """As in the beginning; nothing waits, and what waited is forgotten."""
         execution = self.controller.execution
-        self.controller._orders.approvals._requests.clear()
+        self.controller._approvals._requests.clear()
         for name in list(execution.conduct.forces):
             execution.release(name)
         execution.correct({PART: "empty", OTHER: "empty"}, "test", "begins", self.moment)
@@ -182,7 +183,7 @@ def test_two_people_force_what_asks_for_two(cell: Cell) -> None:
     assert not cell.controller.execution.conduct.forces
 
 
-def direct(cell: Cell, actor: Actor) -> tuple[CommandBase, ...]:
+def direct(cell: Cell, actor: Actor) -> tuple[Command, ...]:
     """All by which one person could do it alone."""
     values: dict[str, bool | int | str] = {PART: "full"}
     return (
@@ -198,7 +199,7 @@ def direct(cell: Cell, actor: Actor) -> tuple[CommandBase, ...]:
 def test_nobody_does_it_alone(cell: Cell, actor: Actor) -> None:
     cell.control(None if actor is SYSTEM else actor)
     for command in direct(cell, actor):
-        assert cell.refusal(command) == "approval-needed"  # type: ignore[arg-type]
+        assert cell.refusal(command) == "approval-needed"
 
 
 def test_what_two_have_corrected_one_does_not_take_back(cell: Cell) -> None:
@@ -352,7 +353,7 @@ class FourEyes(RuleBasedStateMachine):
         self.cell.control(actor)
         self.holder = actor
         for command in direct(self.cell, actor):
-            assert self.cell.refusal(command) == "approval-needed"  # type: ignore[arg-type]
+            assert self.cell.refusal(command) == "approval-needed"
 
     @invariant()
     def what_waits_is_what_two_people_can_still_want(self) -> None:

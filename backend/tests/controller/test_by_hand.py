@@ -15,15 +15,7 @@ from controller.rig import Rig
 from sequence_planner.automaton.automaton import State, target
 from sequence_planner.automaton.reactions import Reactions
 from sequence_planner.automaton.tick import apply_effects, initial_state
-from sequence_planner.controller.recovery.manual import (
-    KIND,
-    LATENCY,
-    LONGEST,
-    STAYS,
-    ByHand,
-    WentOn,
-    on_its_way,
-)
+from sequence_planner.controller.recovery.manual import KIND, LATENCY, LONGEST, STAYS, ByHand, WentOn, on_its_way
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value

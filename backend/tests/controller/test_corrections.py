@@ -7,9 +7,11 @@ from collections.abc import Callable
 
 import pytest
 
+from controller.carrying_out import carry_out
 from core.actors import ADAM, EVA
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.commands.commands import CommandRefused, ConfirmEstimates, UndoCorrection
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.recovery import ConfirmEstimates, UndoCorrection
 from sequence_planner.controller.views.details import CorrectionPreview
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.state import ErrandKind, OperatorPlan
@@ -37,7 +39,7 @@ def undo(station: Station) -> None:
     last = station.corrections.last
     assert last is not None
     command = UndoCorrection(actor=ADAM, revision=last.revision, reason="that was another one")
-    station.corrections.carry_out(command, station.now)
+    carry_out(station.corrections, command, station.now)
 
 
 def refusal(act: Callable[[], object]) -> str:
@@ -134,19 +136,19 @@ def test_one_step_of_undo() -> None:
     shown = station.corrections.last
     assert shown is not None
     undo = UndoCorrection(actor=ADAM, revision=shown.revision, reason="that was another one")
-    station.corrections.carry_out(undo, station.now)
+    carry_out(station.corrections, undo, station.now)
     assert station.execution.state == before
     assert station.beliefs.of(BOLT).writer == "Adam"
     assert station.corrections.last is None
     again = UndoCorrection(actor=ADAM, revision=shown.revision, reason="once more")
-    assert refusal(lambda: station.corrections.carry_out(again, station.now)) == "nothing-to-undo"
+    assert refusal(lambda: carry_out(station.corrections, again, station.now)) == "nothing-to-undo"
 
 
 def test_an_undo_takes_the_answer_back_and_is_none_itself() -> None:
     """Whoever takes a correction back has not looked at the station."""
     other = "bolts[bolt_pair_1]"
     station = in_restart(Station())
-    station.corrections.carry_out(ConfirmEstimates(actor=EVA, values={other: "empty"}, reason=WHY), station.now)
+    carry_out(station.corrections, ConfirmEstimates(actor=EVA, values={other: "empty"}, reason=WHY), station.now)
     station.correct({BOLT: "placed", other: "tightened"})
     assert station.execution.conduct.answers == {BOLT: "placed", other: "tightened"}
     undo(station)
@@ -157,7 +159,7 @@ def test_an_undo_takes_the_answer_back_and_is_none_itself() -> None:
 
 def test_an_undo_brings_no_answer_back_that_counts_no_more() -> None:
     station = in_restart(Station())
-    station.corrections.carry_out(ConfirmEstimates(actor=EVA, values={BOLT: "empty"}, reason=WHY), station.now)
+    carry_out(station.corrections, ConfirmEstimates(actor=EVA, values={BOLT: "empty"}, reason=WHY), station.now)
     station.correct({BOLT: "placed"})
     station.execution.conduct = replace(station.execution.conduct, answers={})  # as work went on with it
     undo(station)
@@ -171,7 +173,7 @@ def test_no_undo_of_another_correction_than_the_one_that_was_seen() -> None:
     assert seen is not None
     station.correct({BOLT: "tightened"})
     undo = UndoCorrection(actor=ADAM, revision=seen.revision, reason="it is not placed")
-    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "stale-revision"
+    assert refusal(lambda: carry_out(station.corrections, undo, station.now)) == "stale-revision"
     assert station.execution.state[BOLT] == "tightened"
 
 
@@ -182,11 +184,11 @@ def test_no_undo_over_what_has_happened_since() -> None:
     assert station.corrections.last is not None
     assert not station.corrections.last.undoable
     undo = UndoCorrection(actor=EVA, revision=station.corrections.last.revision, reason="not so")
-    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "stale-revision"
+    assert refusal(lambda: carry_out(station.corrections, undo, station.now)) == "stale-revision"
     assert station.execution.state[BOLT] == "tightened"
     station.execution.correct({BOLT: "placed"}, "Adam", "another one is placed", station.now)
     assert not station.corrections.last.undoable
-    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "stale-revision"
+    assert refusal(lambda: carry_out(station.corrections, undo, station.now)) == "stale-revision"
     assert station.execution.state[BOLT] == "placed", "that is not what was corrected, though it looks the same"
 
 
@@ -240,9 +242,9 @@ def test_nothing_is_corrected_under_an_errand() -> None:
 def test_confirming_is_for_what_was_seen() -> None:
     station = Station()
     wrong = ConfirmEstimates(actor=EVA, reason=WHY, values={BOLT: "placed"})
-    assert refusal(lambda: station.corrections.carry_out(wrong, station.now)) == "stale-revision"
+    assert refusal(lambda: carry_out(station.corrections, wrong, station.now)) == "stale-revision"
     right = ConfirmEstimates(actor=EVA, reason=WHY, values={BOLT: "empty"})
-    station.corrections.carry_out(right, station.now)
+    carry_out(station.corrections, right, station.now)
     assert station.beliefs.of(BOLT).writer == "Eva"
     for name in station.automaton.names(Kind.ESTIMATED):
         if name != BOLT:

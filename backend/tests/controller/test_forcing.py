@@ -8,11 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from controller.carrying_out import carry_out
 from core.actors import EVA
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.commands import CommandRefused, ForceVariable, ReleaseForce
-from sequence_planner.controller.recovery.manual import Forcing
+from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.features.forces import Forces
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
@@ -39,16 +41,16 @@ class Forced:
         initial = automaton.initial_valuation
         self.measured = {name: initial[name] for name in automaton.names(Kind.MEASURED)}
         self.measured |= {name.replace("__", "."): value for name, value in measured.items()}
-        self.forcing = Forcing(self.execution)
+        self.forcing = Forces(self.execution)
         self.execution.tick(self.measured, NOW)
         if estimates is not None:
             self.execution.correct(estimates, "Eva", WHY, NOW)
 
     def force(self, name: str, value: Value, seconds: float = 60) -> None:
-        self.forcing.carry_out(ForceVariable(actor=EVA, reason=WHY, name=name, value=value, seconds=seconds), NOW)
+        carry_out(self.forcing, ForceVariable(actor=EVA, reason=WHY, name=name, value=value, seconds=seconds), NOW)
 
     def release(self, name: str) -> None:
-        self.forcing.carry_out(ReleaseForce(actor=EVA, name=name), NOW)
+        carry_out(self.forcing, ReleaseForce(actor=EVA, name=name), NOW)
 
     def after(self, seconds: float) -> Mapping[str, Value | None]:
         """The state after a tick that much later."""

@@ -12,11 +12,9 @@ from hypothesis import given
 from core.actors import ADAM, EVA, person
 from core.budget import examples
 from core.choices import Choices, made_by
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.control_lock import ControlLock
-from sequence_planner.controller.commands.production import (
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import (
     ClearOverride,
-    Command,
     ReleaseControl,
     SetMode,
     SetOverride,
@@ -24,10 +22,14 @@ from sequence_planner.controller.commands.production import (
     TakeControl,
     WithdrawControl,
 )
+from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.core.actor import SYSTEM, Actor, ActorKind
+from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode, Production
 
 from .bench import Arm, Bench, bench
+
+NOW = Timestamp(1000.0, 10.0)
 
 KEY = Actor(kind=ActorKind.KEY, id="k1", name="MES")
 
@@ -171,14 +173,14 @@ def test_control_is_one_sessions_and_changes_hands_only_as_asked(acts: list[tupl
     for what, actor, over in acts:
         if what == "take":
             may = holder in (None, actor.session, over)
-            done(partial(desk.take, actor, over, 0.0), may)
+            done(partial(desk.take, TakeControl(actor=actor, over=over), NOW), may)
             holder = actor.session if may else holder
         elif what == "release":
             may = holder == actor.session
-            done(partial(desk.release, actor), may)
+            done(partial(desk.release, ReleaseControl(actor=actor), NOW), may)
             holder = None if may else holder
         else:
-            desk.withdraw(str(actor.session))
+            desk.withdraw(WithdrawControl(actor=SYSTEM, session=str(actor.session)), NOW)
             holder = None if holder == actor.session else holder
         view = desk.view()
         assert (view.session if view else None) == holder

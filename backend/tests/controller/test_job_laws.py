@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 from controller.bench_of_jobs import FOR_JOBS, MASTERS, STATION, Bench
 from core.budget import examples
 from sequence_planner.controller import restore
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.jobs import Job, Jobs
 from sequence_planner.execution.record.codec import BEGUN, SNAPSHOT

@@ -7,10 +7,12 @@ from dataclasses import replace
 import pytest
 
 from controller.bench_of_jobs import Bench
+from controller.carrying_out import carry_out
 from controller.rig import Rig, never
-from sequence_planner.controller.commands.commands import SetByOrder, TakeJob
-from sequence_planner.controller.commands.job_handler import JobHandler
-from sequence_planner.controller.commands.tasks import TaskProblem
+from core.actors import EVA
+from sequence_planner.controller.commands.jobs import SetByOrder, TakeJob
+from sequence_planner.controller.commands.tasks import ReportProblem
+from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.controller.views.jobs import Around, job_views
 from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
 from sequence_planner.core.actor import SYSTEM
@@ -125,8 +127,8 @@ class Ordered:
         self.rig = Rig()
         self.rig.start_production()
         desk, now = JobHandler(self.rig.execution), self.now
-        desk.carry_out(SetByOrder(actor=SYSTEM, on=True, reason="shift"), now)
-        desk.carry_out(TakeJob(actor=SYSTEM, job="4711", title="Engine", work_master="truck_engine"), now)
+        carry_out(desk, SetByOrder(actor=SYSTEM, on=True, reason="shift"), now)
+        carry_out(desk, TakeJob(actor=SYSTEM, job="4711", title="Engine", work_master="truck_engine"), now)
 
     @property
     def now(self) -> Timestamp:
@@ -174,7 +176,8 @@ def test_people_are_waited_for_and_what_keeps_them() -> None:
     station.rig.run(30)
     (waiting,) = station.waits()
     assert waiting.endswith("to be done by Operator with watch"), waiting
-    station.rig.desk.report(id_, 1, TaskProblem("Eva", station.rig.now, "no bolts"))
+    problem = ReportProblem(actor=EVA, task=id_, revision=1, reason="no bolts")
+    station.rig.desk.report(problem, Timestamp(station.rig.now, station.rig.now))
     assert station.waits() == [f"{waiting}, who cannot: no bolts"]
 
 

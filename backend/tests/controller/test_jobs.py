@@ -6,6 +6,7 @@ import asyncio
 import json
 
 import pytest
+from pydantic import TypeAdapter
 
 from controller.bench_of_jobs import STATION, Bench
 from controller.test_why_not import Inquirer, found
@@ -13,17 +14,17 @@ from core.actors import EVA, person
 from core.building import predicate_of
 from sequence_planner.automaton.automaton import Automaton, Specification
 from sequence_planner.controller import restore
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.jobs import (
     CommandJob,
-    CommandRefused,
     JobOperation,
     JobWait,
     SequenceJobs,
     SetByOrder,
     TakeJob,
 )
-from sequence_planner.controller.commands.job_handler import KeptJobs
-from sequence_planner.controller.commands.production import COMMAND
+from sequence_planner.controller.commands.registry import AnyCommand
+from sequence_planner.controller.features.jobs import KeptJobs
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.views.jobs import job_views, why_idle
@@ -412,7 +413,7 @@ def test_commands_are_read_as_they_are_written() -> None:
     command = SequenceJobs(actor=SYSTEM, waits=pairs)
     written = command.model_dump_json()
     assert json.loads(written)["waits"] == [{"job": "a", "operation": "x", "for": [{"job": "b", "operation": "y"}]}]
-    assert COMMAND.validate_json(written) == command
+    assert TypeAdapter[Command](AnyCommand).validate_json(written) == command
     with pytest.raises(ValueError, match="pattern"):
         TakeJob(actor=SYSTEM, job="a b", title="A", work_master="m")
 

@@ -12,8 +12,9 @@ import pytest
 from controller.bench import Arm, Bench, bench, cell, until
 from controller.journalling import journal
 from core.actors import EVA
-from sequence_planner.controller.commands.commands import CommandRefused, ConfirmEstimates, DecideOutputs
-from sequence_planner.controller.commands.production import Command, SetMode, TakeControl, TakeStep
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import SetMode, TakeControl, TakeStep
+from sequence_planner.controller.commands.recovery import ConfirmEstimates, DecideOutputs
 from sequence_planner.controller.previous_run import what_is_known
 from sequence_planner.controller.service import go_on, start_when_alone
 from sequence_planner.core.clock import Timestamp

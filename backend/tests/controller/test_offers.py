@@ -12,7 +12,8 @@ import pytest
 from core.actors import EVA
 from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Operation
-from sequence_planner.controller.commands.commands import CommandRefused, GivenValue, TakeErrand
+from sequence_planner.controller.commands.command import CommandRefused, GivenValue
+from sequence_planner.controller.commands.recovery import TakeErrand
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery import proposals
 from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
@@ -67,7 +68,7 @@ class Desk:
     def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
         self.adviser, self.execution = adviser, execution
         doubting = ConsistencyMonitor(execution)
-        corrections = Corrections(execution, adviser, Beliefs(execution), doubting)
+        corrections = Corrections(execution, adviser, Beliefs(execution), doubting, lambda names: None)
         self.offers = Offers(execution, adviser, corrections, doubting.impossible, StallDetector(execution))
         self.seconds = 0.0
         self.at: Value = "home"

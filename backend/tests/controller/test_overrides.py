@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,8 @@ from controller.bench import IDENTITY, until
 from controller.journalling import journal
 from core.actors import EVA
 from pipelines.station_writing import station_with
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import (
-    ClearOverride,
-    SetOverride,
-    StartProduction,
-    TakeControl,
-)
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import ClearOverride, SetOverride, StartProduction, TakeControl
 from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.io.clients import Clients
@@ -25,6 +21,7 @@ from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.io.overrides import Overrides
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
+from sequence_planner.controller.views.station import FieldValue
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
@@ -83,6 +80,12 @@ class Desk:
         clients = Clients(pipelines, registry, transport, self.feeds, lambda samples: None)
         self.overrides = Overrides(pipelines, self.feeds, self.commander, clients)
 
+    def set(self, name: str, fields: Mapping[str, FieldValue], now: float) -> None:
+        self.overrides.set(SetOverride(actor=EVA, name=name, fields=dict(fields)), Timestamp(1000.0, now))
+
+    def clear(self, name: str, now: float) -> None:
+        self.overrides.clear(ClearOverride(actor=EVA, name=name), Timestamp(1000.0, now))
+
     def speeds(self) -> list[object]:
         """What has been ordered so far."""
         return [self.station.registry.decode("tank_msgs/msg/Order", data)["speed"] for data in self.publisher.sent]
@@ -96,9 +99,9 @@ def test_an_override_is_shown_with_its_bounds_and_when_it_expires(tmp_path: Path
     assert (speed.pipeline, speed.resource, speed.expires, speed.actor) == ("/tank/order", "tank", 60.0, None)
     assert (speed.fields["speed"].between, speed.fields["speed"].value) == ((0.05, 0.5), None)
     assert view["tank.door"].fields["door"].among == [True]
-    desk.overrides.set("tank.speed", SPEED, "eva", 50.0)
+    desk.set("tank.speed", SPEED, 50.0)
     shown = desk.overrides.view(Timestamp(1001.0, 51.0))["tank.speed"]
-    assert (shown.actor, shown.until, shown.fields["speed"].value) == ("eva", 1060.0, 0.1)
+    assert (shown.actor, shown.until, shown.fields["speed"].value) == ("Eva", 1060.0, 0.1)
     assert desk.overrides.view(Timestamp(1002.0001, 52.0))["tank.speed"] == shown, "it is told the same each time"
     gone = desk.overrides.view(Timestamp(1060.0, 110.0))["tank.speed"]
     assert (gone.actor, gone.until, gone.fields["speed"].value) == (None, None, None)
@@ -106,12 +109,12 @@ def test_an_override_is_shown_with_its_bounds_and_when_it_expires(tmp_path: Path
 
 def test_what_is_set_is_sent_and_taken_back_and_nothing_before_production(tmp_path: Path) -> None:
     desk = Desk(tmp_path)
-    desk.overrides.set("tank.speed", SPEED, "eva", 50.0)
+    desk.set("tank.speed", SPEED, 50.0)
     assert desk.speeds() == []
     desk.commander.publish_all(desk.station.automaton.initial_valuation, 51.0)
-    desk.overrides.set("tank.speed", {"speed": 0.2}, "eva", 52.0)
-    desk.overrides.clear("tank.speed", 53.0)
-    desk.overrides.set("tank.speed", SPEED, "eva", 54.0)
+    desk.set("tank.speed", {"speed": 0.2}, 52.0)
+    desk.clear("tank.speed", 53.0)
+    desk.set("tank.speed", SPEED, 54.0)
     desk.commander.repeat(114.0)
     assert desk.speeds() == [0.1, 0.2, 0.5, 0.1, 0.5]
 
@@ -120,9 +123,9 @@ def test_an_incoming_value_is_overridden_until_it_is_taken_back(tmp_path: Path) 
     desk = Desk(tmp_path)
     data = desk.station.registry.encode("tank_msgs/msg/State", {"door": False})
     desk.feeds.take([Sample("/tank/state", data, 50.0)])
-    desk.overrides.set("tank.door", {"door": True}, "eva", 51.0)
+    desk.set("tank.door", {"door": True}, 51.0)
     assert desk.feeds.measured(51.0)["tank.door"] is True
-    desk.overrides.clear("tank.door", 52.0)
+    desk.clear("tank.door", 52.0)
     assert desk.feeds.measured(52.0)["tank.door"] is False
 
 
@@ -137,11 +140,11 @@ def test_an_incoming_value_is_overridden_until_it_is_taken_back(tmp_path: Path) 
     ],
 )
 def test_what_the_model_does_not_allow_is_refused_and_changes_nothing(
-    tmp_path: Path, name: str, fields: dict[str, object], slug: str, said: str
+    tmp_path: Path, name: str, fields: dict[str, FieldValue], slug: str, said: str
 ) -> None:
     desk = Desk(tmp_path)
     with pytest.raises(CommandRefused, match=said.replace("?", ".")) as refused:
-        desk.overrides.set(name, fields, "eva", 50.0)
+        desk.set(name, fields, 50.0)
     assert refused.value.slug == slug
     assert refused.value.status == (404 if slug == "no-override" else 422)
     assert all(each.actor is None for each in desk.overrides.view(Timestamp(1000.0, 50.0)).values())

@@ -11,8 +11,9 @@ from sqlalchemy import text
 
 from core.actors import ADAM, EVA
 from sequence_planner.controller.commands.audit import CommandAudit
-from sequence_planner.controller.commands.commands import AcknowledgeTask, CommandRefused
-from sequence_planner.controller.commands.production import Command, SetMode, StartProduction, TakeControl
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import SetMode, StartProduction, TakeControl
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.controller.views.station import TaskView
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, Production

@@ -5,14 +5,17 @@ from __future__ import annotations
 import pytest
 
 from controller.rig import PAIRS, Rig, never, truck_engine
+from core.actors import EVA
 from sequence_planner.automaton.automaton import State
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.tasks import TaskHandler, TaskProblem, WaitingTask
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
+from sequence_planner.controller.features.tasks import TaskHandler, TaskProblem, WaitingTask
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 
 PLACE_1, PLACE_2 = (f"operator.place_bolt_pair({pair})" for pair in PAIRS[:2])
 ACKNOWLEDGED = "operator.acknowledged"
+NOW = Timestamp(6.0, 6.0)
 
 
 def desk() -> TaskHandler:
@@ -29,6 +32,10 @@ def only(tasks: TaskHandler) -> WaitingTask:
     return task
 
 
+def acknowledge(tasks: TaskHandler, id_: str, revision: int) -> None:
+    tasks.acknowledge(AcknowledgeTask(actor=EVA, task=id_, revision=revision), NOW)
+
+
 def waiting() -> tuple[Rig, WaitingTask]:
     """A station with a task that nobody acknowledges."""
     rig = Rig(acknowledges=never)
@@ -41,7 +48,8 @@ def test_an_acknowledgement_lasts_until_its_ability_has_finished() -> None:
     tasks = desk()
     tasks.update(executing(PLACE_1), (), (), 5.0)
     assert tasks.measured() == {ACKNOWLEDGED: False}
-    assert tasks.acknowledge(only(tasks).id, 1).ability == PLACE_1
+    assert only(tasks).ability == PLACE_1
+    acknowledge(tasks, only(tasks).id, 1)
     tasks.update(executing(), (), (), 6.0)
     assert tasks.measured() == {ACKNOWLEDGED: True}
     tasks.update(executing(), (PLACE_2,), (), 7.0)
@@ -54,7 +62,7 @@ def test_an_acknowledgement_is_let_go_also_when_nobody_remembers_the_start() -> 
     """As after a controller was started again amid a task: the ability takes its finish actions all the same."""
     tasks = desk()
     tasks.update(executing(PLACE_1), (), (), 5.0)
-    tasks.acknowledge(only(tasks).id, 1)
+    acknowledge(tasks, only(tasks).id, 1)
     tasks.update(executing(), (PLACE_1,), (), 6.0)
     assert tasks.measured() == {ACKNOWLEDGED: False}
 
@@ -64,7 +72,7 @@ def test_an_acknowledgement_of_an_earlier_controller_is_for_a_task_that_is_gone(
     before.update(executing(PLACE_1), (), (), 5.0)
     after.update(executing(PLACE_2), (), (), 6.0)
     with pytest.raises(CommandRefused) as refused:
-        after.acknowledge(only(before).id, only(before).revision)
+        acknowledge(after, only(before).id, only(before).revision)
     assert refused.value.slug == "task-gone"
 
 
@@ -72,11 +80,11 @@ def test_the_same_ability_started_again_in_the_tick_of_its_end_is_another_task()
     tasks = desk()
     tasks.update(executing(PLACE_1), (), (), 5.0)
     first = only(tasks)
-    tasks.acknowledge(first.id, first.revision)
+    acknowledge(tasks, first.id, first.revision)
     tasks.update(executing(PLACE_1), (PLACE_1,), (PLACE_1,), 6.0)
     assert only(tasks).created == 6.0
     with pytest.raises(CommandRefused):
-        tasks.acknowledge(first.id, first.revision)
+        acknowledge(tasks, first.id, first.revision)
     assert tasks.measured() == {ACKNOWLEDGED: False}
 
 
@@ -84,7 +92,7 @@ def test_another_revision_is_refused() -> None:
     tasks = desk()
     tasks.update(executing(PLACE_1), (), (), 5.0)
     with pytest.raises(CommandRefused) as refused:
-        tasks.acknowledge(only(tasks).id, 2)
+        acknowledge(tasks, only(tasks).id, 2)
     assert refused.value.slug == "task-changed"
     assert tasks.measured() == {ACKNOWLEDGED: False}
 
@@ -93,14 +101,16 @@ def test_a_watch_that_speaks_on_a_topic_is_heard_beside_the_page() -> None:
     tasks = TaskHandler(truck_engine()[0].automaton, {ACKNOWLEDGED})
     tasks.update(executing(PLACE_1), (), (), 5.0)
     assert tasks.measured() == {}
-    tasks.acknowledge(only(tasks).id, 1)
+    acknowledge(tasks, only(tasks).id, 1)
     assert tasks.measured() == {ACKNOWLEDGED: True}
 
 
 def told(
     tasks: TaskHandler, task: WaitingTask, why: str = "", revision: int = 1, by: str = "Eva", at: float = 6.0
 ) -> None:
-    tasks.report(task.id, revision, TaskProblem(by, at, why))
+    actor = EVA.model_copy(update={"name": by})
+    problem = ReportProblem(actor=actor, task=task.id, revision=revision, reason=why)
+    tasks.report(problem, Timestamp(at, at))
 
 
 def test_a_problem_lasts_until_it_is_solved_or_its_task_is_over_and_says_nothing_is_done() -> None:
@@ -112,7 +122,7 @@ def test_a_problem_lasts_until_it_is_solved_or_its_task_is_over_and_says_nothing
     assert tasks.problems == {task.id: TaskProblem("Adam", 6.0, "no bolts")}
     assert tasks.measured() == {ACKNOWLEDGED: False}
     for _ in range(2):
-        tasks.solve(task.id, 1)
+        tasks.solve(SolveProblem(actor=EVA, task=task.id, revision=1), NOW)
         assert tasks.problems == {}
     told(tasks, task)
     tasks.update(executing(), (PLACE_1,), (PLACE_1,), 8.0)
@@ -128,7 +138,7 @@ def test_a_late_problem_is_not_one_of_another_task() -> None:
         told(tasks, first)
     assert refused.value.slug == "task-gone"
     with pytest.raises(CommandRefused) as refused:
-        tasks.solve(first.id, 1)
+        tasks.solve(SolveProblem(actor=EVA, task=first.id, revision=1), NOW)
     assert refused.value.slug == "task-gone"
     with pytest.raises(CommandRefused) as refused:
         told(tasks, only(tasks), revision=2)
@@ -138,19 +148,19 @@ def test_a_late_problem_is_not_one_of_another_task() -> None:
 
 def test_a_task_acknowledged_twice_completes_one() -> None:
     rig, task = waiting()
-    rig.desk.acknowledge(task.id, task.revision)
-    rig.desk.acknowledge(task.id, task.revision)
+    acknowledge(rig.desk, task.id, task.revision)
+    acknowledge(rig.desk, task.id, task.revision)
     rig.run(2)
     assert [name for name in rig.completed if name.startswith("place")] == [f"place_bolt_pair({task.ability[-12:-1]})"]
     with pytest.raises(CommandRefused):
-        rig.desk.acknowledge(task.id, task.revision)
+        acknowledge(rig.desk, task.id, task.revision)
 
 
 def test_a_task_is_finished_while_the_station_is_paused() -> None:
     rig, task = waiting()
     rig.execution.change_mode(Mode.PAUSED, "Eva", Timestamp(rig.now, rig.now))
     before = len(rig.started)
-    rig.desk.acknowledge(task.id, task.revision)
+    acknowledge(rig.desk, task.id, task.revision)
     rig.run(1)
     assert len([name for name in rig.completed if name.startswith("place")]) == 1
     assert rig.value(ACKNOWLEDGED) is False
@@ -161,7 +171,7 @@ def test_an_acknowledgement_waits_for_what_its_finish_must_know() -> None:
     """It is neither lost nor given twice while the station is blind on every topic."""
     rig, task = waiting()
     rig.silent = set(rig.station.pipelines.incoming)
-    rig.desk.acknowledge(task.id, task.revision)
+    acknowledge(rig.desk, task.id, task.revision)
     rig.run(2)
     rig.silent = set()
     rig.run(2)

@@ -7,11 +7,13 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
+from controller.carrying_out import carry_out
 from core.actors import EVA
 from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Operation, Timeouts
-from sequence_planner.controller.commands.commands import CommandRefused, TryAbility
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.query_handler import Definitions
+from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.trials import Trials
@@ -103,7 +105,7 @@ class Press:
 
     def attempt(self, ability: str = "press", *, real: bool = False) -> None:
         command = TryAbility(actor=EVA, ability=ability, real_devices=real, reason="to see it")
-        self.trials.carry_out(command, self.now)
+        carry_out(self.trials, command, self.now)
 
     def refused(self, slug: str, ability: str = "press") -> str:
         """What is said; nothing has changed then."""

@@ -6,9 +6,11 @@ from collections.abc import Mapping
 
 import pytest
 
+from controller.carrying_out import carry_out
 from core.actors import EVA
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.commands.commands import CommandRefused, DecideOutputs
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.recovery import DecideOutputs
 from sequence_planner.controller.recovery.consistency import RestoredOutputs
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
@@ -38,7 +40,7 @@ def come_back(outputs: Mapping[str, Value], **measured: Value | None) -> Executo
 
 def decide(execution: Executor, **values: Value) -> None:
     chosen = {name.replace("__", "."): value for name, value in values.items()}
-    corrections(execution).carry_out(DecideOutputs(actor=EVA, reason=WHY, values=chosen), NOW)
+    carry_out(corrections(execution), DecideOutputs(actor=EVA, reason=WHY, values=chosen), NOW)
 
 
 def test_devices_that_are_as_they_were_told_leave_nothing_to_decide() -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from controller.bench import CELL, COMMAND, COMMAND_TYPE, Arm, cell, until
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import StartProduction
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.service import Running, control
 from sequence_planner.core.actor import SYSTEM

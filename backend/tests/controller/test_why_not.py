@@ -11,7 +11,7 @@ import pytest
 
 from controller.test_offers import Desk, made
 from core.building import Does, automaton, predicate_of
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskWhyNot
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery.consistency import Beliefs

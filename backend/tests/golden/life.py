@@ -14,17 +14,9 @@ from typing import Final, Literal
 
 from core.actors import EVA
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.commands import (
-    AcknowledgeTask,
-    CommandJob,
-    CommandRefused,
-    CorrectEstimates,
-    DecideOutputs,
-    ForceVariable,
-    TakeErrand,
-    TakeJob,
-)
-from sequence_planner.controller.commands.production import (
+from sequence_planner.controller.commands.approvals import ForceVariable
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import (
     EnterRestart,
     LeaveRestart,
     SetMode,
@@ -32,7 +24,10 @@ from sequence_planner.controller.commands.production import (
     StartProduction,
     TakeControl,
 )
+from sequence_planner.controller.commands.jobs import CommandJob, TakeJob
 from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
+from sequence_planner.controller.commands.recovery import CorrectEstimates, DecideOutputs, TakeErrand
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.previous_run import what_is_known
 from sequence_planner.controller.views.proposals import AdviceView, OfferView

@@ -11,19 +11,10 @@ from typing import Final
 from core.actors import EVA
 from golden.life import WHY, Life
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.commands.commands import (
-    ConfirmEstimates,
-    ForgetJob,
-    JobOperation,
-    JobWait,
-    ReleaseForce,
-    SequenceJobs,
-    SetByOrder,
-    StopErrand,
-    TryAbility,
-    UndoCorrection,
-)
-from sequence_planner.controller.commands.production import EnterRestart, SetStepping, TakeStep
+from sequence_planner.controller.commands.approvals import ReleaseForce
+from sequence_planner.controller.commands.execution import EnterRestart, SetStepping, TakeStep
+from sequence_planner.controller.commands.jobs import ForgetJob, JobOperation, JobWait, SequenceJobs, SetByOrder
+from sequence_planner.controller.commands.recovery import ConfirmEstimates, StopErrand, TryAbility, UndoCorrection
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.simulation.faults import FaultKind

@@ -7,22 +7,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
 
+from controller.carrying_out import carry_out
 from core.choices import Choices
 from core.random_problems import RESOURCES, Problem, problem
 from sequence_planner.automaton.automaton import Automaton, Kind, State, Timeouts, WorkMaster
 from sequence_planner.automaton.tick import apply_effects
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.jobs import (
     CommandJob,
-    CommandRefused,
     ForgetJob,
-    JobCommand,
     JobOperation,
     JobWait,
     SequenceJobs,
     SetByOrder,
     TakeJob,
 )
-from sequence_planner.controller.commands.job_handler import JobHandler
+from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace as changed
@@ -175,7 +175,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
 
     def order() -> None:
         with contextlib.suppress(CommandRefused):
-            desk.carry_out(_order(choices, execution), lived.moment)
+            carry_out(desk, _order(choices, execution), lived.moment)
 
     return [
         *(tick, tick, tick, tick, ask, ask, answer, answer, order, order),
@@ -189,7 +189,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
     ]
 
 
-def _order(choices: Choices, execution: Executor) -> JobCommand:
+def _order(choices: Choices, execution: Executor) -> Command:
     """What may be asked about jobs, where most of it is possible."""
     jobs, masters = execution.conduct.jobs, execution.automaton.work_masters
     if not jobs.by_order or choices.chance(8):

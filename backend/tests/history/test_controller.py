@@ -7,7 +7,7 @@ import asyncio
 from controller.bench import Arm, bench, cell
 from controller.journalling import journal
 from core.actors import EVA
-from sequence_planner.controller.commands.production import SetMode, TakeControl
+from sequence_planner.controller.commands.execution import SetMode, TakeControl
 from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import BEGUN
 from sequence_planner.execution.record.replay import replay

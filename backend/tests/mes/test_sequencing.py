@@ -14,7 +14,7 @@ from hypothesis.strategies import integers
 
 from core.budget import TIMED
 from mes.works import NOW, RESOURCES, Exclusive, best, check, objective, questions, shop
-from sequence_planner.controller.commands.commands import JobOperation, JobWait, SequenceJobs
+from sequence_planner.controller.commands.jobs import JobOperation, JobWait, SequenceJobs
 from sequence_planner.controller.ipc import LONGEST_COMMAND, CommandMessage, encode
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.mes.scheduling.dispatch import waits_among

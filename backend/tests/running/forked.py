@@ -34,8 +34,10 @@ from controller.rig import truck_engine
 from running.judging import Judge, Kept
 from running.wire import Wire
 from sequence_planner.controller import planner_client
-from sequence_planner.controller.commands.commands import AcknowledgeTask, CommandRefused, DecideOutputs
-from sequence_planner.controller.commands.production import StartProduction
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import StartProduction
+from sequence_planner.controller.commands.recovery import DecideOutputs
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.previous_run import what_is_known
 from sequence_planner.controller.views.station import StationIdentity

@@ -16,7 +16,8 @@ from collections import Counter
 from pathlib import Path
 
 from running.forked import Child, Hall, log_to_standard_error
-from sequence_planner.controller.commands.commands import CommandRefused, ForgetJob, SetByOrder, TakeJob
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.jobs import ForgetJob, SetByOrder, TakeJob
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import (
     AboutWorkMasters,
     Ask,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.commands import CorrectionAct
+from sequence_planner.controller.commands.approvals import CorrectionAct
 from sequence_planner.controller.views.station import (
     AbilityView,
     AlarmState,

@@ -23,8 +23,8 @@ from sequence_planner.auth.login import SignIn
 from sequence_planner.auth.roles import Role
 from sequence_planner.auth.sessions import SignedIn, open_session
 from sequence_planner.auth.users import Person
-from sequence_planner.controller.commands.commands import CommandRefused, TaskCommand
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.tasks import TaskCommand
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.actor import SYSTEM, ActorKind

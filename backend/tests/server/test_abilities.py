@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
-from sequence_planner.controller.commands.commands import CommandRefused, TryAbility
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.queries import AskDefinition
+from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.server.settings import Settings
 
 from .example_answers import DEFINITION

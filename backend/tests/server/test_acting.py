@@ -11,8 +11,9 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import AcknowledgeTask, ProblemKind, ReportProblem, SolveProblem
-from sequence_planner.controller.commands.production import Command, ReleaseControl, TakeControl
+from sequence_planner.controller.commands.command import Command
+from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl
+from sequence_planner.controller.commands.tasks import AcknowledgeTask, ProblemKind, ReportProblem, SolveProblem
 from sequence_planner.core.actor import ActorKind
 
 from .example_view import example_view

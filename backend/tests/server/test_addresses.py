@@ -11,7 +11,7 @@ import pytest
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.audit import entry_of
-from sequence_planner.controller.commands.production import SetService
+from sequence_planner.controller.commands.execution import SetService
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.journal.entry import LONGEST_SUBJECT

@@ -5,7 +5,7 @@ from __future__ import annotations
 import httpx
 import pytest
 
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.alarms import (
     LONGEST_SHELVING,
     AcknowledgeAlarm,
     RestoreAlarm,

@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.approvals import (
     Act,
     ApproveRequest,
     CorrectionAct,
@@ -17,7 +17,7 @@ from sequence_planner.controller.commands.commands import (
     OutputsAct,
     RequestApproval,
 )
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command
 
 from .running import Controller, Server
 from .test_acting import problem

@@ -11,8 +11,8 @@ from typing import ClassVar
 import pytest
 
 from controller.bench import until
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import SetMode
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import SetMode
 from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, Ask
 from sequence_planner.controller.ipc import MOST_ASKS, ControllerClient, ControllerLink
 from sequence_planner.controller.views.part import View

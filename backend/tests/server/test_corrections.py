@@ -8,15 +8,14 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import (
-    CommandRefused,
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.queries import AskCorrection
+from sequence_planner.controller.commands.recovery import (
     ConfirmEstimates,
     CorrectEstimates,
     DecideOutputs,
     UndoCorrection,
 )
-from sequence_planner.controller.commands.production import Command
-from sequence_planner.controller.commands.queries import AskCorrection
 from sequence_planner.server.settings import Settings
 
 from .example_answers import CORRECTION

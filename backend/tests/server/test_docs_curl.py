@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import AcknowledgeTask
-from sequence_planner.controller.commands.production import ClearOverride, SetMode, SetOverride, TakeControl
+from sequence_planner.controller.commands.execution import ClearOverride, SetMode, SetOverride, TakeControl
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.server.settings import Settings
 
 from .example_view import example_view

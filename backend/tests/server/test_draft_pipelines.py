@@ -10,7 +10,7 @@ import httpx
 import pytest
 from pydantic import JsonValue
 
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import Ask, AskRecord
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View

@@ -16,7 +16,7 @@ import pytest
 
 from editor.models import BOLTS
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.production import SetMode
+from sequence_planner.controller.commands.execution import SetMode
 from sequence_planner.editor import draft, merging, revisions
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.forking.starting import children

@@ -15,8 +15,8 @@ from websockets.sync.client import ClientConnection, connect
 from sequence_planner.auth import api_keys, sessions, users, watches
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.auth.sessions import SignedIn
-from sequence_planner.controller.commands.commands import AcknowledgeTask
-from sequence_planner.controller.commands.production import WithdrawControl
+from sequence_planner.controller.commands.execution import WithdrawControl
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.server import metrics

@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import CommandRefused, StopErrand, TakeErrand, TextPlace
+from sequence_planner.controller.commands.command import CommandRefused, TextPlace
 from sequence_planner.controller.commands.queries import (
     AboutWorkMasters,
     Ask,
@@ -17,6 +17,7 @@ from sequence_planner.controller.commands.queries import (
     AskReset,
     AskWhyNot,
 )
+from sequence_planner.controller.commands.recovery import StopErrand, TakeErrand
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.server.settings import Settings

@@ -16,8 +16,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.budget import TIMED
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import Command, SetMode
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import SetMode
 from sequence_planner.controller.ipc import LONGEST_COMMAND, ControllerClient, ControllerLink, read_lines
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.actor import Actor, ActorKind

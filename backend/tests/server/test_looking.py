@@ -16,8 +16,8 @@ from websockets.sync.client import ClientConnection
 
 from controller.bench import COMMAND, STATE, cell
 from controller.test_network_watch import REPORTS
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import ClearOverride, SetOverride
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import ClearOverride, SetOverride
 from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, Ask
 from sequence_planner.controller.io.network import network_view, uses
 from sequence_planner.controller.io.pipeline_graph import pipelines_view

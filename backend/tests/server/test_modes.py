@@ -8,9 +8,9 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import ForceVariable, ReleaseForce
-from sequence_planner.controller.commands.production import (
-    Command,
+from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
+from sequence_planner.controller.commands.command import Command
+from sequence_planner.controller.commands.execution import (
     EnterRestart,
     LeaveRestart,
     SetMode,

@@ -9,8 +9,8 @@ from typing import Any
 import httpx
 import pytest
 
-from sequence_planner.controller.commands.commands import CommandJob, CommandRefused, ForgetJob, TakeJob
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, TakeJob
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.station import JobView
 from sequence_planner.execution.vocabulary import JobState, Mode

@@ -8,7 +8,7 @@ from itertools import pairwise
 import httpx
 import pytest
 
-from sequence_planner.controller.commands.commands import SequenceJobs, TakeJob
+from sequence_planner.controller.commands.jobs import SequenceJobs, TakeJob
 from sequence_planner.controller.views.details import WorkMasterView, WorkOperationView
 from sequence_planner.controller.views.station import JobStepState, JobStepView, JobView
 from sequence_planner.execution.vocabulary import JobState, Mode

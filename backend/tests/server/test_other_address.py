@@ -19,7 +19,7 @@ import pytest
 from websockets.sync.client import connect
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.commands import AcknowledgeTask
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.server.settings import Settings
 

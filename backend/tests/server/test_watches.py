@@ -10,7 +10,7 @@ import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
-from sequence_planner.controller.commands.commands import AcknowledgeTask, ReportProblem, SolveProblem
+from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
 from sequence_planner.core.actor import ActorKind
 
 from .running import Controller, Server

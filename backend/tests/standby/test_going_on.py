@@ -13,8 +13,8 @@ import pytest
 
 from sequence_planner.controller import service
 from sequence_planner.controller.commands.audit import CommandAudit
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import Command, SetMode, StartProduction
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import SetMode, StartProduction
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.preparation import Preparation
 from sequence_planner.controller.service import _follows, go_on

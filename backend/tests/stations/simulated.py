@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from controller.rig import Rig, never
-from sequence_planner.controller.commands.tasks import TaskHandler
+from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.chain_runtime import first_message
 from sequence_planner.ros.types.messages import MessageRegistry

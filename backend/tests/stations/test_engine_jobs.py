@@ -7,10 +7,11 @@ from functools import partial
 
 import pytest
 
+from controller.carrying_out import carry_out
 from core.budget import SHARE
 from sequence_planner.automaton.automaton import target
-from sequence_planner.controller.commands.commands import CommandJob, SetByOrder, TakeJob
-from sequence_planner.controller.commands.job_handler import JobHandler
+from sequence_planner.controller.commands.jobs import CommandJob, SetByOrder, TakeJob
+from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.simulation.truck_station.poses import PAIRS
@@ -33,7 +34,7 @@ def test_a_job_is_all_the_work_on_an_engine_and_what_the_robot_holds_is_none() -
 
 def order(rig: HallRig, job: str) -> None:
     take = TakeJob(actor=SYSTEM, job=job, title=job, work_master="engine")
-    JobHandler(rig.execution).carry_out(take, Timestamp(rig.now, rig.now))
+    carry_out(JobHandler(rig.execution), take, Timestamp(rig.now, rig.now))
 
 
 def ended(rig: HallRig, job: str) -> bool:
@@ -53,11 +54,11 @@ def test_an_engine_whose_order_was_aborted_is_made_to_its_end_by_the_next(after:
     rig = HallRig()
     now = Timestamp(rig.now, rig.now)
     desk, events = JobHandler(rig.execution), rig.hall.world.verdict.events
-    desk.carry_out(SetByOrder(actor=SYSTEM, on=True, reason="so"), now)
+    carry_out(desk, SetByOrder(actor=SYSTEM, on=True, reason="so"), now)
     rig.start_production()
     order(rig, "first")
     assert rig.live(300, lambda: any(event.startswith(after) for _, event in events))
-    desk.carry_out(CommandJob(actor=SYSTEM, job="first", what="abort"), Timestamp(rig.now, rig.now))
+    carry_out(desk, CommandJob(actor=SYSTEM, job="first", what="abort"), Timestamp(rig.now, rig.now))
     order(rig, "second")
     assert rig.live(300, lambda: ended(rig, "second"))
     counted = rig.hall.world.verdict.counted
@@ -68,7 +69,7 @@ def test_an_engine_whose_order_was_aborted_is_made_to_its_end_by_the_next(after:
 def test_engine_after_engine_is_made_to_order() -> None:
     rig = HallRig()
     desk = JobHandler(rig.execution)
-    desk.carry_out(SetByOrder(actor=SYSTEM, on=True, reason="so"), Timestamp(rig.now, rig.now))
+    carry_out(desk, SetByOrder(actor=SYSTEM, on=True, reason="so"), Timestamp(rig.now, rig.now))
     rig.start_production()
     assert not rig.live(3, lambda: bool(rig.started)), "without a job there is nothing to do"
     for number in (1, 2):

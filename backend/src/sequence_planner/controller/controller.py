@@ -23,15 +23,19 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.alarm import aside_again
 from sequence_planner.controller.alarms.manager import AlarmManager
+from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
 from sequence_planner.controller.commands.audit import StandingNotes
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.control_lock import ControlLock
-from sequence_planner.controller.commands.handler import CommandHandler, ModeHandler
-from sequence_planner.controller.commands.job_handler import JobHandler, KeptJobs
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.bus import CommandBus
+from sequence_planner.controller.commands.command import Command
 from sequence_planner.controller.commands.queries import Ask
 from sequence_planner.controller.commands.query_handler import Definitions, QueryHandler, work_masters_view
-from sequence_planner.controller.commands.tasks import TaskHandler
+from sequence_planner.controller.commands.registry import COMMANDS
+from sequence_planner.controller.features.approvals import Approvals
+from sequence_planner.controller.features.control_lock import ControlLock
+from sequence_planner.controller.features.forces import Forces
+from sequence_planner.controller.features.jobs import JobHandler, KeptJobs
+from sequence_planner.controller.features.modes import Modes
+from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.metrics import Figures
@@ -41,7 +45,7 @@ from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
 from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.controller.recovery.explain import ConditionContext
-from sequence_planner.controller.recovery.manual import Approvals, ByHand, Forcing
+from sequence_planner.controller.recovery.manual import ByHand
 from sequence_planner.controller.recovery.proposals import Offers
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.recovery.trials import Trials
@@ -123,25 +127,33 @@ class Controller:
         self._viewing = ViewBuilder(identity, self.execution, self._outside, feeds, network, self._beliefs)
         self._questions = PlannerQuestions(self.execution, self._outside, self._take, self._figures.answers)
         self._adviser = AdvisorClient(automaton, supervisor)
-        self._corrections = Corrections(self.execution, self._adviser, self._beliefs, self._doubting)
+        in_control = self._in_control = ControlLock(known.control)
+        self._forces = Forces(self.execution)
+        self._approvals = Approvals(self.execution, in_control, self._check, self._perform)
+        self._corrections = Corrections(
+            self.execution, self._adviser, self._beliefs, self._doubting, self._approvals.require_one
+        )
         offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible, self._alarms.still)
         around = ConditionContext(feeds.heard_on, self._viewing.since, self._beliefs, lambda: self._viewing.guards)
         trials = Trials(self.execution, around, self.devices.real_devices)
-        in_control = ControlLock(known.control)
-        self._orders = CommandHandler(
-            modes=ModeHandler(self.execution, self._outside),
-            tasks=self.desk,
-            overrides=self.devices.overrides,
-            corrections=self._corrections,
-            offers=offers,
-            trials=trials,
-            forcing=Forcing(self.execution),
-            jobs=JobHandler(self.execution),
-            approvals=Approvals(self.execution, in_control),
-            alarms=self._alarms,
-            start_production=self._start_production,
-            real_devices=self.devices.real_devices,
+        self._bus = CommandBus(
+            (
+                Modes(self.execution, self._outside, self.devices, self._doubting),
+                self.desk,
+                JobHandler(self.execution),
+                self._corrections,
+                offers,
+                trials,
+                self._forces,
+                self._approvals,
+                in_control,
+                self._alarms,
+                self.devices.overrides,
+            ),
+            COMMANDS.values(),
             in_control=in_control,
+            require_one=self._approvals.require_one,
+            real_devices=self.devices.real_devices,
         )
         self._asking = QueryHandler(
             pipelines=partial(pipelines_view, station.pipelines),
@@ -213,7 +225,7 @@ class Controller:
 
     async def command(self, command: Command) -> None:
         """Carry out a command. Raises `CommandRefused`."""
-        self._orders.carry_out(command, Timestamp.now())
+        self._bus.execute(command, Timestamp.now())
         LOG.info("command", **command.model_dump(mode="json"))
         self._tick_again()
 
@@ -222,13 +234,13 @@ class Controller:
         moment = Timestamp.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
         self._viewing.who_can = self._alarms.who_can.found
-        overrides, control = self.devices.overrides.view(moment), self._orders.in_control.view()
+        overrides, control = self.devices.overrides.view(moment), self._in_control.view()
         jobs = self._jobs.up_to(self._writer.durable)
         doubts = Doubts(
             self._doubting.undecided,
             list(self._doubting.questions),
             self._corrections.last,
-            self._orders.approvals.view(moment),
+            self._approvals.view(moment),
         )
         return self._viewing.view(self.desk, self.devices.commander, overrides, alarms, control, doubts, jobs, moment)
 
@@ -271,20 +283,15 @@ class Controller:
         """There are no emulated devices though there should be, since the model does not allow for them."""
         self._alarms.unemulated = tuple(map(str, why))
 
-    def _start_production(self) -> None:
-        if self.execution.production is Production.STARTED:
-            raise CommandRefused("production-started", "Production is started", "Production has been started already.")
-        self.devices.see_network()
-        if self.devices.network.rivals:
-            text = "; ".join(self.devices.network.rivals.values())
-            raise CommandRefused(
-                "other-controller", "Somebody else commands the devices", f"{text}. Stop the other one."
-            )
-        if self._doubting.undecided:
-            named = ", ".join(self._doubting.undecided)
-            detail = f"Devices would move as soon as it is published what {named} said before. Decide on each first."
-            raise CommandRefused("outputs-unconfirmed", "It is not decided what devices shall do", detail)
-        self.execution.start_production()
+    def _check(self, command: ApprovedCommand) -> None:
+        """Raises `CommandRefused` when it could not be done now, whoever wants it."""
+        if isinstance(command, ForceVariable):
+            self._forces.check(command)
+        else:
+            self._corrections.check(command)
+
+    def _perform(self, command: Command, moment: Timestamp) -> None:
+        self._bus.perform(command, moment)
 
     def _journalled(self) -> None:
         """More records are durable, or it has changed why none are."""
@@ -372,7 +379,7 @@ class Controller:
     def _note_standing(self, moment: Timestamp) -> None:
         if self.commands and self._standing.due(moment):
             alarms = self._alarms.current(self._questions.trouble, moment)
-            controlled = self._orders.in_control.view() is not None
+            controlled = self._in_control.view() is not None
             waits = self._viewing.job_waits(self.desk, alarms, controlled, moment)
             self._standing.look(self._viewing.packml, waits, moment)
 

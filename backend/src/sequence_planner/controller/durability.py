@@ -15,8 +15,7 @@ from functools import partial
 import structlog
 
 from sequence_planner.controller.commands.audit import entry_of
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.controller import Controller
 from sequence_planner.journal.entry import Outcome, described
 from sequence_planner.journal.last_accepted import LastWord, Word

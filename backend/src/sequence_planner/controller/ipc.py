@@ -16,9 +16,9 @@ from typing import Annotated, Literal, TypeVar
 import structlog
 from pydantic import BaseModel, ConfigDict, Field, JsonValue, TypeAdapter, ValidationError
 
-from sequence_planner.controller.commands.commands import CommandRefused, TextPlace
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command, CommandRefused, TextPlace
 from sequence_planner.controller.commands.queries import Ask, Query
+from sequence_planner.controller.commands.registry import AnyCommand
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
@@ -144,7 +144,7 @@ class CommandMessage(LinkMessage):
 
     kind: Literal["command"] = "command"
     id: int = Field(ge=0)
-    command: Command
+    command: AnyCommand
     expires: float | None = None
     request: str | None = Field(default=None, max_length=64)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import structlog
 
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.preparation import DeployedError, Preparation
 from sequence_planner.controller.views.station import StandbyView
 from sequence_planner.core.storage_error import StorageError

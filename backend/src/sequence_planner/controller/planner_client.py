@@ -13,7 +13,7 @@ import structlog
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.metrics import Answers
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.execution.executor import Executor

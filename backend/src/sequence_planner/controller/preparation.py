@@ -15,8 +15,8 @@ from sequence_planner.analysis.report import AnalysisDocument, document_of, erro
 from sequence_planner.analysis.worker import SynthesisEndedError, TooLargeError, analysing
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import Deploy
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.controller.restore import RestoredState

@@ -15,8 +15,8 @@ import structlog
 from sequence_planner.analysis.cache import cache
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.audit import CommandAudit
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import Command, Deploy, StartProduction
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import Deploy, StartProduction
 from sequence_planner.controller.commands.queries import Ask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.durability import Lasting

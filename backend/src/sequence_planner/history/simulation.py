@@ -9,7 +9,9 @@ from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.tasks import TaskHandler, WaitingTask
+from sequence_planner.controller.commands.tasks import AcknowledgeTask
+from sequence_planner.controller.features.tasks import TaskHandler, WaitingTask
+from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.codec import HistoryError
@@ -88,7 +90,8 @@ class SimulatedStation:
     def _work_on_tasks(self) -> None:
         for task in list(self._desk.open.values()):
             if self.now.epoch - task.created >= self._needed(task):
-                self._desk.acknowledge(task.id, task.revision)
+                done = AcknowledgeTask(actor=SYSTEM, task=task.id, revision=task.revision)
+                self._desk.acknowledge(done, self.now)
 
     def _needed(self, task: WaitingTask) -> float:
         duration = self._automaton.abilities[task.ability].duration

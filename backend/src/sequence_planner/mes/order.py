@@ -177,7 +177,7 @@ class JobOrder(OrderContent):
 class OrderRefused(Exception):
     """A refusal: what was asked of an order is not done, and nothing has changed.
 
-    `slug`, `title`, `detail` and `status` are as in `controller.commands.production.CommandRefused`; `allowed` are
+    `slug`, `title`, `detail` and `status` are as in `controller.commands.command.CommandRefused`; `allowed` are
     the commands that the order does allow, where another one was given.
     """
 

@@ -20,7 +20,7 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.auth.roles import IdentityRefused
-from sequence_planner.controller.commands.commands import CommandRefused, TextPlace
+from sequence_planner.controller.commands.command import CommandRefused, TextPlace
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.core.validation_messages import complained
 from sequence_planner.editor.processes import BodyError

@@ -27,7 +27,7 @@ from pydantic import BaseModel, JsonValue
 from sqlalchemy import Connection, text
 
 from sequence_planner.auth.roles import Scope
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskFigures
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.metrics import DistributionView, FiguresView

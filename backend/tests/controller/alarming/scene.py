@@ -10,7 +10,7 @@ from pydantic import JsonValue
 
 from controller.rig import Rig
 from sequence_planner.controller.alarms.manager import AlarmManager
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.alarms import (
     AcknowledgeAlarm,
     AlarmCommand,
     RestoreAlarm,

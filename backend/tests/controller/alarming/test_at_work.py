@@ -7,7 +7,8 @@ import asyncio
 import pytest
 
 from controller.bench import STATE, Arm, bench
-from sequence_planner.controller.commands.commands import AcknowledgeAlarm, CommandRefused
+from sequence_planner.controller.commands.alarms import AcknowledgeAlarm
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.views.station import AlarmState
 from sequence_planner.core.actor import SYSTEM
 

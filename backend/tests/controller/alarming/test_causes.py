@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 
 from controller.alarming.scene import acknowledge, alarms
+from controller.carrying_out import carry_out
 from controller.rig import Rig, never
 from sequence_planner.controller.alarms.manager import AlarmManager
-from sequence_planner.controller.commands.commands import ProblemKind
-from sequence_planner.controller.commands.tasks import TaskProblem
+from sequence_planner.controller.commands.tasks import ProblemKind
+from sequence_planner.controller.features.tasks import TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import AlarmState, Priority, QuestionView
@@ -59,7 +60,7 @@ def test_an_alarm_keeps_the_time_at_which_it_came() -> None:
     first = shown.current("the planner has ended", Timestamp(1000, 10))
     later = shown.current("the planner has ended", Timestamp(1060, 70))
     assert first["planner"].since == later["planner"].since == 1000
-    shown.carry_out(acknowledge("planner", 1000), Timestamp(1065, 75))
+    carry_out(shown, acknowledge("planner", 1000), Timestamp(1065, 75))
     assert "planner" not in shown.current(None, Timestamp(1070, 80))
     assert shown.current("the planner has ended", Timestamp(1080, 90))["planner"].since == 1080
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from controller.alarming.scene import Told, acknowledge, shelve, suppress
+from controller.carrying_out import carry_out
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.alarm import aside_from
 from sequence_planner.controller.alarms.manager import AlarmManager
@@ -161,7 +162,7 @@ def test_the_network_of_eight_nodes_goes_away_and_comes_back(tells: bool) -> Non
     assert len([part for part in alarm.parts if part.startswith("No message any more on /")]) == 8
     assert on.most <= 4
 
-    on.alarms.carry_out(acknowledge("many-silent", alarm.since), on.moment)
+    carry_out(on.alarms, acknowledge("many-silent", alarm.since), on.moment)
     for name in sorted(on.every):  # they come back one after the other
         on.cut = on.cut - {name}
         on.run(1)
@@ -179,7 +180,7 @@ def test_a_device_that_was_known_to_be_silent_is_known_also_after_the_network_wa
     on.cut = on.topics_of("agv")
     on.run(5)
     since = on.shown["silent:agv"].since
-    on.alarms.carry_out(acknowledge("silent:agv", since), on.moment)
+    carry_out(on.alarms, acknowledge("silent:agv", since), on.moment)
     on.cut = on.every
     on.run(10)
     assert on.shown.keys() == {"many-silent"}
@@ -325,7 +326,7 @@ def test_nothing_hides_in_an_alarm_that_is_out_of_service() -> None:
     assert alarm.priority is Priority.HIGH  # so it cannot be put aside, and those that follow are in sight with it
     on.cut = on.topics_of("agv")
     on.run(25)
-    on.alarms.carry_out(suppress("silent:agv"), on.moment)
+    carry_out(on.alarms, suppress("silent:agv"), on.moment)
     on.cut = on.topics_of("agv", "dock")
     on.run(10)
     assert on.shown["silent:agv"].state is AlarmState.OUT_OF_SERVICE
@@ -337,8 +338,8 @@ def test_what_was_put_aside_is_so_after_the_controller_was_started_anew() -> Non
     before.start()
     before.cut = before.topics_of("agv", "dock")
     before.run(10)
-    before.alarms.carry_out(suppress("silent:agv"), before.moment)
-    before.alarms.carry_out(shelve("silent:dock", 600), before.moment)
+    carry_out(before.alarms, suppress("silent:agv"), before.moment)
+    carry_out(before.alarms, shelve("silent:dock", 600), before.moment)
     kept = [content for kind, content in before.told.notes if kind == "alarms-aside"][-1]
     after.now = before.now + 100
     after.alarms = AlarmManager(

@@ -20,7 +20,7 @@ from hypothesis.stateful import (
 
 from sequence_planner.controller.alarms.alarm import Alarm, Cause
 from sequence_planner.controller.alarms.manager import OFTEN, QUIET, AlarmRegistry
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
 

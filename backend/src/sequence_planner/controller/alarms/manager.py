@@ -21,15 +21,15 @@ from sequence_planner.controller.alarms.alarm import (
 from sequence_planner.controller.alarms.device_conditions import DeviceAlarms
 from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
 from sequence_planner.controller.alarms.station_conditions import StationAlarms
-from sequence_planner.controller.commands.commands import (
+from sequence_planner.controller.commands.alarms import (
     AcknowledgeAlarm,
-    AlarmCommand,
-    CommandRefused,
     RestoreAlarm,
     ShelveAlarm,
     SuppressAlarm,
     UnshelveAlarm,
 )
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
@@ -398,21 +398,35 @@ class AlarmManager(StationAlarms):
         """The resources whose silence is too young to be told."""
         return self._devices.untold
 
-    def carry_out(self, command: AlarmCommand, moment: Timestamp) -> None:
-        """Do what a person asks for. Raises `CommandRefused`; nothing has changed then."""
-        key, by = command.alarm, command.actor.name
-        match command:
-            case AcknowledgeAlarm(since=since):
-                self._lives.acknowledge(key, since, by)
-            case ShelveAlarm(seconds=seconds, reason=why):
-                until = Timestamp(moment.epoch + seconds, moment.monotonic + seconds)
-                self._lives.shelve(key, by, why, until)
-            case UnshelveAlarm():
-                self._lives.unshelve(key)
-            case SuppressAlarm(reason=why):
-                self._lives.suppress(key, by, why)
-            case RestoreAlarm():
-                self._lives.restore(key)
+    @handles(AcknowledgeAlarm)
+    def acknowledge(self, command: AcknowledgeAlarm, moment: Timestamp) -> None:
+        """A person has seen the alarm."""
+        self._lives.acknowledge(command.alarm, command.since, command.actor.name)
+        self._keep(moment)
+
+    @handles(ShelveAlarm)
+    def shelve(self, command: ShelveAlarm, moment: Timestamp) -> None:
+        """A person does not want to be told of the alarm for some time."""
+        until = Timestamp(moment.epoch + command.seconds, moment.monotonic + command.seconds)
+        self._lives.shelve(command.alarm, command.actor.name, command.reason, until)
+        self._keep(moment)
+
+    @handles(UnshelveAlarm)
+    def unshelve(self, command: UnshelveAlarm, moment: Timestamp) -> None:
+        """The alarm is told again."""
+        self._lives.unshelve(command.alarm)
+        self._keep(moment)
+
+    @handles(SuppressAlarm)
+    def suppress(self, command: SuppressAlarm, moment: Timestamp) -> None:
+        """The alarm is out of service."""
+        self._lives.suppress(command.alarm, command.actor.name, command.reason)
+        self._keep(moment)
+
+    @handles(RestoreAlarm)
+    def restore(self, command: RestoreAlarm, moment: Timestamp) -> None:
+        """The alarm is in service again."""
+        self._lives.restore(command.alarm)
         self._keep(moment)
 
     def _touched(self) -> frozenset[str]:

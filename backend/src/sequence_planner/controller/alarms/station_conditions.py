@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from sequence_planner.controller.alarms.alarm import UNSAFE, Cause, Consequences, listed
-from sequence_planner.controller.commands.commands import ProblemKind
-from sequence_planner.controller.commands.tasks import TaskProblem
+from sequence_planner.controller.commands.tasks import ProblemKind
+from sequence_planner.controller.features.tasks import TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState

@@ -12,8 +12,8 @@ import structlog
 from pydantic import JsonValue
 from sqlalchemy.exc import SQLAlchemyError
 
-from sequence_planner.controller.commands.commands import CommandRefused, TaskCommand
-from sequence_planner.controller.commands.production import Command
+from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.tasks import TaskCommand
 from sequence_planner.controller.views.station import PackML, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.storage_error import StorageError

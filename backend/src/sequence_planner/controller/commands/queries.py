@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from sequence_planner.controller.commands.commands import GivenValues
+from sequence_planner.controller.commands.command import GivenValues
 from sequence_planner.controller.views.details import (
     AbilityDefinitionView,
     CorrectionPreview,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Ability, Automaton, WorkMaster, target
 from sequence_planner.automaton.dependencies import read_variables
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import (
     AboutFlows,
     AboutPipelines,

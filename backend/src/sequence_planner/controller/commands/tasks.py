@@ -1,131 +1,86 @@
-"""Tasks for people, their acknowledgements as measured variables, and what keeps people from doing them.
-
-A task is open as long as a human ability is executing. An acknowledgement names the task and its revision, so a late or
-repeated one never completes another task, be it one of a controller that has been started again since. It makes the
-ability's variable true until the ability has finished. A problem is told of a task in the same way; it changes nothing
-but that people are told of it, until the task is over or somebody says that it is solved.
-"""
+"""Commands for tasks: what a person may say about one that waits, and the revision of it that was seen."""
 
 from __future__ import annotations
 
-import secrets
-from collections.abc import Collection, Iterable
-from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Annotated, Literal
 
-from sequence_planner.automaton.automaton import Automaton, State
-from sequence_planner.controller.commands.commands import (
-    AcknowledgeTask,
-    CommandRefused,
-    ProblemKind,
-    ReportProblem,
-    SolveProblem,
-    TaskCommand,
-)
-from sequence_planner.language.types import Value
+from pydantic import Field
+
+from sequence_planner.controller.commands.command import Command, Revision, Route
 
 
-@dataclass(frozen=True)
-class WaitingTask:
-    """A task that waits for a person; `created` in seconds since the epoch."""
+class TaskCommand(Command):
+    """Refused when the task or its revision is gone, so that a late or repeated one is never about another task."""
 
-    id: str
-    revision: int
-    ability: str
-    title: str
-    text: str
-    created: float
+    about = "task {task}"
+    task: Annotated[str, Field(max_length=200)]
+    revision: Revision
 
 
-@dataclass(frozen=True)
-class TaskProblem:
-    """An obstacle that keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if
-    told.
+class AcknowledgeTask(TaskCommand):
+    """Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource."""
+
+    routes = (
+        Route(
+            "POST",
+            "/tasks/{task}/acknowledgement",
+            "acknowledge_task",
+            tag="actions",
+            body="AcknowledgementBody",
+            body_text="The task is done.",
+            watch=True,
+            may_say_why=False,
+        ),
+    )
+    kind: Literal["acknowledge-task"] = "acknowledge-task"
+
+
+class ProblemKind(StrEnum):
+    """What is in the way, as far as one touch can say it."""
+
+    MISSING = "missing"  # a part
+    DAMAGED = "damaged"
+    TOOL = "tool"
+    OTHER = "other"
+
+
+class ReportProblem(TaskCommand):
+    """Say that a task cannot be done as things are; refused as an acknowledgement is.
+
+    It raises an alarm until the task is over or the problem solved, and changes nothing else. Said again, it is told
+    with the last reason.
     """
 
-    by: str
-    since: float
-    why: str
+    routes = (
+        Route(
+            "POST",
+            "/tasks/{task}/problem",
+            "report_problem",
+            tag="actions",
+            body="ProblemBody",
+            body_text="The task cannot be done as things are; `what` is in the way as far as one touch can say it, and "
+            "the reason.",
+            watch=True,
+        ),
+    )
+    kind: Literal["report-problem"] = "report-problem"
     what: ProblemKind | None = None
 
 
-class TaskHandler:
-    """The open tasks of a station; `fed` are the variables that topics feed, such as those of a real watch."""
+class SolveProblem(TaskCommand):
+    """Say that a task can be done after all; refused as an acknowledgement is."""
 
-    def __init__(self, automaton: Automaton, fed: Collection[str] = ()) -> None:
-        self._humans = {a.name: a for a in automaton.abilities.values() if a.human is not None}
-        variables = {a.human.acknowledgement for a in self._humans.values() if a.human is not None}
-        self._own = sorted(variables.difference(fed))
-        self._given: dict[str, str] = {}  # acknowledged variable: the ability whose task it was
-        self._life = secrets.token_hex(4)
-        self._numbers = 0
-        self.open: dict[str, WaitingTask] = {}
-        self.problems: dict[str, TaskProblem] = {}  # by task
-
-    def measured(self) -> dict[str, Value | None]:
-        """The acknowledgement variables; of those that topics feed, the ones that were acknowledged here."""
-        return {**dict.fromkeys(self._own, False), **dict.fromkeys(self._given, True)}
-
-    def update(self, state: State, finished: Iterable[str], ended: Iterable[str], now: float) -> None:
-        """After a tick: open and close tasks, and let go of acknowledgements that have done their work.
-
-        `finished` are the abilities that took their finish actions, `ended` those of them that had been running.
-        """
-        done, over = set(finished), set(ended)
-        self._given = {variable: ability for variable, ability in self._given.items() if ability not in done}
-        executing = {name for name, ability in self._humans.items() if state[ability.flag("executing")] is True}
-        # An ability that ended and was started again in the same tick is another task.
-        self.open = {id_: task for id_, task in self.open.items() if task.ability in executing - over}
-        for name in sorted(executing - {task.ability for task in self.open.values()}):
-            human = self._humans[name].human
-            assert human is not None
-            self._numbers += 1
-            id_ = f"{self._life}-{self._numbers}"
-            self.open[id_] = WaitingTask(id_, 1, name, self._humans[name].title, human.text, now)
-        self.problems = {id_: problem for id_, problem in self.problems.items() if id_ in self.open}
-
-    def carry_out(self, command: TaskCommand, now: float) -> None:
-        """Do what a person asks for. Raises `CommandRefused`; nothing has changed then."""
-        match command:
-            case AcknowledgeTask(task=task, revision=revision):
-                self.acknowledge(task, revision)
-            case ReportProblem(task=task, revision=revision, actor=actor, reason=reason, what=what):
-                self.report(task, revision, TaskProblem(actor.name, now, reason or "", what))
-            case SolveProblem(task=task, revision=revision):
-                self.solve(task, revision)
-
-    def acknowledge(self, id_: str, revision: int) -> WaitingTask:
-        """A person says the task is done. Raises `CommandRefused` when that task is not open in that revision."""
-        task = self._find(id_, revision)
-        human = self._humans[task.ability].human
-        assert human is not None
-        self._given[human.acknowledgement] = task.ability
-        return task
-
-    def report(self, id_: str, revision: int, problem: TaskProblem) -> None:
-        """A person cannot do the task. Of a problem that is known already, what was said last is told."""
-        self._find(id_, revision)
-        known = self.problems.get(id_)
-        since = problem.since if known is None else known.since
-        self.problems[id_] = replace(problem, since=since)
-
-    def solve(self, id_: str, revision: int) -> None:
-        """The task can be done after all."""
-        self._find(id_, revision)
-        self.problems.pop(id_, None)
-
-    def _find(self, id_: str, revision: int) -> WaitingTask:
-        """The task as it was seen. Raises `CommandRefused` when it is not open in that revision."""
-        task = self.open.get(id_)
-        if task is None:
-            raise CommandRefused(
-                "task-gone",
-                "This task is gone",
-                f"Task {id_} is not open: it was done or withdrawn. Look at what is asked for now.",
-            )
-        if task.revision != revision:
-            raise CommandRefused(
-                "task-changed",
-                "This task has changed",
-                f"Task {id_} is at revision {task.revision}, and revision {revision} was seen. Read it again.",
-            )
-        return task
+    routes = (
+        Route(
+            "POST",
+            "/tasks/{task}/problem/solved",
+            "solve_problem",
+            tag="actions",
+            body="SolvedBody",
+            body_text="The task can be done after all.",
+            watch=True,
+            may_say_why=False,
+        ),
+    )
+    kind: Literal["solve-problem"] = "solve-problem"

@@ -8,7 +8,7 @@ from collections.abc import Callable, Container, Iterator, Sequence
 import structlog
 
 from sequence_planner.automaton.automaton import State
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inbox, Inputs
 from sequence_planner.controller.io.monitor import Observing, record_view

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import ClearOverride, SetOverride
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.outputs import Outputs
@@ -48,19 +50,22 @@ class Overrides:
             if isinstance(stage, OverrideStage):
                 self._known[f"{resource}.{stage.name}"] = _Known(pipeline, resource, is_outgoing, stage)
 
-    def set(self, name: str, fields: Mapping[str, object], actor: str, now: float) -> None:
-        """Set these fields. Raises `CommandRefused` with what is allowed."""
-        known = self._find(name)
+    @handles(SetOverride)
+    def set(self, command: SetOverride, moment: Timestamp) -> None:
+        """Set the fields within their bounds."""
+        known = self._find(command.name)
         change = self._holder(known).set_override
         try:
-            change(known.pipeline, known.stage.name, fields, now, actor)
+            change(known.pipeline, known.stage.name, command.fields, moment.monotonic, command.actor.name)
         except ValueError as error:
-            raise CommandRefused("out-of-bounds", "The value is not allowed", f"{name}: {error}.", 422) from error
+            detail = f"{command.name}: {error}."
+            raise CommandRefused("out-of-bounds", "The value is not allowed", detail, 422) from error
 
-    def clear(self, name: str, now: float) -> None:
-        """Take back what is set, if anything is. Raises `CommandRefused` for a name that is none."""
-        known = self._find(name)
-        self._holder(known).clear_override(known.pipeline, known.stage.name, now)
+    @handles(ClearOverride)
+    def clear(self, command: ClearOverride, moment: Timestamp) -> None:
+        """Take back what is set, if anything is."""
+        known = self._find(command.name)
+        self._holder(known).clear_override(known.pipeline, known.stage.name, moment.monotonic)
 
     def _holder(self, known: _Known) -> Outputs | Clients | RunningPipelines:
         """Return where the pipeline runs."""

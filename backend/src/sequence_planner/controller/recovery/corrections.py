@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Protocol
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.tick import record_activity, supervised_start, update_operations
-from sequence_planner.controller.commands.commands import (
-    CommandRefused,
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused, GivenValue
+from sequence_planner.controller.commands.recovery import (
     ConfirmEstimates,
     CorrectEstimates,
     DecideOutputs,
-    GivenValue,
     UndoCorrection,
 )
 from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
@@ -166,16 +166,20 @@ def _specification(automaton: Automaton, name: str) -> SpecificationView:
 # A correction writes estimates and nothing else. It is shown with all that follows before it is made, is refused when
 # the state has moved since, and can be taken back in one step.
 
-CorrectionCommand = CorrectEstimates | UndoCorrection | ConfirmEstimates | DecideOutputs
-
 
 class Corrections:
-    """Takes corrections of the estimates of `execution`."""
+    """Takes corrections of the estimates of `execution`; `require_one` refuses what a second person has to approve."""
 
     def __init__(
-        self, execution: Executor, adviser: PlansOnRequest, beliefs: Beliefs, doubting: ConsistencyMonitor
+        self,
+        execution: Executor,
+        adviser: PlansOnRequest,
+        beliefs: Beliefs,
+        doubting: ConsistencyMonitor,
+        require_one: Callable[[Iterable[str]], None],
     ) -> None:
         self._execution = execution
+        self._require_one = require_one
         self._doubting = doubting
         self._previewing = Previewing(execution, adviser, beliefs, doubting)
         self._last: LastCorrectionView | None = None
@@ -195,18 +199,6 @@ class Corrections:
         obstacle = correcting_refused(self._execution)
         return await self._previewing.preview(self._estimates(values), None if obstacle is None else obstacle.detail)
 
-    def carry_out(self, command: CorrectionCommand, moment: Timestamp) -> None:
-        """Do what is asked for. Raises `CommandRefused`; nothing has changed then."""
-        match command:
-            case CorrectEstimates():
-                self._correct(command, moment)
-            case UndoCorrection():
-                self._undo(command, moment)
-            case ConfirmEstimates():
-                self._confirm(command, moment)
-            case DecideOutputs():
-                self._decide(command, moment)
-
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""
         if isinstance(command, CorrectEstimates):
@@ -221,7 +213,9 @@ class Corrections:
             raise _moved()
         return values
 
-    def _correct(self, command: CorrectEstimates, moment: Timestamp) -> None:
+    @handles(CorrectEstimates)
+    def correct(self, command: CorrectEstimates, moment: Timestamp) -> None:
+        """Give the estimates these values."""
         execution = self._execution
         values = self._correctable(command)
         before = {name: now for name in values if (now := execution.state[name]) is not None}
@@ -238,8 +232,11 @@ class Corrections:
             undoable=True,
         )
 
-    def _undo(self, command: UndoCorrection, moment: Timestamp) -> None:
+    @handles(UndoCorrection)
+    def undo(self, command: UndoCorrection, moment: Timestamp) -> None:
+        """Take the last correction back."""
         last = self._last
+        self._require_one(() if last is None else last.values)
         if last is None:
             raise CommandRefused(
                 "nothing-to-undo",
@@ -259,13 +256,17 @@ class Corrections:
         self._execution.correct(last.before, command.actor.name, command.reason, moment, taken_back)
         self._last = None
 
-    def _confirm(self, command: ConfirmEstimates, moment: Timestamp) -> None:
+    @handles(ConfirmEstimates)
+    def confirm(self, command: ConfirmEstimates, moment: Timestamp) -> None:
+        """Note that somebody has seen that the estimates are so."""
         values = self._estimates(command.values)
         if not self._is_so(values):
             raise _moved()
         self._execution.confirm(frozenset(values), command.actor.name, moment)
 
-    def _decide(self, command: DecideOutputs, moment: Timestamp) -> None:
+    @handles(DecideOutputs)
+    def decide(self, command: DecideOutputs, moment: Timestamp) -> None:
+        """Give the outputs these values."""
         values = self._decidable(command)
         self._execution.correct(values, command.actor.name, command.reason, moment)
 

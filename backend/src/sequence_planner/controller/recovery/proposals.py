@@ -13,7 +13,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
-from sequence_planner.controller.commands.commands import CommandRefused, CorrectEstimates, TakeErrand
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.recovery import CorrectEstimates, TakeErrand
 from sequence_planner.controller.io.inputs import LastKnown
 from sequence_planner.controller.planner_client import AIMED_WITHIN, WAITING, AdvisorClient, aim
 from sequence_planner.controller.recovery.stalls import StallDetector
@@ -49,7 +51,7 @@ MOST_KEPT = 64  # offers; older ones are gone
 class CorrectionDesk(Protocol):
     """The one who makes corrections, whoever that is."""
 
-    def carry_out(self, command: CorrectEstimates, moment: Timestamp) -> None:
+    def correct(self, command: CorrectEstimates, moment: Timestamp) -> None:
         """Make it. Raises `CommandRefused`; nothing has changed then."""
         ...
 
@@ -173,8 +175,9 @@ class Offers:
         (view,) = self._keep((aimed.offer,), revision)
         return view
 
+    @handles(TakeErrand)
     def take(self, command: TakeErrand, moment: Timestamp) -> None:
-        """Make the corrections of an offer and have its plan carried out. Raises `CommandRefused`."""
+        """Make the corrections of an offer and have its plan carried out."""
         kept = self._kept.get(command.offer)
         if kept is None:
             raise CommandRefused("proposal-gone", "The offer is gone", "Ask again what there is to do now.")
@@ -190,7 +193,7 @@ class Offers:
             correcting = CorrectEstimates(
                 actor=command.actor, reason=command.reason, values=values, revision=kept.revision
             )
-            self._corrections.carry_out(correcting, moment)
+            self._corrections.correct(correcting, moment)
         if offer.errand is not None:
             execution.take_errand(self._errand(offer, command, moment), moment)
 

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State
 from sequence_planner.automaton.tick import effect_writes
-from sequence_planner.controller.commands.commands import CommandRefused, TryAbility
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.controller.recovery.explain import ConditionContext, of_ability
 from sequence_planner.controller.views.wording import errand_under_way
 from sequence_planner.core.clock import Timestamp
@@ -127,8 +129,9 @@ class Trials:
         self._around = surroundings
         self.real_devices = real_devices
 
-    def carry_out(self, command: TryAbility, moment: Timestamp) -> None:
-        """Have it started in the next tick. Raises `CommandRefused`; nothing has changed then."""
+    @handles(TryAbility)
+    def begin(self, command: TryAbility, moment: Timestamp) -> None:
+        """Have it started in the next tick."""
         ability = self._execution.automaton.abilities.get(command.ability)
         if ability is None:
             detail = f"The station has no ability `{command.ability}`. Look at those it has."

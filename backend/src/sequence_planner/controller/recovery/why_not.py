@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.automaton import Operation
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskWhyNot
 from sequence_planner.controller.planner_client import AIMED_WITHIN, AdvisorClient, aim
 from sequence_planner.controller.recovery.explain import (

@@ -10,7 +10,7 @@ from typing import Final
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.controller.alarms.alarm import Consequences
-from sequence_planner.controller.commands.tasks import TaskHandler, TaskProblem
+from sequence_planner.controller.features.tasks import TaskHandler, TaskProblem
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs

@@ -8,7 +8,8 @@ from typing import Annotated
 from pydantic import Field
 
 from sequence_planner.analysis.report import AnalysisDocument
-from sequence_planner.controller.commands.commands import Act, ProblemKind
+from sequence_planner.controller.commands.approvals import Act
+from sequence_planner.controller.commands.tasks import ProblemKind
 from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.controller.views.part import Value, View
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.controller.commands.commands import CommandRefused, TakeErrand, TextPlace
+from sequence_planner.controller.commands.command import CommandRefused, TextPlace
+from sequence_planner.controller.commands.recovery import TakeErrand
 from sequence_planner.controller.planner_client import GOAL, GoalPlan
 from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.views.proposals import (

@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 from sqlalchemy import Connection
 
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.commands.commands import GivenValue
+from sequence_planner.controller.commands.command import GivenValue
 from sequence_planner.controller.views.part import View
 from sequence_planner.execution.record.codec import HistoryError
 from sequence_planner.history.client import HistoryProcess

@@ -15,7 +15,8 @@ from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt
 from sqlalchemy import Connection
 
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.commands.commands import CommandRefused, JobOperation, JobWait, SequenceJobs
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.jobs import JobOperation, JobWait, SequenceJobs
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.details import WorkMasterView
 from sequence_planner.controller.views.station import StationView

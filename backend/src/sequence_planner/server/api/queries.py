@@ -1,37 +1,40 @@
-"""Routes of live queries: ability definitions and trials, pipelines, ROS graph, explanations."""
+"""Routes of live queries: ability definitions, previews, recovery proposals, pipelines, ROS graph, explanations."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
 from fastapi import Path, Query, WebSocket
-from pydantic import Field, StrictBool
+from pydantic import Field
 
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.commands.commands import TryAbility
-from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, AskDefinition, AskWhyNot
-from sequence_planner.controller.views.details import AbilityDefinitionView, NetworkView, WhyNotView
+from sequence_planner.controller.commands.command import GivenValues
+from sequence_planner.controller.commands.queries import (
+    LONGEST_PREDICATE,
+    AboutFlows,
+    AboutPipelines,
+    AskAdvice,
+    AskCorrection,
+    AskDefinition,
+    AskGoal,
+    AskReset,
+    AskWhyNot,
+)
+from sequence_planner.controller.views.details import AbilityDefinitionView, CorrectionPreview, NetworkView, WhyNotView
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
-from sequence_planner.server.api.commands import ENGINEER, GoalBody
+from sequence_planner.controller.views.proposals import AdviceView, OfferView
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Controller, LiveView, Reason
+from sequence_planner.server.dependencies import JSON_ONLY, Body, Controller, LiveView
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.stream.broadcast import FlowsFeed, NetworkFeed
 from sequence_planner.server.stream.endpoints import serve
 
-# Abilities one by one: how one is defined, what of that holds now, and a trial of it alone.
+# Abilities one by one: how one is defined, and what of that holds now.
 
 LONGEST_ABILITY = 400  # characters
+OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
 abilities_router = interface(tags=["abilities"])
-
-
-class TrialBody(Body):
-    """`real_devices` confirms that devices may move which are not emulated ones."""
-
-    ability: Annotated[str, Field(min_length=1, max_length=LONGEST_ABILITY)]
-    real_devices: StrictBool = False
-    reason: Reason = None
 
 
 @abilities_router.get(
@@ -44,20 +47,6 @@ async def ability_definition(
 ) -> AbilityDefinitionView:
     """Its guards, actions and expected reactions as they are written, what of them holds now, and its last trial."""
     return await client.ask(AskDefinition(ability=name))
-
-
-@abilities_router.post(
-    "/test-runs",
-    status_code=204,
-    dependencies=[JSON_ONLY, allowed(Role.ENGINEER)],
-    responses=refused(404, 409, 422, 504),
-)
-async def start_test_run(body: TrialBody, client: Controller, actor: Actor) -> None:
-    """Start the ability alone, at once; `POST /operator-plans/stop` ends that. It takes control, and the paused mode.
-
-    409 `not-startable` says what its guards or the supervisor lack; `real-devices`: they have not been confirmed.
-    """
-    await client.send(TryAbility(actor=actor, ability=body.ability, real_devices=body.real_devices, reason=body.reason))
 
 
 # The pipelines: their typed graph, and what passes it, read once or as it goes on.
@@ -116,6 +105,72 @@ async def ros_stream(websocket: WebSocket) -> None:
     """Serve one client: the graph, and again whenever it has changed."""
     show: NetworkFeed = websocket.app.state.network_show
     await serve(websocket, show.latest)
+
+
+# What a correction would bring about, and plans that a person may take: what the advisor offers, a goal by hand, the
+# reset of an operation.
+#
+# Asking changes nothing. What is offered belongs to the state it was made for, and is refused once the station has
+# moved.
+
+corrections_router = interface(
+    tags=["corrections"], dependencies=[JSON_ONLY, OPERATOR], responses=refused(404, 409, 422, 504)
+)
+recovery_router = interface(tags=["recovery"], responses=refused(409, 504))
+operator_plans_router = interface(
+    "/operator-plans", tags=["recovery"], dependencies=[JSON_ONLY], responses=refused(409, 504)
+)
+
+
+class ValuesBody(Body):
+    """Estimated variables, each with the value that it is to have."""
+
+    values: GivenValues
+
+
+class GoalBody(Body):
+    """What shall hold, in the model's language."""
+
+    predicate: Annotated[str, Field(min_length=1, max_length=LONGEST_PREDICATE)]
+
+
+class ResetBody(Body):
+    """The operation whose precondition shall hold again."""
+
+    operation: Annotated[str, Field(min_length=1, max_length=200)]
+
+
+@corrections_router.post("/corrections/preview")
+async def preview_correction(body: ValuesBody, client: Controller) -> CorrectionPreview:
+    """What a correction would bring about: what it would violate, which abilities could start, the plan that follows.
+
+    Nothing is changed by asking, and it may be asked in every mode.
+    """
+    return await client.ask(AskCorrection(values=body.values))
+
+
+@recovery_router.get("/recovery/proposals", dependencies=[OPERATOR])
+async def recovery_proposals(client: Controller) -> AdviceView:
+    """Proven ways on from the present state, the least effort first, each with its plan.
+
+    409 `plan-running` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
+    """
+    return await client.ask(AskAdvice())
+
+
+@operator_plans_router.post("/goal-preview", dependencies=[ENGINEER])
+async def preview_goal(body: GoalBody, client: Controller) -> OfferView:
+    """A plan to whatever shall hold, to be looked at and perhaps taken.
+
+    422 `bad-predicate` names the place; 409 `goal-holds` and `no-plan` say why there is nothing to take.
+    """
+    return await client.ask(AskGoal(predicate=body.predicate))
+
+
+@operator_plans_router.post("/reset-preview", dependencies=[OPERATOR], responses=refused(404))
+async def preview_reset(body: ResetBody, client: Controller) -> OfferView:
+    """A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none."""
+    return await client.ask(AskReset(operation=body.operation))
 
 
 # What keeps an ability from starting, an operation from being active or done, or a goal from holding.

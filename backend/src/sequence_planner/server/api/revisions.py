@@ -13,7 +13,7 @@ from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.commands.production import Deploy
+from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.editor.draft import Draft
 from sequence_planner.editor.schemas.diff import ComparisonView, TransferView

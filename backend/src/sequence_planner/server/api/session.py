@@ -16,7 +16,7 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.auth.sessions import SignedIn
 from sequence_planner.auth.users import DEMONSTRATOR
 from sequence_planner.auth.watches import WatchState
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry

@@ -21,8 +21,8 @@ from sequence_planner.auth.oidc.settings import ProviderSettings
 from sequence_planner.auth.passwords import Passwords
 from sequence_planner.auth.sessions import LONGEST_IDLE, SignedIn, find_live
 from sequence_planner.auth.watches import Watch, WatchState
-from sequence_planner.controller.commands.commands import CommandRefused
-from sequence_planner.controller.commands.production import WithdrawControl
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import WithdrawControl
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.core.storage_error import StorageError

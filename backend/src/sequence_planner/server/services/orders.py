@@ -11,7 +11,8 @@ import structlog
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
-from sequence_planner.controller.commands.commands import CommandJob, CommandRefused, ForgetJob, TakeJob
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, TakeJob
 from sequence_planner.controller.commands.queries import AboutWorkMasters
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.details import WorkMastersView

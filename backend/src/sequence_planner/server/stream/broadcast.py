@@ -11,7 +11,7 @@ from typing import cast
 
 from pydantic import BaseModel
 
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AboutFlows
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.details import NetworkView

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from sequence_planner.automaton.automaton import Automaton, WorkMaster, target
-from sequence_planner.controller.commands.commands import (
-    CommandJob,
-    CommandRefused,
-    ForgetJob,
-    JobCommand,
-    JobWait,
-    SequenceJobs,
-    SetByOrder,
-    TakeJob,
-)
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard
 from sequence_planner.execution.executor import Executor
@@ -32,20 +25,6 @@ class JobHandler:
     def __init__(self, execution: Executor) -> None:
         self._execution = execution
 
-    def carry_out(self, command: JobCommand, moment: Timestamp) -> None:
-        """Do what is asked for. Raises `CommandRefused`; nothing has changed then."""
-        match command:
-            case TakeJob():
-                self._take(command, moment)
-            case SequenceJobs(waits=waits):
-                self._sequence(waits, command.actor.name, moment)
-            case CommandJob():
-                self._command(command, moment)
-            case ForgetJob(job=job):
-                self._forget(job, command.actor.name, moment)
-            case SetByOrder(on=on, reason=reason):
-                self._set_by_order(on, command.actor.name, reason, moment)
-
     @property
     def _jobs(self) -> Jobs:
         return self._execution.conduct.jobs
@@ -54,7 +33,9 @@ class JobHandler:
     def _automaton(self) -> Automaton:
         return self._execution.automaton
 
-    def _take(self, command: TakeJob, moment: Timestamp) -> None:
+    @handles(TakeJob)
+    def take(self, command: TakeJob, moment: Timestamp) -> None:
+        """Let the job be under way, if nothing of another one is in its way."""
         known = self._jobs.get(command.job)
         if known is not None and known.work_master == command.work_master:
             return
@@ -77,17 +58,19 @@ class JobHandler:
         by = command.actor.name
         self._execution.take_job(command.job, command.title, command.work_master, by, moment)
 
-    def _sequence(self, given: Iterable[JobWait], by: str, moment: Timestamp) -> None:
+    @handles(SequenceJobs)
+    def sequence(self, command: SequenceJobs, moment: Timestamp) -> None:
+        """Keep the order, without what is not under way."""
         known = self._steps()
         waits: dict[Step, frozenset[Step]] = {}
-        for each in given:
+        for each in command.waits:
             step = (each.job, each.operation)
             before = frozenset((other.job, other.operation) for other in each.for_) & known.keys()
             if step in known and before:
                 waits[step] = waits.get(step, frozenset()) | before
         self._require_no_circle(known, waits)
         if waits != self._jobs.waits:
-            self._execution.sequence_jobs(waits, by, moment)
+            self._execution.sequence_jobs(waits, command.actor.name, moment)
 
     def _steps(self) -> dict[Step, frozenset[Step]]:
         """All operations of jobs under way, each with those of its job that come before it."""
@@ -106,7 +89,9 @@ class JobHandler:
             detail = f"Each of these would have to be completed before the next: {circle}."
             raise CommandRefused("cyclic-order", "The order leads into a circle", detail, 422) from None
 
-    def _command(self, command: CommandJob, moment: Timestamp) -> None:
+    @handles(CommandJob)
+    def command(self, command: CommandJob, moment: Timestamp) -> None:
+        """Let the job pause, go on, stop or abort."""
         job, act, execution = self._known(command.job), JobAct(command.what), self._execution
         if not job.under_way:
             if act is JobAct.ABORT or act is JobAct.STOP:
@@ -115,23 +100,27 @@ class JobHandler:
         if self._jobs.told(job.id, act, execution.active, self._automaton, moment) != self._jobs:
             execution.command_job(job.id, act, command.actor.name, command.reason or "", moment)
 
-    def _forget(self, name: str, by: str, moment: Timestamp) -> None:
-        job = self._jobs.get(name)
+    @handles(ForgetJob)
+    def forget(self, command: ForgetJob, moment: Timestamp) -> None:
+        """Show a job no longer that has ended."""
+        job = self._jobs.get(command.job)
         if job is None:
             return
         if job.under_way:
             detail = f"Job {job.id} ({job.title}) is {job.state}. Abort it, or wait for its end."
             raise CommandRefused("job-under-way", "The job has not ended", detail)
-        self._execution.forget_job(name, by, moment)
+        self._execution.forget_job(job.id, command.actor.name, moment)
 
-    def _set_by_order(self, on: bool, by: str, why: str, moment: Timestamp) -> None:
-        if on == self._jobs.by_order:
+    @handles(SetByOrder)
+    def set_by_order(self, command: SetByOrder, moment: Timestamp) -> None:
+        """Let the station work by order, or freely."""
+        if command.on == self._jobs.by_order:
             return
-        if not on and (under_way := self._jobs.under_way):
+        if not command.on and (under_way := self._jobs.under_way):
             named = ", ".join(job.id for job in under_way)
             detail = f"Jobs are under way: {named}. Wait for their end, or stop or abort them."
             raise CommandRefused("jobs-under-way", "Jobs are under way", detail)
-        self._execution.set_by_order(on, by, why, moment)
+        self._execution.set_by_order(command.on, command.actor.name, command.reason, moment)
 
     def _known(self, name: str) -> Job:
         job = self._jobs.get(name)

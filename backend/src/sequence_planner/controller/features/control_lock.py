@@ -6,9 +6,12 @@ has it, since when, and from whom it was taken.
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
 from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.clock import Timestamp
 
 
 class ControlLock:
@@ -21,37 +24,37 @@ class ControlLock:
         """Return who is in control; None for nobody."""
         return self._holder
 
-    def take(self, actor: Actor, over: str | None, now: float) -> None:
-        """Let the session of `actor` be in control, `now` in seconds since the epoch.
-
-        `over` is the session from which it is meant to be taken. Raises `CommandRefused` when another is in control by
-        now, or `actor` is in no session.
-        """
+    @handles(TakeControl)
+    def take(self, command: TakeControl, moment: Timestamp) -> None:
+        """Let the session of the actor be in control, unless another is by now than the one from which it is taken."""
+        actor = command.actor
         if actor.session is None:
             detail = "Only a person who is signed in can take control; a key or a watch cannot."
             raise CommandRefused("no-session", "Control is for people", detail, 403)
         holder = self._holder
         if holder is not None and holder.session == actor.session:
             return
-        if holder is not None and holder.session != over:
+        if holder is not None and holder.session != command.over:
             detail = f"{holder.name} has control by now. Speak to them, then take it over from them."
             raise CommandRefused("control-changed", "Somebody else is in control", detail)
         self._holder = ControlView(
             session=actor.session,
             person=actor.id,
             name=actor.name,
-            since=now,
+            since=moment.epoch,
             taken_from=None if holder is None else holder.name,
         )
 
-    def release(self, actor: Actor) -> None:
-        """Let nobody be in control. Raises `CommandRefused` when `actor` is not."""
-        self.require(actor)
+    @handles(ReleaseControl)
+    def release(self, command: ReleaseControl, moment: Timestamp) -> None:
+        """Let nobody be in control."""
+        self.require(command.actor)
         self._holder = None
 
-    def withdraw(self, session: str) -> None:
-        """That session has ended, and is not in control any more."""
-        if self._holder is not None and self._holder.session == session:
+    @handles(WithdrawControl)
+    def withdraw(self, command: WithdrawControl, moment: Timestamp) -> None:
+        """A session has ended, and is not in control any more."""
+        if self._holder is not None and self._holder.session == command.session:
             self._holder = None
 
     def require(self, actor: Actor) -> None:

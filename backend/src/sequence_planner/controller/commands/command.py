@@ -1,0 +1,116 @@
+"""The base of all commands. Each declares once its fields, its routes, who may give it, and what is recorded of it.
+
+Whoever adds one writes its class beside those of the same subject, and a method for it in a feature (`bus.handles`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StrictStr
+
+from sequence_planner.core.actor import Actor
+from sequence_planner.journal.entry import LONGEST_REASON
+
+LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
+
+Why = Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
+Revision = Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
+GivenValue = StrictBool | StrictInt | StrictStr
+GivenValues = Annotated[dict[str, GivenValue], Field(min_length=1, max_length=200)]
+
+
+@dataclass(frozen=True)
+class Route:
+    """A route of the REST interface, on which a command is given.
+
+    `path` names some of the command's fields, the body has the others.
+
+    `operation` is what generated clients call it, `body` the name of the body's schema, which has the reason where one
+    `may_say_why`. `text` is what the route does where that is not the command's docstring. `role` is the least role of
+    a person (`auth.roles.Role`); with `watch` watches may as well, for tasks of their resource. `types` are those of
+    fields that are required and narrower on this route, `names` what fields are called in the path where that is not
+    their name.
+    """
+
+    method: Literal["POST", "PUT", "DELETE"]
+    path: str
+    operation: str
+    tag: str
+    body: str = ""
+    body_text: str = ""
+    text: str = ""
+    role: Literal["operator", "engineer"] = "operator"
+    watch: bool = False
+    may_say_why: bool = True
+    refusals: tuple[int, ...] = (409, 504)
+    types: Mapping[str, Any] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)
+
+
+class Command(BaseModel):
+    """`actor` is who asks, `reason` why, in that person's words. `subject` is on what it acts, for the record.
+
+    What moves devices is for the one session in control. `harmless` is what only ever stops them: it is carried out
+    even where it cannot be recorded. `kind` is what the record calls it, for good.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    routes: ClassVar[tuple[Route, ...]] = ()
+    for_control: ClassVar[bool] = False
+    about: ClassVar[str] = ""  # its subject, with its fields in braces
+    actor: Actor
+    reason: str | None = Field(default=None, max_length=LONGEST_REASON)
+    kind: str
+
+    @property
+    def needs_control(self) -> bool:
+        """True if its actor must be in control."""
+        return self.for_control
+
+    @property
+    def overtaken_by_pause(self) -> bool:
+        """True if it is void where somebody pauses the station while it waits for its record."""
+        return self.needs_control
+
+    @property
+    def harmless(self) -> bool:
+        """True if it can only bring devices to rest."""
+        return False
+
+    @property
+    def subject(self) -> str:
+        """On what it acts, for the record."""
+        return self.about.format_map(self.__dict__)
+
+    @property
+    def for_two(self) -> Collection[str]:
+        """The variables that it writes, of which some may ask for a second person's approval."""
+        return ()
+
+
+class TextPlace(BaseModel):
+    """What is wrong within a text that was sent, and where: from `start` to before `end`, in Unicode characters."""
+
+    model_config = ConfigDict(frozen=True)
+    start: int
+    end: int
+    message: str
+
+
+class CommandRefused(Exception):
+    """The controller does not carry out a command.
+
+    `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
+    `status` is the HTTP status that says the same. `place` is where a text cannot be read.
+    """
+
+    def __init__(self, slug: str, title: str, detail: str, status: int = 409, place: TextPlace | None = None) -> None:
+        super().__init__(detail)
+        self.slug = slug
+        self.title = title
+        self.detail = detail
+        self.status = status
+        self.place = place

@@ -1,0 +1,96 @@
+"""Forces: a measured variable or an output has a value that a person gives it, for a stated time.
+
+For commissioning, where a device is not there yet, or must be made to do something. What is forced ends by itself.
+"""
+
+from __future__ import annotations
+
+from sequence_planner.automaton.automaton import Kind, State
+from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
+from sequence_planner.language.printer import print_value
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import contains
+from sequence_planner.planning.recovery_path import violated
+
+_FORCED = (Kind.MEASURED, Kind.OUTPUT)
+
+
+class Forces:
+    """Takes commands about the forces of `execution`."""
+
+    def __init__(self, execution: Executor) -> None:
+        self._execution = execution
+
+    def check(self, command: ForceVariable) -> None:
+        """Raises `CommandRefused` when it could not be carried out now."""
+        self._require_known(command.name)
+        variable = self._execution.automaton.variables[command.name]
+        if variable.kind not in _FORCED:
+            detail = f"`{variable.name}` is {variable.kind}, and only measured variables and outputs can be forced."
+            if variable.kind is Kind.ESTIMATED:
+                detail = f"{detail} If it is not true, correct it instead."
+            raise CommandRefused("not-forceable", "It cannot be forced", detail, 422)
+        if not contains(variable.type, command.value):
+            detail = f"`{variable.name}` is one of {variable.type}, and {print_value(command.value)} is none of these."
+            raise CommandRefused("not-in-domain", "No such value", detail, 422)
+        self._require_safety(command)
+
+    @handles(ForceVariable)
+    def force(self, command: ForceVariable, moment: Timestamp) -> None:
+        """Let the variable have the value for that time."""
+        self.check(command)
+        until = Timestamp(moment.epoch + command.seconds, moment.monotonic + command.seconds)
+        self._execution.force(command.name, command.value, until, command.actor.name, command.reason)
+
+    @handles(ReleaseForce)
+    def release(self, command: ReleaseForce, moment: Timestamp) -> None:
+        """Let the variable be as it comes."""
+        self._require_known(command.name)
+        if command.name in self._execution.conduct.forces:
+            self._execution.release(command.name)
+
+    def _require_known(self, name: str) -> None:
+        known = self._execution.automaton.variables
+        if name not in known:
+            detail = f"The station has no variable `{name}`{suggestion(name, known) or '.'}"
+            raise CommandRefused("unknown-variable", "There is no such variable", detail, 404)
+
+    def _require_safety(self, command: ForceVariable) -> None:
+        """Raises `CommandRefused` when the force would lead out of the safe states, or farther where it is outside.
+
+        From outside an output, which moves devices, is forced only back into them.
+        """
+        execution = self._execution
+        before, after = execution.state, execution.corrected({command.name: command.value})
+        broken = [name for name in self._violated(after) if name not in self._violated(before)]
+        if not broken and not self._leaves(before, after, moving=command.name in execution.automaton.outputs):
+            return
+        specifications = execution.automaton.specifications
+        named = " and ".join(f"“{specifications[name].title}” ({name})" for name in broken)
+        if broken:
+            why = f"It would violate {named}."
+        elif self._certainly_outside(before):
+            why = "The station is outside its safe states, and would be so with it too."
+        else:
+            why = "From there a device could bring about what is forbidden, or rest could no longer be reached."
+        raise CommandRefused("force-unsafe", "That is not safe", f"{why} Nothing was forced.")
+
+    def _leaves(self, before: State, after: State, *, moving: bool) -> bool:
+        safe = self._execution.supervisor.safe
+        if safe.includes(after):
+            return False
+        if safe.includes(before):
+            return True
+        # While values are unknown neither may be certain; then it is refused where it makes the worse certain.
+        return self._certainly_outside(after) and (moving or not self._certainly_outside(before))
+
+    def _certainly_outside(self, state: State) -> bool:
+        """Return whether no values of what is unknown make the state a safe one."""
+        return bool(self._execution.supervisor.safe.nearest(state)) or bool(self._violated(state))
+
+    def _violated(self, state: State) -> tuple[str, ...]:
+        return violated(self._execution.automaton, state)

@@ -1,0 +1,144 @@
+"""Modes, production, steps and service: what is asked for is done if the station allows it now, or refused with why."""
+
+from __future__ import annotations
+
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.execution import (
+    Deploy,
+    EnterRestart,
+    LeaveRestart,
+    SetMode,
+    SetService,
+    SetStepping,
+    StartProduction,
+    TakeStep,
+)
+from sequence_planner.controller.commands.recovery import StopErrand
+from sequence_planner.controller.io.devices import Devices
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
+from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
+from sequence_planner.controller.views.wording import errand_under_way
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
+
+
+class Modes:
+    """Takes commands about how `execution` executes."""
+
+    def __init__(
+        self, execution: Executor, outside: SafeStateMonitor, devices: Devices, doubting: ConsistencyMonitor
+    ) -> None:
+        self._execution = execution
+        self._outside = outside
+        self._devices = devices
+        self._doubting = doubting
+
+    @handles(SetMode)
+    def set_mode(self, command: SetMode, moment: Timestamp) -> None:
+        """Go on, pause or hold; to go on takes a station that can."""
+        execution, mode, by = self._execution, Mode(command.mode), command.actor.name
+        if mode is Mode.AUTOMATIC:
+            self._require_readiness()
+        if execution.mode is Mode.RESTART:
+            # Pausing and holding are for everybody; restart mode is left by its own command, and by that alone.
+            if mode is Mode.HOLD:
+                execution.call_off(by, moment)
+            elif execution.errand is not None:
+                execution.stop_errand(by, moment)
+        elif mode is not execution.mode or execution.errand is not None or mode is Mode.HOLD:
+            execution.change_mode(mode, by, moment)
+
+    @handles(EnterRestart)
+    def enter_restart(self, command: EnterRestart, moment: Timestamp) -> None:
+        """Go into restart mode, where it is not in it."""
+        if self._execution.mode is not Mode.RESTART:
+            self._execution.change_mode(Mode.RESTART, command.actor.name, moment)
+
+    @handles(LeaveRestart)
+    def leave_restart(self, command: LeaveRestart, moment: Timestamp) -> None:
+        """Go out of restart mode, where nothing is carried out in it."""
+        execution = self._execution
+        if execution.mode is not Mode.RESTART:
+            detail = f"The mode is {execution.mode}: there is nothing to leave."
+            raise CommandRefused("not-in-restart", "The station is not in restart mode", detail)
+        if execution.errand is not None:
+            detail = f"{execution.errand.title} is being carried out. Wait for its end, or stop it."
+            raise CommandRefused("plan-running", "Something else is being carried out", detail)
+        execution.change_mode(Mode.PAUSED, command.actor.name, moment)
+
+    @handles(SetStepping)
+    def set_stepping(self, command: SetStepping, moment: Timestamp) -> None:
+        """Let starts wait for steps, or not."""
+        self._execution.set_stepping(command.on)
+
+    @handles(TakeStep)
+    def take_step(self, command: TakeStep, moment: Timestamp) -> None:
+        """Let one start be taken, where starts wait for steps."""
+        if not self._execution.conduct.stepping:
+            detail = "Starts do not wait for steps. Switch stepping on first."
+            raise CommandRefused("not-stepping", "The station is not stepping", detail)
+        self._execution.take_step()
+
+    @handles(SetService)
+    def set_service(self, command: SetService, moment: Timestamp) -> None:
+        """Take something that the station has out of service, or put it back."""
+        self._require_known(command.of, command.name)
+        self._execution.set_service(
+            command.of, command.name, command.in_service, command.actor.name, command.reason, moment
+        )
+
+    @handles(StopErrand)
+    def stop_errand(self, command: StopErrand, moment: Timestamp) -> None:
+        """End what is carried out, if anything is."""
+        if self._execution.errand is not None:
+            self._execution.stop_errand(command.actor.name, moment)
+
+    @handles(StartProduction)
+    def start_production(self, command: StartProduction, moment: Timestamp) -> None:
+        """Start it, where nobody else commands the devices and none would move at once."""
+        if self._execution.production is Production.STARTED:
+            raise CommandRefused("production-started", "Production is started", "Production has been started already.")
+        self._devices.see_network()
+        if rivals := self._devices.network.rivals:
+            detail = f"{'; '.join(rivals.values())}. Stop the other one."
+            raise CommandRefused("other-controller", "Somebody else commands the devices", detail)
+        if undecided := self._doubting.undecided:
+            named = ", ".join(undecided)
+            detail = f"Devices would move as soon as it is published what {named} said before. Decide on each first."
+            raise CommandRefused("outputs-unconfirmed", "It is not decided what devices shall do", detail)
+        self._execution.start_production()
+
+    @handles(Deploy)
+    def require_standing(self, command: Deploy, moment: Timestamp) -> None:
+        """Let another model take over (which the process does, as this controller ends) where nothing is started."""
+        execution = self._execution
+        if execution.errand is not None:
+            raise errand_under_way(execution.errand)
+        if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
+            detail = "Operations are executed automatically. Pause the station first."
+            raise CommandRefused("in-automatic", "The station is at work", detail)
+
+    def _require_readiness(self) -> None:
+        """Raises `CommandRefused` unless operations can be executed from here."""
+        execution, situation = self._execution, self._outside.situation
+        if execution.mode is Mode.RESTART:
+            detail = "Leave restart mode first; to go on is another decision."
+            raise CommandRefused("in-restart", "The station is in restart mode", detail)
+        if execution.errand is not None:
+            raise errand_under_way(execution.errand)
+        if situation is not None and situation.certain:
+            detail = f"{self._outside.describe(situation)} Enter restart mode and see which ways lead back."
+            raise CommandRefused("outside-safe-states", "The station is outside its safe states", detail)
+
+    def _require_known(self, of: ServiceKind, name: str) -> None:
+        automaton = self._execution.automaton
+        known = {
+            ServiceKind.RESOURCE: automaton.resources,
+            ServiceKind.ABILITY: automaton.abilities,
+            ServiceKind.OPERATION: automaton.operations,
+        }[of]
+        if name not in known:
+            detail = f"The station has no {of} `{name}`. Look at what it has."
+            raise CommandRefused("unknown-name", "There is no such thing", detail, 404)

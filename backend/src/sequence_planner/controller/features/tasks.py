@@ -1,0 +1,124 @@
+"""Tasks for people, their acknowledgements as measured variables, and what keeps people from doing them.
+
+A task is open as long as a human ability is executing. An acknowledgement names the task and its revision, so a late or
+repeated one never completes another task, be it one of a controller that has been started again since. It makes the
+ability's variable true until the ability has finished. A problem is told of a task in the same way; it changes nothing
+but that people are told of it, until the task is over or somebody says that it is solved.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.tasks import (
+    AcknowledgeTask,
+    ProblemKind,
+    ReportProblem,
+    SolveProblem,
+    TaskCommand,
+)
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.language.types import Value
+
+
+@dataclass(frozen=True)
+class WaitingTask:
+    """A task that waits for a person; `created` in seconds since the epoch."""
+
+    id: str
+    revision: int
+    ability: str
+    title: str
+    text: str
+    created: float
+
+
+@dataclass(frozen=True)
+class TaskProblem:
+    """An obstacle that keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if
+    told.
+    """
+
+    by: str
+    since: float
+    why: str
+    what: ProblemKind | None = None
+
+
+class TaskHandler:
+    """The open tasks of a station; `fed` are the variables that topics feed, such as those of a real watch."""
+
+    def __init__(self, automaton: Automaton, fed: Collection[str] = ()) -> None:
+        self._humans = {a.name: a for a in automaton.abilities.values() if a.human is not None}
+        variables = {a.human.acknowledgement for a in self._humans.values() if a.human is not None}
+        self._own = sorted(variables.difference(fed))
+        self._given: dict[str, str] = {}  # acknowledged variable: the ability whose task it was
+        self._life = secrets.token_hex(4)
+        self._numbers = 0
+        self.open: dict[str, WaitingTask] = {}
+        self.problems: dict[str, TaskProblem] = {}  # by task
+
+    def measured(self) -> dict[str, Value | None]:
+        """The acknowledgement variables; of those that topics feed, the ones that were acknowledged here."""
+        return {**dict.fromkeys(self._own, False), **dict.fromkeys(self._given, True)}
+
+    def update(self, state: State, finished: Iterable[str], ended: Iterable[str], now: float) -> None:
+        """After a tick: open and close tasks, and let go of acknowledgements that have done their work.
+
+        `finished` are the abilities that took their finish actions, `ended` those of them that had been running.
+        """
+        done, over = set(finished), set(ended)
+        self._given = {variable: ability for variable, ability in self._given.items() if ability not in done}
+        executing = {name for name, ability in self._humans.items() if state[ability.flag("executing")] is True}
+        # An ability that ended and was started again in the same tick is another task.
+        self.open = {id_: task for id_, task in self.open.items() if task.ability in executing - over}
+        for name in sorted(executing - {task.ability for task in self.open.values()}):
+            human = self._humans[name].human
+            assert human is not None
+            self._numbers += 1
+            id_ = f"{self._life}-{self._numbers}"
+            self.open[id_] = WaitingTask(id_, 1, name, self._humans[name].title, human.text, now)
+        self.problems = {id_: problem for id_, problem in self.problems.items() if id_ in self.open}
+
+    @handles(AcknowledgeTask)
+    def acknowledge(self, command: AcknowledgeTask, moment: Timestamp) -> None:
+        """A person says that the task is done."""
+        ability = self._find(command).ability
+        human = self._humans[ability].human
+        assert human is not None
+        self._given[human.acknowledgement] = ability
+
+    @handles(ReportProblem)
+    def report(self, command: ReportProblem, moment: Timestamp) -> None:
+        """A person cannot do the task. Of a problem that is known already, what was said last is told."""
+        task, known = self._find(command), self.problems.get(command.task)
+        since = moment.epoch if known is None else known.since
+        self.problems[task.id] = TaskProblem(command.actor.name, since, command.reason or "", command.what)
+
+    @handles(SolveProblem)
+    def solve(self, command: SolveProblem, moment: Timestamp) -> None:
+        """The task can be done after all."""
+        self.problems.pop(self._find(command).id, None)
+
+    def _find(self, command: TaskCommand) -> WaitingTask:
+        """The task as it was seen. Raises `CommandRefused` when it is not open in that revision."""
+        id_, revision = command.task, command.revision
+        task = self.open.get(id_)
+        if task is None:
+            raise CommandRefused(
+                "task-gone",
+                "This task is gone",
+                f"Task {id_} is not open: it was done or withdrawn. Look at what is asked for now.",
+            )
+        if task.revision != revision:
+            raise CommandRefused(
+                "task-changed",
+                "This task has changed",
+                f"Task {id_} is at revision {task.revision}, and revision {revision} was seen. Read it again.",
+            )
+        return task

@@ -1,0 +1,188 @@
+"""A command that is declared in one place has its route, role, control and record, and whoever carries it out."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+import httpx
+import pytest
+from pydantic import Field
+
+from controller.bench import IDENTITY, cell
+from controller.journalling import journal
+from sequence_planner.auth.roles import Role
+from sequence_planner.controller.commands.audit import CommandAudit
+from sequence_planner.controller.commands.bus import CommandBus, handles
+from sequence_planner.controller.commands.command import Command, CommandRefused, Route, Why
+from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
+from sequence_planner.controller.commands.registry import COMMANDS
+from sequence_planner.controller.controller import Controller as RealController
+from sequence_planner.controller.features.control_lock import ControlLock
+from sequence_planner.core.actor import Actor, ActorKind
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.db.database import Database
+from sequence_planner.journal.audit import read
+from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.ros.transports.memory import MemoryNetwork
+from sequence_planner.server.api.commands import add_routes
+from sequence_planner.server.interface import interface
+from sequence_planner.server.settings import Settings
+
+from .running import Controller, Loop, Server
+
+
+class SetLamp(Command):
+    """Light a lamp. It takes control."""
+
+    routes = (
+        Route(
+            "PUT",
+            "/lamps/{lamp}",
+            "set_lamp",
+            tag="modes",
+            body="LampBody",
+            body_text="How bright it is to be, and why.",
+            role="engineer",
+        ),
+    )
+    kind: Literal["set-lamp"] = "set-lamp"
+    for_control = True
+    about = "lamp {lamp}"
+    reason: Why
+    lamp: Annotated[str, Field(max_length=20)]
+    brightness: Annotated[int, Field(ge=0, le=9)]
+
+
+class Lamps:
+    """Those of a hall."""
+
+    def __init__(self) -> None:
+        self.brightness = {"door": 0}
+
+    @handles(SetLamp)
+    def set(self, command: SetLamp, moment: Timestamp) -> None:
+        """Light it."""
+        if command.lamp not in self.brightness:
+            raise CommandRefused("no-lamp", "There is no such lamp", f"There is no `{command.lamp}`.", 404)
+        self.brightness[command.lamp] = command.brightness
+
+
+class Hall(Controller):
+    """A controller with lamps, which records commands in a database and carries them out."""
+
+    def __init__(self, loop: Loop, settings: Settings, database: Database) -> None:
+        super().__init__(loop, settings.controller_socket)
+        self.lamps, self.lock = Lamps(), ControlLock()
+        self.audit = CommandAudit(database, lambda why: None)
+        self.bus = CommandBus(
+            (self.lamps, self.lock),
+            (SetLamp, TakeControl, ReleaseControl, WithdrawControl),
+            in_control=self.lock,
+            require_one=lambda names: None,
+            real_devices=list,
+        )
+
+    async def handle(self, command: Command) -> None:
+        async def act(command: Command) -> None:
+            self.bus.execute(command, Timestamp.now())
+
+        await self.audit.carry_out(command, dict, act)
+
+
+@pytest.fixture
+def database() -> Iterator[Database]:
+    with journal() as database:
+        yield database
+
+
+@pytest.fixture
+def controller(
+    loop: Loop, settings: Settings, database: Database, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Controller]:
+    monkeypatch.setitem(COMMANDS, "set-lamp", SetLamp)
+    controller = Hall(loop, settings, database)
+    controller.start()
+    yield controller
+    controller.stop()
+    loop.run(controller.audit.close())
+
+
+@pytest.fixture
+def lit(server: Server) -> Server:
+    """The server, with the routes of the command."""
+    router = interface()
+    add_routes(router, SetLamp)
+    server.app.router.routes.extend(router.routes)
+    return server
+
+
+def light(client: httpx.Client, lamp: str = "door", **body: Any) -> httpx.Response:  # noqa: ANN401
+    return client.put(f"/api/v1/lamps/{lamp}", json={"brightness": 7, "reason": "it is dark", **body})
+
+
+def entries(database: Database) -> list[Entry]:
+    """What is recorded, in order."""
+    with database.reading() as connection:
+        return [each.entry for each in read(connection)[::-1]]
+
+
+def test_its_fields_are_those_of_the_route(lit: Server) -> None:
+    operation = lit.app.openapi()["paths"]["/api/v1/lamps/{lamp}"]["put"]
+    assert (operation["operationId"], operation["x-role"]) == ("set_lamp", "engineer")
+    assert operation["description"] == "Light a lamp. It takes control."
+    body = lit.app.openapi()["components"]["schemas"]["LampBody"]
+    assert body["required"] == ["brightness", "reason"]
+    assert body["properties"]["brightness"]["maximum"] == 9
+    with lit.client(Role.ENGINEER) as engineer:
+        assert light(engineer, brightness=10).json()["errors"][0]["field"] == "body.brightness"
+        assert light(engineer, lamp="x" * 21).json()["errors"][0]["field"] == "path.lamp"
+        assert light(engineer, reason=None).status_code == 422
+        assert light(engineer, colour="red").json()["errors"][0]["field"] == "body.colour"
+
+
+def test_its_role_and_who_is_in_control_decide_and_what_became_of_it_is_recorded(
+    lit: Server, controller: Hall, database: Database
+) -> None:
+    with lit.client() as nobody, lit.client(Role.OPERATOR) as operator:
+        assert (light(nobody).status_code, light(operator).status_code) == (401, 403)
+    token, signed_in = lit.session(person := lit.person(Role.ENGINEER))
+    with lit.client(token=token) as engineer:
+        assert entries(database) == [], "whoever may not is not recorded"
+        assert light(engineer).json()["type"] == "/problems/control-needed"
+        actor = Actor(kind=ActorKind.PERSON, id=person.id, name=person.name, session=signed_in.session)
+        controller.bus.execute(TakeControl(actor=actor, over=None), Timestamp.now())
+        assert controller.lamps.brightness == {"door": 0}
+        assert light(engineer).status_code == 204
+        assert controller.lamps.brightness == {"door": 7}
+        assert light(engineer, lamp="gate").json()["type"] == "/problems/no-lamp"
+    assert [(each.subject, each.outcome, each.details.get("because")) for each in entries(database)] == [
+        ("lamp door", Outcome.REQUESTED, None),
+        ("lamp door", Outcome.REFUSED, "control-needed"),
+        ("lamp door", Outcome.REQUESTED, None),
+        ("lamp door", Outcome.DONE, None),
+        ("lamp gate", Outcome.REQUESTED, None),
+        ("lamp gate", Outcome.REFUSED, "no-lamp"),
+    ]
+    done = entries(database)[3]
+    assert (done.actor.name, done.action, done.reason) == (person.name, "set-lamp", "it is dark")
+    assert done.details == {"lamp": "door", "brightness": 7}
+
+
+def test_a_command_that_nobody_handles_or_two_do_is_found_when_the_controller_is_built(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(COMMANDS, "set-lamp", SetLamp)
+    station, supervisor = cell()
+
+    async def built() -> None:
+        transport = MemoryNetwork().join(station.registry, "sequence_planner", asyncio.get_running_loop())
+        with journal() as database:
+            RealController(IDENTITY, station, supervisor, transport, database)
+
+    with pytest.raises(ValueError, match="no feature handles SetLamp"):
+        asyncio.run(built())
+    lock = ControlLock()
+    with pytest.raises(ValueError, match="SetLamp is handled twice"):
+        CommandBus((Lamps(), Lamps(), lock), (), in_control=lock, require_one=lambda names: None, real_devices=list)
