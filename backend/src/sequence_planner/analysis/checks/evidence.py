@@ -307,7 +307,7 @@ class Again:
 
     @cached_property
     def _now(self) -> Sequence[TransitionStep]:
-        return [*self._plant.helpful, *(step for steps in self._plant.starts.values() for step in steps)]
+        return [*self._plant.helpful, *self._plant.all_starts]
 
     @cached_property
     def _before(self) -> Sequence[TransitionStep] | None:
@@ -321,7 +321,7 @@ class Again:
         if not domains.keys() & written_afterwards(automaton, order) <= diagrams.bits_after.keys():
             return None
         before = Plant(automaton, order, diagrams=diagrams)
-        return [*before.helpful, *(step for steps in before.starts.values() for step in steps)]
+        return [*before.helpful, *before.all_starts]
 
 
 def _is_closed(states: Function, steps: Iterable[TransitionStep], within: Function) -> bool:
