@@ -22,7 +22,7 @@ from sequence_planner.language.syntax import And, Expression, variables
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.efa_document import read_plain
 from sequence_planner.synthesis import guards as saying
-from sequence_planner.synthesis.guards import SupervisorGuard, shown_guards
+from sequence_planner.synthesis.guards import Restrictions, SupervisorGuard, shown_guards
 from sequence_planner.synthesis.supervisor import Supervision, relevant
 from sequence_planner.synthesis.transition_relation import Plant
 
@@ -292,7 +292,14 @@ def check_put_back(automaton: Automaton) -> None:
     supervision = Supervision(Plant(automaton, names))
     if not supervision.possible:
         return
-    guarded = Supervision(Plant(with_guards(automaton, shown_guards(supervision)), names))
+    whole = Restrictions(supervision, of_safe=True)  # as where too many states are reached
+    check_needless(automaton, supervision, {name: whole.guard(name) for name in whole.starts})
+    check_needless(automaton, supervision, shown_guards(supervision))
+
+
+def check_needless(automaton: Automaton, supervision: Supervision, guards: Mapping[str, SupervisorGuard]) -> None:
+    names = tuple(automaton.variables)
+    guarded = Supervision(Plant(with_guards(automaton, guards), names))
     assert guarded.possible
 
     def members(of: Supervision, supervised: bool) -> set[tuple[object, ...]]:

@@ -64,9 +64,10 @@ def analyses(
         found = replace(found, warnings=tuple(asked.warnings()))
         if not asked.left:
             found = _bounded(found, automaton, asked.evidence)
-        yield replace(found, evidence=None if asked.left else asked.evidence)
-        restrictions = Restrictions(supervision)
+        yield found
+        restrictions = Restrictions(supervision, of_safe=evidence is not None and evidence.guards_of_safe)
         found = replace(found, guarded=tuple(start for starts in restrictions.starts.values() for start in starts))
+        yield replace(found, evidence=None if asked.left else _for_next_time(asked, restrictions))
         if guards:
             found = replace(found, pending=GUARDS)
             yield found
@@ -76,7 +77,7 @@ def analyses(
             yield found
             asked.look_far(made)
             found = _bounded(replace(found, warnings=tuple(asked.warnings())), automaton, asked.evidence)
-            yield replace(found, evidence=asked.evidence)
+            yield replace(found, evidence=_for_next_time(asked, restrictions))
         if not guards:
             yield replace(found, pending=GUARDS)
             return
@@ -150,6 +151,11 @@ def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
                 found, supervised_at_most=None, supervised_states=count(whole.reachable(supervised=True, effort=effort))
             )
     return found
+
+
+def _for_next_time(asked: SupervisionQuestion, restrictions: Restrictions) -> Evidence | None:
+    """Return what answers rest on, for the model after an edit."""
+    return None if asked.evidence is None else replace(asked.evidence, guards_of_safe=restrictions.of_safe)
 
 
 def _bounded(found: Analysis, automaton: Automaton, evidence: Evidence | None) -> Analysis:

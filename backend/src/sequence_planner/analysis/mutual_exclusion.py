@@ -87,7 +87,7 @@ def _reached(automaton: Automaton, supervisor: Supervisor, most_bits: int) -> tu
     diagrams, effort = plant.diagrams, NodeLimit(MOST_EFFORT)
     safe = diagrams.imported(supervisor.safe) & diagrams.valid
     helpful = effort.limited(plant.helpful)
-    starts = effort.limited(step for steps in plant.starts.values() for step in steps)
+    starts = effort.limited(plant.all_starts)
     reached, before = plant.initial, None
     try:
         while reached != before:

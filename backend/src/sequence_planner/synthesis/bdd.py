@@ -234,26 +234,30 @@ class Diagrams:
         return builder.whole(over, tuple(self.domains[name] for name in over), reference(states))
 
     def imported(self, states: StateSet) -> Function:
-        """The set that `states` says, all of whose variables are among these; not only of valid states."""
-        functions = [self.false, self.true]
-        for axis, children in states.nodes:
-            values = self.values(states.names[axis])
-            pairs = zip(states.domains[axis], children, strict=True)
-            functions.append(self.disjunction(values[value] & functions[child] for value, child in pairs))
-        return functions[states.root]
-
-    def recalled(self, states: StateSet) -> Function:
-        """The set that `states` says, which may be of other variables and values than these: what is not among these is
-        left out, whatever it is.
+        """The set that `states` says, not only of valid states. Variables and values that are not among these are left
+        out, whatever they are.
         """
         functions = [self.false, self.true]
+        places: dict[
+            tuple[int, tuple[int, ...]], Function
+        ] = {}  # where a variable has a value at one of these positions
         for axis, children in states.nodes:
-            name, found = states.names[axis], [functions[child] for child in children]
-            if name in self.bits:
-                values = self.values(name)
-                pairs = zip(states.domains[axis], found, strict=True)
-                found = [values[value] & there for value, there in pairs if value in values]
-            functions.append(self.disjunction(found))
+            if (name := states.names[axis]) not in self.bits:
+                functions.append(self.disjunction(functions[child] for child in set(children)))
+                continue
+            at: dict[int, list[int]] = {}
+            for position, child in enumerate(children):
+                if child != NOTHING:
+                    at.setdefault(child, []).append(position)
+            found = self.false
+            for child, positions in at.items():
+                key = axis, tuple(positions)
+                if key not in places:
+                    values = self.values(name)
+                    has = (states.domains[axis][position] for position in positions)
+                    places[key] = self.disjunction(values[value] for value in has if value in values)
+                found |= places[key] & functions[child]
+            functions.append(found)
         return functions[states.root]
 
     def _by_value(self, node: Function, name: str) -> list[Function]:

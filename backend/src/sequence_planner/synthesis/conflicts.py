@@ -40,7 +40,7 @@ def conflicting_finishes(
     for specification in automaton.specifications.values():
         if plant.says((specification.forbidden,)):
             allowed &= ~plant.where(specification.forbidden)
-    starts = [step for steps in plant.starts.values() for step in steps]
+    starts = plant.all_starts
     steps = effort.limited([*plant.uncontrollable, *starts])
     reached = reachable(diagrams, plant.initial & allowed, steps, allowed)
     reaction = plant.reaction(automaton.effects)

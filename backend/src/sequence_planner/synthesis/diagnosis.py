@@ -64,10 +64,10 @@ def _may_come_about(plant: Plant, where: Function) -> bool:
 def _without_rest(plant: Plant, forbidden: Mapping[str, Function], unsafe: Function) -> Unmeetable:
     """The way that the devices can go to where rest is out of reach, and how rest could be reached from there."""
     diagrams = plant.diagrams
-    starts = [step for steps in plant.starts.values() for step in steps]
+    counted_on = [*plant.helpful, *plant.all_starts]
     while True:
         inside = diagrams.valid & ~unsafe
-        stuck = inside & ~reaching(diagrams, plant.rest & inside, [*plant.helpful, *starts], inside)
+        stuck = inside & ~reaching(diagrams, plant.rest & inside, counted_on, inside)
         following = reaching(diagrams, unsafe | stuck, plant.uncontrollable)
         if (plant.initial & following).satisfiable():
             break
@@ -75,7 +75,7 @@ def _without_rest(plant: Plant, forbidden: Mapping[str, Function], unsafe: Funct
     trace = Tracer(plant, starts=False).shortest(stuck)
     if trace is None:
         return Unmeetable(_headline(plant, False), (), None)
-    anyhow = reaching(diagrams, plant.rest, [*plant.helpful, *starts])
+    anyhow = reaching(diagrams, plant.rest, counted_on)
     if not (diagrams.states(trace.last) & anyhow).satisfiable():
         return Unmeetable(f"{_headline(plant, bool(trace.steps))}. {_what_to_do(plant)}", tuple(trace.lines()), trace)
     further = Tracer(plant, faults=False).onward(trace, plant.rest)

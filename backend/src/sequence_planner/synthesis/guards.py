@@ -569,18 +569,22 @@ class Restrictions:
 
     Where an event has transitions of which one is allowed and another is not in one state, they have guards of their
     own, under the names `event#1`, `event#2` and so on. Raises `ValueError` if there is no supervisor.
+
+    Where too many states are reached, which may be known, guards are `of_safe` ones: then they are longer, and right.
     """
 
-    def __init__(self, supervision: Supervision) -> None:
+    def __init__(self, supervision: Supervision, of_safe: bool = False) -> None:
         if not supervision.possible:
             raise ValueError("there is no supervisor, and every guard would say nothing")
         self._supervision = supervision
-        automaton, reached = supervision.plant.automaton, _reached(supervision)
+        automaton, reached = supervision.plant.automaton, None if of_safe else _reached(supervision)
+        self.of_safe = reached is None
         self._on: dict[str, Function] = {}
         self._off: dict[str, Function] = {}
         for name in _startable(automaton):
             allowed, disallowed = supervision.guard(name)
-            self._on[name], self._off[name] = allowed & reached, disallowed & reached
+            self._on[name] = allowed if reached is None else allowed & reached
+            self._off[name] = disallowed if reached is None else disallowed & reached
         merged = _merged(automaton, self._on, self._off)
         self.starts: Mapping[str, tuple[str, ...]] = {
             name: starts for name, starts in merged.items() if any(self._off[start].satisfiable() for start in starts)
@@ -609,14 +613,11 @@ def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) ->
     return {name: restrictions.guard(name, most) for name in restrictions.starts}
 
 
-def _reached(supervision: Supervision) -> Function:
-    """Return what is reached under the supervisor; where that is too much, what is safe: then guards are longer, and
-    right.
-    """
-    try:
+def _reached(supervision: Supervision) -> Function | None:
+    """Return what is reached under the supervisor; None where that is too much."""
+    with contextlib.suppress(TooMuchError):
         return supervision.reachable(supervised=True, effort=NodeLimit(MOST_EFFORT))
-    except TooMuchError:
-        return supervision.safe
+    return None
 
 
 def _startable(automaton: Automaton) -> list[str]:

@@ -94,7 +94,7 @@ class Tracer:
         self._plant = plant
         self._within = plant.diagrams.valid if within is None else within
         uncontrollable = plant.uncontrollable if faults else plant.helpful
-        begun = [step for steps in plant.starts.values() for step in steps] if starts else []
+        begun = plant.all_starts if starts else []
         self._steps: list[TransitionStep] = [*uncontrollable, *begun]
         automaton = plant.automaton
         self._reference = Steps(

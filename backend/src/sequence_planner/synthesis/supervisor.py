@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from sequence_planner.automaton.automaton import Automaton, Timeouts
@@ -12,7 +12,7 @@ from sequence_planner.language.syntax import TRUE, Expression, conjunction, conj
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.diagnosis import Unmeetable, why_unmeetable
 from sequence_planner.synthesis.reachability import reachable, reaching
-from sequence_planner.synthesis.transition_relation import Nearness, NodeLimit, Plant, TransitionStep
+from sequence_planner.synthesis.transition_relation import Nearness, NodeLimit, Plant
 
 # The safe set by fixpoints on decision diagrams, and the supervisor that it makes.
 #
@@ -63,8 +63,7 @@ class Supervision:
 
     def _all_reachable(self, supervised: bool, effort: NodeLimit | None) -> Function:
         plant = self.plant
-        starts = [step for steps in plant.starts.values() for step in steps]
-        uncontrollable = plant.uncontrollable
+        starts, uncontrollable = plant.all_starts, plant.uncontrollable
         if effort is not None:
             starts, uncontrollable = effort.limited(starts), effort.limited(uncontrollable)
         if not supervised:
@@ -94,15 +93,13 @@ class Supervision:
     def _greatest_safe(self) -> Function:
         plant, diagrams = self.plant, self.plant.diagrams
         safe = diagrams.valid & ~diagrams.disjunction(self.forbidden.values())
-        starts = [step for steps in plant.starts.values() for step in steps]
-        helpful: Sequence[TransitionStep] = [*plant.helpful, *starts]
+        helpful = [*plant.helpful, *plant.all_starts]
         while True:
             unsafe = reaching(diagrams, diagrams.valid & ~safe, plant.uncontrollable)
             inside = diagrams.valid & ~unsafe
-            after = reaching(diagrams, plant.rest & inside, helpful, inside)
-            if after == safe:
+            safe = reaching(diagrams, plant.rest & inside, helpful, inside)
+            if safe == inside:
                 return safe
-            safe = after
 
 
 def synthesise(automaton: Automaton) -> Supervisor:

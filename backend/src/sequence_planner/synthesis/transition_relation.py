@@ -651,6 +651,11 @@ class Plant:
             if not ability.restart and self._startable(ability)
         }
 
+    @property
+    def all_starts(self) -> list[TransitionStep]:
+        """The starts of all abilities."""
+        return [step for steps in self.starts.values() for step in steps]
+
     def _startable(self, ability: Ability) -> bool:
         if not any(target(action) in self.diagrams.bits for action in ability.start_actions):
             return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import insort
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -66,7 +67,7 @@ class Runs:
             True: Steps(automaton, automaton.effects, abilities),
             False: Steps(automaton, reliable, abilities),
         }
-        self._points: dict[tuple[bool, bool], list[Point]] = defaultdict(list)
+        self._points: dict[tuple[bool, bool], list[tuple[Point, Function]]] = defaultdict(list)  # the shortest first
         self._known: dict[tuple[bool, bool], Function] = defaultdict(lambda: plant.initial)
         self._taken: list[Point] = []
 
@@ -81,8 +82,7 @@ class Runs:
         diagrams = self._plant.diagrams
         if (values := diagrams.pick(states & self._plant.initial)) is not None:
             return self._begun(values)
-        points = sorted(self._points[supervised, faults], key=lambda point: point.length)
-        return next(point for point in points if (diagrams.states(point.state) & states).satisfiable())
+        return next(point for point, here in self._points[supervised, faults] if (here & states).satisfiable())
 
     def follow(self, ticks: Iterable[PlanTick]) -> None:
         """Take in what a plan from the initial state leads through, each step of it on the reference."""
@@ -160,7 +160,7 @@ class Runs:
         self._taken.append(after)
         for supervised in (False, True) if safely else (False,):
             for faults in (False, True) if faultless else (True,):
-                self._points[supervised, faults].append(after)
+                insort(self._points[supervised, faults], (after, here), key=lambda each: each[0].length)
                 self._known[supervised, faults] |= here
         return after
 
@@ -199,7 +199,8 @@ class Evidence:
 
     `reached` has at least what is reached with the supervisor (True) and without, as found with parts of so large a
     `level`. `ways` are states, and more from which some of these can be reached within the former set without faults.
-    Nothing leads out of a trap without faults: of `traps` with the supervisor, of `bounds` without.
+    Nothing leads out of a trap without faults: of `traps` with the supervisor, of `bounds` without. With
+    `guards_of_safe` too much is reached to look for guards there only.
     """
 
     automaton: Automaton
@@ -211,6 +212,7 @@ class Evidence:
     ways: tuple[tuple[StateSet, StateSet], ...]
     traps: tuple[StateSet, ...]
     bounds: tuple[StateSet, ...]
+    guards_of_safe: bool = False
 
     def ordered(self, names: Iterable[str]) -> tuple[str, ...]:
         """`names` in its order, those that it does not have at last."""
@@ -262,7 +264,7 @@ class Again:
     def states(self, kept: StateSet) -> Function:
         """A set of the other model; what this one has beside that is as it is initially."""
         diagrams = self._plant.diagrams
-        states = diagrams.recalled(kept) & self._initially & diagrams.valid
+        states = diagrams.imported(kept) & self._initially & diagrams.valid
         if diagrams.names == self.kept.order:
             self.exported[states] = kept
         return states
@@ -307,7 +309,7 @@ class Again:
 
     @cached_property
     def _now(self) -> Sequence[TransitionStep]:
-        return [*self._plant.helpful, *(step for steps in self._plant.starts.values() for step in steps)]
+        return [*self._plant.helpful, *self._plant.all_starts]
 
     @cached_property
     def _before(self) -> Sequence[TransitionStep] | None:
@@ -321,7 +323,7 @@ class Again:
         if not domains.keys() & written_afterwards(automaton, order) <= diagrams.bits_after.keys():
             return None
         before = Plant(automaton, order, diagrams=diagrams)
-        return [*before.helpful, *(step for steps in before.starts.values() for step in steps)]
+        return [*before.helpful, *before.all_starts]
 
 
 def _is_closed(states: Function, steps: Iterable[TransitionStep], within: Function) -> bool:

@@ -64,7 +64,7 @@ class FarInquiry(ReachabilityQuery):
         """
         plant = self.plant
         self._again = again = Again(plant, known)
-        steps = [*plant.uncontrollable, *(step for steps in plant.starts.values() for step in steps)]
+        steps = [*plant.uncontrollable, *plant.all_starts]
         for supervised, states in known.reached.items():
             within = self.safe if supervised else self.diagrams.valid
             self._more[supervised] = grown(self.whole, plant.initial | again.states(states), steps, within)

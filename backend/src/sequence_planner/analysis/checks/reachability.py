@@ -176,8 +176,7 @@ class ReachabilityQuery:
 
     def limited(self, plant: Plant, uncontrollable: Iterable[TransitionStep]) -> list[TransitionStep]:
         """These steps and all starts, which raise `TooMuchError` when all effort is spent."""
-        starts = [step for steps in plant.starts.values() for step in steps]
-        return self.effort.limited([*uncontrollable, *starts])
+        return self.effort.limited([*uncontrollable, *plant.all_starts])
 
     def _completing(self, goal: Function, within: Function) -> Function:
         """The states of `within` in which `goal` holds, or can be brought about so that a tick sees it."""
