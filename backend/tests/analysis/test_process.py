@@ -13,11 +13,12 @@ from controller.rig import truck_engine
 from core.building import automaton
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.finding import analyses
-from sequence_planner.analysis.worker import SynthesisEndedError, analysing
+from sequence_planner.analysis.worker import analysing
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.language.types import BOOLEAN
+from sequence_planner.process.task import WorkerError
 
 
 def processes() -> list[Child]:
@@ -70,7 +71,7 @@ def test_a_process_that_is_killed_is_not_waited_for() -> None:
         computing = asyncio.create_task(all_of(truck_engine()[0].automaton))
         await until(lambda: bool(processes()))
         processes()[0].kill()
-        with pytest.raises(SynthesisEndedError, match="has ended without an answer"):
+        with pytest.raises(WorkerError, match="has ended without an answer"):
             await computing
 
     asyncio.run(scenario())

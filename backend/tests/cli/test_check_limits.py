@@ -12,10 +12,11 @@ import pytest
 
 from checks.large import write_large_station
 from cli.commands import TRUCK, as_json, command
-from sequence_planner.analysis.worker import SynthesisEndedError, telling
+from sequence_planner.analysis.worker import telling
 from sequence_planner.cli.analysing import Limits, checked
 from sequence_planner.cli.loading import load_model
 from sequence_planner.process.memory_limit import MemoryLimitError, memory_limit
+from sequence_planner.process.task import WorkerError
 
 COUNTS = """
   made: {type: 0..200}
@@ -81,7 +82,7 @@ def test_a_process_that_takes_too_much_memory_is_ended_and_says_so() -> None:
             async for _ in words:
                 await asyncio.sleep(0.005)
 
-    with pytest.raises(SynthesisEndedError, match=r"more than 0\.25 GB of memory: allow more with --memory"):
+    with pytest.raises(WorkerError, match=r"more than 0\.25 GB of memory: allow more with --memory"):
         asyncio.run(scenario())
 
 

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from controller.bench import cell
-from sequence_planner.analysis.worker import SynthesisEndedError, TooLargeError
 from sequence_planner.cli.analysing import Limits, checked, supervisor_of
 from sequence_planner.controller.preparation import Preparation, analyse
+from sequence_planner.process.task import TooLargeError, WorkerError
 
 
 def test_a_process_that_cannot_be_started_is_said(tmp_path: Path) -> None:
@@ -24,7 +24,7 @@ def test_a_process_that_cannot_be_started_is_said(tmp_path: Path) -> None:
 
         title: Any = unsendable
         await analyse(replace(cell()[0].automaton, title=title), preparation, tmp_path)
-        with pytest.raises(SynthesisEndedError, match="could not be computed"):
+        with pytest.raises(WorkerError, match="could not be computed"):
             await preparation.supervisor
 
     asyncio.run(scenario())
@@ -59,7 +59,7 @@ def test_what_was_found_before_the_end_stays(tmp_path: Path) -> None:
         await analyse(cell()[0].automaton, preparation, tmp_path)
         assert preparation.analysis is not None
         assert preparation.analysis.supervised is True
-        preparation.end(SynthesisEndedError("killed"))
+        preparation.end(WorkerError("killed"))
         assert preparation.analysis.pending is None
         assert preparation.analysis.guards is not None
         assert (await preparation.supervisor) is not None

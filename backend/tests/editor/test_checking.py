@@ -15,11 +15,11 @@ import pytest
 from controller.bench import until
 from editor.models import BOLTS, bolts
 from sequence_planner.editor.checks import checked
-from sequence_planner.editor.processes import CheckDesk, DraftProcess
+from sequence_planner.editor.processes import CheckDesk, DraftProcess, working
 from sequence_planner.editor.schemas.check import CheckState, CheckView
 from sequence_planner.forking.starting import children
 from sequence_planner.model.launch_requirements import StartNeeds
-from sequence_planner.process.worker import WorkEndedError, working
+from sequence_planner.process.task import WorkerError
 
 PATIENCE = 60.0
 
@@ -172,9 +172,9 @@ def test_work_that_fails_is_not_waited_for() -> None:
     async def live() -> None:
         async with (
             asyncio.timeout(PATIENCE),
-            working("sequence_planner.editor.checks", "compared", None, None, None) as found,
+            working("compared", None, None, None) as found,
         ):
-            with pytest.raises(WorkEndedError):
+            with pytest.raises(WorkerError):
                 await anext(found)
 
     asyncio.run(live())

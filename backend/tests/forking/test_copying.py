@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.analysis.worker import SynthesisEndedError, TooLargeError, told
+from sequence_planner.analysis.worker import told
 from sequence_planner.forking.copying import Copy
+from sequence_planner.process.task import TooLargeError, WorkerError
 
 PARENT = """
 import sys, time
@@ -109,7 +110,7 @@ def test_what_was_told_before_the_deadline_is_had() -> None:
 def test_a_process_that_takes_too_much_memory_or_is_killed_is_no_end_of_all() -> None:
     with pytest.raises(TooLargeError, match=r"more than 0\.25 GB"):
         list(told(0.25, 60.0, growing))
-    with pytest.raises(SynthesisEndedError, match="has ended without an answer"):
+    with pytest.raises(WorkerError, match="has ended without an answer"):
         list(told(1.0, 60.0, killed))
 
 

@@ -207,8 +207,8 @@ def test_a_server_that_ends_leaves_no_process_and_no_part_of_a_backup(
     server.start()
     with ada_at(server) as ada:
         ada.post(BACKUPS, json={})
-        until(lambda: any(each.name == "sequence_planner.backup.service" for each in children()))
-        (process,) = [each for each in children() if each.name == "sequence_planner.backup.service"]
+        until(lambda: any(each.name == "backup" for each in children()))
+        (process,) = [each for each in children() if each.name == "backup"]
         assert process.pid is not None
         os.kill(process.pid, signal.SIGSTOP)  # so that it cannot come to its end
     server.stop()

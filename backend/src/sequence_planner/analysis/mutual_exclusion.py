@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
-import os
-import signal
 from collections.abc import Iterator
-from multiprocessing.connection import Connection, Pipe
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.core.immutable import Immutable, replace
-from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.language.syntax import FALSE, TRUE
 from sequence_planner.language.types import Value
 from sequence_planner.planning.pdr.invariants import never_paired
@@ -21,6 +16,7 @@ from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.problem import Goal, Literal
 from sequence_planner.planning.sat.start_order import sweep_order
 from sequence_planner.process.budget import Budget, SpentError
+from sequence_planner.process.task import BackgroundTask, WorkerError
 from sequence_planner.synthesis.bdd import Diagrams, Function
 from sequence_planner.synthesis.reachability import reachable
 from sequence_planner.synthesis.transition_relation import NodeLimit, Plant, TooMuchError
@@ -145,31 +141,13 @@ async def find_never_together(automaton: Automaton, supervisor: Supervisor, seco
     """Return what is never together; nothing when that is not found within so many seconds of work, as it would not be
     another time. None when the process has ended early. It can be cancelled.
     """
-    ours, theirs = Pipe()
-    with ours:
-        process = await asyncio.to_thread(
-            start, _work, automaton, supervisor, seconds, name="never-together", connection=theirs
-        )
-        hearing = asyncio.get_running_loop().run_in_executor(None, _heard, ours)
-        try:
-            return await asyncio.shield(hearing)
-        finally:
-            process.kill()
-            hang_up(ours)
-            await asyncio.wait({hearing})  # at once, as nobody is left who could speak
-            process.join()
-
-
-def _heard(connection: Connection) -> NeverTogether | None:
+    task = BackgroundTask(_found, (automaton, supervisor, seconds), "never-together", _NICENESS)
     try:
-        found: NeverTogether | None = connection.recv()
-    except (EOFError, OSError):
+        return await task.found()
+    except WorkerError:
         return None
-    return found
 
 
-def _work(connection: Connection, automaton: Automaton, supervisor: Supervisor, seconds: float) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    os.nice(_NICENESS)
+def _found(automaton: Automaton, supervisor: Supervisor, seconds: float) -> NeverTogether:
     found = never_together(automaton, supervisor, Budget(float("inf")).working(seconds))
-    connection.send(found or NeverTogether(frozenset(), None))
+    return found or NeverTogether(frozenset(), None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import re
@@ -53,8 +54,7 @@ from sequence_planner.journal.entry import Entry, Outcome, Record
 from sequence_planner.journal.hash_chain import ChainPosition
 from sequence_planner.journal.verify import Verified
 from sequence_planner.model.files import put_in_place, read_files, write_files
-from sequence_planner.process import worker
-from sequence_planner.process.worker import EndedEarlyError
+from sequence_planner.process.task import BackgroundTask, WorkerError
 
 # How a backup is put in place of what there is, in commands to be typed while the station is stopped.
 
@@ -349,6 +349,7 @@ def _finished(repository: Path, objects: bool) -> Iterator[Path]:
 # A process of its own that makes or checks one backup.
 
 LONGEST: Final = 12 * 3600.0  # seconds after which it is given up
+_NICENESS: Final = 10  # below the station and what people wait for
 
 
 @dataclass(frozen=True)
@@ -372,15 +373,19 @@ class BackupFinished:
 async def carried_out(task: BackupTask, tell: Callable[[Step], None]) -> BackupFinished:
     """Do it in a process; `tell` is called with each step. Raises `StorageError`."""
 
-    def hear(step: object) -> None:
-        assert isinstance(step, Step)
-        tell(step)
+    def hear(told: Step | BackupFinished) -> None:
+        if isinstance(told, Step):
+            tell(told)
 
+    work: BackgroundTask[Step | BackupFinished] = BackgroundTask(
+        do, (task,), "backup", _NICENESS, errors=(StorageError,), reports=True, leads=True
+    )
     try:
-        done = await worker.carried_out("sequence_planner.backup.service:do", task, LONGEST, hear)
+        async with asyncio.timeout(LONGEST):
+            done = await work.found(hear)
     except TimeoutError:
         raise BackupError(Trouble.OTHER, f"it has taken more than {LONGEST / 3600:.0f} h and was given up") from None
-    except EndedEarlyError:
+    except WorkerError:
         raise BackupError(Trouble.OTHER, "its process has ended too early: is memory short? Try again") from None
     assert isinstance(done, BackupFinished)
     return done

@@ -158,7 +158,8 @@ def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervi
     """
     if (known := known_supervisor(automaton)) is not None:
         return known
-    from sequence_planner.analysis.worker import SynthesisEndedError, told  # noqa: PLC0415
+    from sequence_planner.analysis.worker import told  # noqa: PLC0415
+    from sequence_planner.process.task import WorkerError  # noqa: PLC0415
     from sequence_planner.synthesis.supervisor import SynthesisError, tried  # noqa: PLC0415
 
     limits = limits or Limits()
@@ -171,7 +172,7 @@ def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervi
     except TimeoutError:
         late = f"the safe states could not be computed within {limits.deadline:g} s"
         refuse(f"{late}: allow more with --deadline, or let fewer variables bear on them", FOUND)
-    except SynthesisEndedError as ended:
+    except WorkerError as ended:
         refuse(f"the safe states could not be computed: {ended}", FOUND)
     assert isinstance(found, Supervisor)
     return found
@@ -221,7 +222,8 @@ class _Hearing:
 
     def hear(self, limits: Limits) -> str | None:
         """Hear it until it is all, or `limits` are reached; returns what was not found then, and why."""
-        from sequence_planner.analysis.worker import SynthesisEndedError, told  # noqa: PLC0415
+        from sequence_planner.analysis.worker import told  # noqa: PLC0415
+        from sequence_planner.process.task import WorkerError  # noqa: PLC0415
 
         try:
             for word in told(limits.memory, limits.left, *self.work):
@@ -229,7 +231,7 @@ class _Hearing:
                 self._tell(time.monotonic() - limits.began)
         except TimeoutError:
             return f"{self._left()} could not be computed within {limits.deadline:g} s: {self._advice()}"
-        except SynthesisEndedError as ended:
+        except WorkerError as ended:
             return f"{self._left()} could not be computed: {ended}"
         return None
 

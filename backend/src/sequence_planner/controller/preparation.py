@@ -12,7 +12,7 @@ import structlog
 from sequence_planner.analysis.analysis import FINDINGS, Analysis
 from sequence_planner.analysis.cache import known_supervisor, remember, remembered
 from sequence_planner.analysis.report import AnalysisDocument, document_of, error_document
-from sequence_planner.analysis.worker import SynthesisEndedError, TooLargeError, analysing
+from sequence_planner.analysis.worker import analysing
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.command import CommandRefused
@@ -41,6 +41,7 @@ from sequence_planner.journal.entry import LONGEST_REASON, Entry, Outcome
 from sequence_planner.model.exchange import exchanging
 from sequence_planner.model.files import Contents, Files, put_in_place, read_contents, read_files
 from sequence_planner.model.source import Finding
+from sequence_planner.process.task import TooLargeError, WorkerError
 from sequence_planner.simulation.device_state import standing_file
 from sequence_planner.synthesis.guards import SupervisorGuard
 
@@ -317,7 +318,7 @@ class Preparation:
         if self.controller is not None:
             self.controller.note_unrecorded(why)
 
-    def end(self, why: SynthesisEndedError) -> None:
+    def end(self, why: WorkerError) -> None:
         """No more will be found."""
         if not self.supervisor.done():
             if isinstance(why, TooLargeError):  # a controller that begins anew would come no further
@@ -466,7 +467,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
                 preparation.take(document_of(automaton, found), found)
                 if found.supervisor is not None:
                     await asyncio.to_thread(remember, folder, automaton, found)
-    except SynthesisEndedError as ended:
+    except WorkerError as ended:
         LOG.error("synthesis ended early", because=str(ended))
         preparation.end(ended)
     except TimeoutError:
@@ -476,7 +477,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
         preparation.end(TooLargeError(late))
     except Exception as error:
         LOG.exception("synthesis failed")
-        preparation.end(SynthesisEndedError(f"the safe states could not be computed ({type(error).__name__}: {error})"))
+        preparation.end(WorkerError(f"the safe states could not be computed ({type(error).__name__}: {error})"))
 
 
 def _known(automaton: Automaton, folder: Path) -> Analysis | None:

@@ -124,7 +124,7 @@ class Running:
 async def control(running: Running) -> None:
     """Run the controller until cancelled. Without a supervisor it only shows why there is none.
 
-    Raises `SynthesisEndedError` when that could not be computed, `TransportError` when the network cannot be joined or
+    Raises `WorkerError` when that could not be computed, `TransportError` when the network cannot be joined or
     somebody else commands the devices, `StorageError` when the database cannot be used, `DeployedError` once another
     model is in place, `NotStartedError` when what was deployed just now has no supervisor, and `LeaseLostError` when
     another station has taken the command.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Mapping
+import tempfile
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import asynccontextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -19,7 +21,9 @@ from sequence_planner.editor.schemas.check import CheckState, CheckView, waiting
 from sequence_planner.model.files import Files
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
-from sequence_planner.process.worker import PATIENCE, Answering, WorkEndedError, working
+from sequence_planner.process.memory_limit import memory_limit
+from sequence_planner.process.task import BackgroundTask, WorkerError
+from sequence_planner.process.worker import Answering
 
 # Bodies of requests that may be large: each is read by the process that does what it asks for.
 #
@@ -59,6 +63,35 @@ def _not_json(why: str, position: int) -> BodyError:
     return BodyError(
         [{"type": "json_invalid", "loc": ("body", position), "msg": "JSON decode error", "ctx": {"error": why}}]
     )
+
+
+# What is found of whole models, each time by a process of its own.
+
+PATIENCE = 60.0  # seconds
+_NICENESS = 15  # ticks come first, then whoever waits for an answer
+
+
+@asynccontextmanager
+async def working(name: str, *arguments: object) -> AsyncIterator[AsyncIterator[object]]:
+    """Give what `name` of the checks finds, until the block is left; its last argument is the path of an empty folder.
+
+    Iterating raises `WorkerError`.
+    """
+    with tempfile.TemporaryDirectory(prefix="sequence-planner-workshop-") as folder:
+        # Named and not handed over: the server does without what that imports.
+        work = f"sequence_planner.editor.checks:{name}"
+        task: BackgroundTask[object] = BackgroundTask(work, (*arguments, Path(folder)), name, _NICENESS, memory_limit())
+        async with task.telling() as found:
+            yield found
+
+
+async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> object:
+    """Return what `name` of the checks finds within so many seconds. Raises `WorkerError`."""
+    try:
+        async with asyncio.timeout(patience), working(name, *arguments) as found:
+            return await anext(found)
+    except TimeoutError:
+        raise WorkerError(f"it took more than {patience:g} s and was given up") from None
 
 
 # A process that is asked about the draft again and again, and knows its files from one question to the next.
@@ -103,7 +136,7 @@ class DraftAnswering:
     async def ask(self, question: Callable[..., object], *versions: Files, patience: float) -> object:
         """The answer to what `question` makes of what has changed in each version.
 
-        Raises `WorkEndedError`, and the `EditError` or `BodyError` that was answered.
+        Raises `WorkerError`, and the `EditError` or `BodyError` that was answered.
         """
 
         def asked() -> object:
@@ -139,7 +172,7 @@ class DraftProcess:
         """Return what `name` of the answers there are says about these files, within so many seconds once its turn has
         come.
 
-        Views are told as JSON. Raises `EditError` and `WorkEndedError`.
+        Views are told as JSON. Raises `EditError` and `WorkerError`.
         """
 
         def question(changed: Changed) -> object:
@@ -149,7 +182,7 @@ class DraftProcess:
 
     async def errors(self, files: Files) -> list[FindingDocument]:
         """Return what makes these files unusable, as far as it shows before pipelines are built. Raises
-        `WorkEndedError`.
+        `WorkerError`.
         """
         found = await self.ask(files, "errors")
         assert isinstance(found, list)
@@ -202,7 +235,7 @@ class CheckDesk:
             (number, files), self._wanted = self._wanted, None
             try:
                 errors = await self._process.errors(files)
-            except WorkEndedError:
+            except WorkerError:
                 errors = []  # then the check says what is the matter
             if self._wanted is not None:
                 continue
@@ -219,16 +252,14 @@ class CheckDesk:
         await asyncio.sleep(SETTLED)
         view = waiting(number)
         try:
-            async with working(
-                "sequence_planner.editor.checks", "checked", number, files, self._stages, self._start
-            ) as found:
+            async with working("checked", number, files, self._stages, self._start) as found:
                 async for told in found:
                     assert isinstance(told, CheckView)
                     view = told
                     self._tell(view)
                     if view.state is CheckState.DONE:
                         break
-        except WorkEndedError as ended:
+        except WorkerError as ended:
             self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": str(ended)}))
 
 
@@ -248,7 +279,7 @@ class EditingProcess:
     async def ask(self, files: Files, name: str, *asked: object) -> object:
         """Return what `name` of the answers there are says about these files.
 
-        Raises `EditError`, `BodyError` and `WorkEndedError`.
+        Raises `EditError`, `BodyError` and `WorkerError`.
         """
 
         def question(changed: Changed) -> object:

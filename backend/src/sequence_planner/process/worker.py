@@ -1,99 +1,28 @@
-"""Worker processes: killable one-shot tasks, and request-response companions with non-blocking pipes."""
+"""Worker processes: request-response companions with non-blocking pipes."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import importlib
-import os
 import signal
 import tempfile
 import threading
 import traceback
-from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import asynccontextmanager
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from multiprocessing.connection import Connection, Pipe
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any, Final, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import structlog
 
 from sequence_planner.core.immutable import Immutable
-from sequence_planner.core.storage_error import StorageError
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.memory_limit import MemoryLimit, memory_limit
-
-# A process that does one thing, so that nobody who runs the station waits for it.
-#
-# It computes at a low priority. Whoever ends it ends all that it has started.
-
-_NICENESS: Final = 10  # below the station and what people wait for
-
-
-class EndedEarlyError(Exception):
-    """The process is gone, and has not told how it came out."""
-
-
-async def carried_out(
-    work: str, task: object, longest: float, tell: Callable[[object], None] = lambda _: None
-) -> object:
-    """Return what `work`, as in `package.module:function`, makes of `task` in a process; `tell` is called with what it
-    tells.
-
-    Raises the `StorageError` that it raises, `TimeoutError` after `longest` seconds, and `EndedEarlyError`.
-    """
-    ours, theirs = Pipe(duplex=False)
-    with ours:
-        module = work.partition(":")[0]
-        given = partial(start, name=module, connection=theirs, modules=(module,), leads=True)
-        process = await asyncio.shield(asyncio.to_thread(given, _work_once, work, task))
-        try:
-            async with asyncio.timeout(longest):
-                while not (told := await _told_of_work(ours))[0]:
-                    tell(told[1])
-        except (EOFError, OSError) as error:
-            if isinstance(error, TimeoutError):
-                raise
-            raise EndedEarlyError from None
-        finally:
-            await asyncio.shield(asyncio.to_thread(_end, process))
-    if isinstance(told[1], StorageError):
-        raise told[1]
-    return told[1]
-
-
-async def _told_of_work(connection: Connection) -> tuple[bool, object]:
-    """Return whether it is the last word, and what it says."""
-    heard, loop = asyncio.Event(), asyncio.get_running_loop()
-    loop.add_reader(connection.fileno(), heard.set)
-    try:
-        await heard.wait()
-    finally:
-        loop.remove_reader(connection.fileno())
-    found: tuple[bool, object] = connection.recv()  # a few hundred bytes, all there at once
-    return found
-
-
-def _end(process: Child) -> None:
-    process.kill()
-    process.join()
-
-
-def _work_once(connection: Connection, work: str, task: object) -> None:
-    os.nice(_NICENESS)
-    module, _, name = work.partition(":")
-    function = getattr(import_module(module), name)  # the server does without what that imports
-    try:
-        connection.send((True, function(task, lambda step: connection.send((False, step)))))
-    except StorageError as error:
-        connection.send((True, error))
-
+from sequence_planner.process.task import WorkerError, begun
 
 # Processes that stand by to answer: questions go in, answers come out, and nobody ever waits for the pipe.
 #
@@ -479,51 +408,14 @@ class AnsweringWorker(Generic[Model, Request, Answer]):
             self._listener.failed(request, self.trouble, self._work.again(request))
 
 
-# Processes of the workshop, each for one piece of work: it can be killed at any time, and disturbs no tick.
+# A process that answers whoever waits, one question after the other.
 #
-# What they do is named and not handed over, since the server does without what that imports.
+# What it does is named and not handed over, since the server does without what that imports.
 
-PATIENCE = 60.0  # seconds for a task
 RESTS_AFTER = 60.0  # seconds without a question, after which a process that answers ends until there is one
-_ANSWERING, _WORKING = 5, 15  # niceness: ticks come first, then whoever waits for an answer, then checks
+_ANSWERING = 5  # niceness: ticks come first, then whoever waits for an answer, then checks
 _PREFIX = "sequence-planner-workshop-"  # of folders
 _NO_ANSWER = "the process has ended without an answer; is memory short?"
-
-
-class WorkEndedError(Exception):
-    """The process ended before its work was done."""
-
-
-@asynccontextmanager
-async def working(module: str, name: str, *arguments: object) -> AsyncIterator[AsyncIterator[object]]:
-    """Yield what the generator `name` of a module tells, until the block is left: then its process is killed.
-
-    It is called with `arguments` and the path of an empty folder. Iterating raises `WorkEndedError` when the process
-    ends too early, as it does when it takes more memory than there is for it.
-    """
-    limit = MemoryLimit(memory_limit())
-    with tempfile.TemporaryDirectory(prefix=_PREFIX) as folder:
-        ours, theirs = Pipe(duplex=False)
-        with ours:
-            given = (module, name, arguments, Path(folder))
-            process = await asyncio.to_thread(start, _work, *given, name=name, connection=theirs, modules=given[:1])
-            try:
-                with limit.held(process):
-                    yield _heard(ours, limit)
-            finally:
-                process.kill()
-                await asyncio.shield(asyncio.to_thread(process.join))
-
-
-async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> object:
-    """Return what the task `name` of `tasks` finds within so many seconds. Raises `WorkEndedError`."""
-    try:
-        async with asyncio.timeout(patience), working("sequence_planner.editor.checks", name, *arguments) as found:
-            async for each in found:
-                return each
-    except TimeoutError:
-        raise WorkEndedError(f"it took more than {patience:g} s and was given up") from None
-    raise WorkEndedError(_NO_ANSWER)
 
 
 class Answering:
@@ -546,7 +438,7 @@ class Answering:
     async def ask(self, question: Callable[[], object], patience: float) -> object:
         """The answer to what `question` says when its turn has come, within so many seconds from then on.
 
-        Raises `WorkEndedError` when there is none; the process begins anew with the next question then.
+        Raises `WorkerError` when there is none; the process begins anew with the next question then.
         """
         self._rest_no_more()
         async with self._turn:
@@ -560,10 +452,10 @@ class Answering:
                     return await _told(connection)
             except TimeoutError:
                 await self._end()
-                raise WorkEndedError(f"there was no answer within {patience:g} s") from None
+                raise WorkerError(f"there was no answer within {patience:g} s") from None
             except OSError:
                 await self._end()
-                raise WorkEndedError(_NO_ANSWER) from None
+                raise WorkerError(_NO_ANSWER) from None
             except BaseException:
                 await self._end()  # its answer would be taken for that to the next question
                 raise
@@ -616,17 +508,6 @@ class Answering:
                 folder.cleanup()
 
 
-async def _heard(connection: Connection, limit: MemoryLimit) -> AsyncIterator[object]:
-    while True:
-        try:
-            word = await _told(connection)
-        except WorkEndedError:
-            if limit.reached:
-                raise WorkEndedError(str(limit)) from None
-            raise
-        yield word
-
-
 async def _told(connection: Connection) -> object:
     heard, loop = asyncio.Event(), asyncio.get_running_loop()
     loop.add_reader(connection.fileno(), heard.set)
@@ -637,22 +518,8 @@ async def _told(connection: Connection) -> object:
     try:
         return await asyncio.to_thread(connection.recv)
     except (EOFError, OSError):
-        raise WorkEndedError(_NO_ANSWER) from None
-
-
-def _work(connection: Connection, module: str, name: str, arguments: tuple[object, ...], folder: Path) -> None:
-    work = _begun(module, name, _WORKING)
-    with contextlib.suppress(OSError):
-        for each in work(*arguments, folder):
-            connection.send(each)
+        raise WorkerError(_NO_ANSWER) from None
 
 
 def _answer(connection: Connection, module: str, name: str, folder: Path) -> None:
-    _begun(module, name, _ANSWERING)(connection, folder)
-
-
-def _begun(module: str, name: str, niceness: int) -> Callable[..., Any]:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    os.nice(niceness)
-    found: Callable[..., Any] = getattr(importlib.import_module(module), name)
-    return found
+    begun(f"{module}:{name}", _ANSWERING)(connection, folder)

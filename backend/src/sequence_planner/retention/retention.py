@@ -7,7 +7,6 @@ import os
 import shutil
 import time
 from bisect import bisect_right
-from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import pairwise
@@ -230,7 +229,7 @@ class Done:
     more: bool = False
 
 
-def do(task: RetentionTask, tell: Callable[[object], None] = lambda _: None) -> Done:
+def do(task: RetentionTask) -> Done:
     """One pass. Raises `StorageError`; what was done until then is whole."""
     settings, now = task.retention, time.time()
     with closing(Database.open(task.url, create=False)) as database:
@@ -249,14 +248,12 @@ def do(task: RetentionTask, tell: Callable[[object], None] = lambda _: None) -> 
             with database.reading() as connection:
                 records += run_journal.begin(connection).number - before
             files += 1
-            tell(files)
         if files:
             retention.sign(database)
         limit = now - settings.order_days * DAY
         least = None if task.everything else limit - _LEAST
         while batches < MOST_FILES and (cut := cut_orders(database, limit, task.by, time.time(), folder, least)):
             orders, batches = orders + cut, batches + 1
-            tell(files + batches)
         removed = _remove_files(database, settings, task.by, now)
     return Done(records, orders, removed, MOST_FILES in (files, batches))
 

@@ -25,7 +25,7 @@ from sequence_planner.core.storage_error import StorageError
 from sequence_planner.core.validation_messages import complained
 from sequence_planner.editor.processes import BodyError
 from sequence_planner.mes.order import OrderCommand, OrderRefused
-from sequence_planner.process.worker import WorkEndedError
+from sequence_planner.process.task import WorkerError
 
 LOG = structlog.get_logger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -129,7 +129,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(OrderRefused, _order_refused)
     app.add_exception_handler(StorageError, _storage_unavailable)
     app.add_exception_handler(BodyError, _unexpected)
-    app.add_exception_handler(WorkEndedError, _work_ended)
+    app.add_exception_handler(WorkerError, _work_ended)
 
 
 async def _http(request: Request, error: Exception) -> Response:
@@ -174,7 +174,7 @@ async def _unexpected(request: Request, error: Exception) -> Response:
 
 
 async def _work_ended(request: Request, error: Exception) -> Response:
-    assert isinstance(error, WorkEndedError)
+    assert isinstance(error, WorkerError)
     text = str(error)
     end = "" if text.endswith("?") else "."
     detail = f"{text[:1].upper()}{text[1:]}{end} Try again."

@@ -70,14 +70,15 @@ def explained(
     limits: Limits,
 ) -> tuple[FromThese, ...]:
     """Explain why none of `states` leads to `goals`, as far as it is found within `limits`."""
-    from sequence_planner.analysis.worker import SynthesisEndedError, told  # noqa: PLC0415
+    from sequence_planner.analysis.worker import told  # noqa: PLC0415
+    from sequence_planner.process.task import WorkerError  # noqa: PLC0415
 
     found: list[FromThese] = []
     seconds = limits.left
     try:
         question = (automaton, supervisor, states, goals, circumstances, _SHARE * seconds)
         found.extend(told(limits.memory, seconds, _explaining, *question))
-    except (TimeoutError, SynthesisEndedError):
+    except (TimeoutError, WorkerError):
         known = [state for each in found for state in each.states]
         if left := tuple(state for state in states if state not in known):
             found.append(FromThese(left, Diagnosis(None, ())))

@@ -10,7 +10,6 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from sequence_planner.analysis.worker import SynthesisEndedError
 from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
 from sequence_planner.cli.part_options import (
     Launched,
@@ -26,6 +25,7 @@ from sequence_planner.controller.service import NotStartedError, Running, contro
 from sequence_planner.core.logging import configure_logs
 from sequence_planner.model.source import ModelError
 from sequence_planner.process.parent_watch import DEPLOYED, OVERTAKEN
+from sequence_planner.process.task import WorkerError
 from sequence_planner.ros.environment import DOMAIN_ID
 from sequence_planner.ros.transport import Transport
 from sequence_planner.ros.transports.choice import TransportChoice, open_transport
@@ -58,7 +58,7 @@ def controller(
             lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby, again)),
             network,
         )
-    except (SynthesisEndedError, NotStartedError) as error:
+    except (WorkerError, NotStartedError) as error:
         refuse(str(error))
     except DeployedError:
         raise typer.Exit(DEPLOYED) from None

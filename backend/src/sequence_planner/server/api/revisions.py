@@ -16,6 +16,7 @@ from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.editor.draft import Draft
+from sequence_planner.editor.processes import worked
 from sequence_planner.editor.schemas.diff import ComparisonView, TransferView
 from sequence_planner.editor.schemas.draft import FilesView, RevisionsView, RevisionView
 from sequence_planner.editor.schemas.what_if import WhatIfView, untransferred
@@ -23,7 +24,6 @@ from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.language.types import Value
 from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.paths import EditError
-from sequence_planner.process.worker import worked
 from sequence_planner.server.api.history import looked_back
 from sequence_planner.server.api.model import TheWorkshop, refusal
 from sequence_planner.server.auth import allowed

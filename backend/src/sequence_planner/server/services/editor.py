@@ -42,6 +42,7 @@ from sequence_planner.editor.processes import (
     EditingProcess,
     LanguageQuestionKind,
     TextAt,
+    worked,
 )
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView, waiting
@@ -58,7 +59,6 @@ from sequence_planner.editor.schemas.draft import (
 from sequence_planner.model.files import Files, FolderReader
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
-from sequence_planner.process.worker import worked
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import StreamLimits
 from sequence_planner.server.stream.broadcast import LatestValue
@@ -107,7 +107,7 @@ class Workshop:
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since.
 
-        Raises `WorkEndedError`.
+        Raises `WorkerError`.
         """
         async with self._opening:
             files = await run_in_threadpool(self._files.read)
@@ -126,7 +126,7 @@ class Workshop:
         return draft
 
     async def view(self, by: Actor) -> DraftView:
-        """The draft, for somebody who could undo what they did. Raises `WorkEndedError`."""
+        """The draft, for somebody who could undo what they did. Raises `WorkerError`."""
         draft = await self.open()
         files = await self._marked(draft)
 
@@ -143,24 +143,24 @@ class Workshop:
         return await self._identity.read(read)
 
     async def files(self, paths: Sequence[str] | None = None) -> str:
-        """JSON of a `FilesView` of the draft; all its files where none are named. Raises `WorkEndedError`."""
+        """JSON of a `FilesView` of the draft; all its files where none are named. Raises `WorkerError`."""
         return await self._files_of(await self.open(), paths)
 
     async def request(self, body: bytes, by: Actor) -> str:
         """Carry out the edits of a `ChangeBody`; the files that are others now, as JSON of a `FilesView`.
 
-        Raises `BodyError`, `EditError` and `WorkEndedError`.
+        Raises `BodyError`, `EditError` and `WorkerError`.
         """
         return (await self._changed(lambda draft: self._proposed(draft, "requested", body), by))[1]
 
     async def change(self, edits: Sequence[Edit], by: Actor, title: str) -> int:
-        """Carry edits out; the number of the change. Raises `EditError` and `WorkEndedError`."""
+        """Carry edits out; the number of the change. Raises `EditError` and `WorkerError`."""
         return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[0]
 
     async def rename(self, part: str, name: str, by: Actor) -> str:
         """Give a part another name, which all that name it follow; the files that are others now, as JSON.
 
-        Raises `EditError` and `WorkEndedError`.
+        Raises `EditError` and `WorkerError`.
         """
 
         async def propose(draft: Draft) -> DraftProposal:
@@ -172,13 +172,13 @@ class Workshop:
         return (await self._changed(propose, by))[1]
 
     async def usages(self, part: str) -> str:
-        """Return where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkEndedError`."""
+        """Return where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkerError`."""
         found = await self._process.ask((await self.open()).files, "used", part)
         assert isinstance(found, str)
         return found
 
     async def tied(self) -> str:
-        """Return what is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
+        """Return what is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkerError`."""
         async with self._tying:
             draft = await self.open()
             if self._tied is None or self._tied[0] != draft.number:
@@ -190,7 +190,7 @@ class Workshop:
     async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
         """Return how an ability goes through the run that shows a finding of the check of change `number`.
 
-        Raises `EditError` where there is no such run or ability, and `WorkEndedError`.
+        Raises `EditError` where there is no such run or ability, and `WorkerError`.
         """
         check, draft = await self.checked(), await self.open()
         if number != check.number or number != draft.number:
@@ -205,11 +205,11 @@ class Workshop:
         return found
 
     async def undo(self, by: Actor) -> str:
-        """Take back what somebody did last; JSON of a `FilesView`. Raises `EditError` and `WorkEndedError`."""
+        """Take back what somebody did last; JSON of a `FilesView`. Raises `EditError` and `WorkerError`."""
         return (await self._changed(lambda draft: self._again(draft, by, undo=True), by))[1]
 
     async def redo(self, by: Actor) -> str:
-        """Do again what somebody took back last; JSON of a `FilesView`. Raises `EditError` and `WorkEndedError`."""
+        """Do again what somebody took back last; JSON of a `FilesView`. Raises `EditError` and `WorkerError`."""
         return (await self._changed(lambda draft: self._again(draft, by, undo=False), by))[1]
 
     async def checked(self) -> CheckView:
@@ -218,20 +218,20 @@ class Workshop:
         return self._check or waiting(draft.number)
 
     async def revised(self) -> RevisionsView:
-        """All revisions. Raises `WorkEndedError`."""
+        """All revisions. Raises `WorkerError`."""
         draft = await self.open()
         found = await self._editing.ask(draft.files, "revised", self._revisions, draft.base)
         assert isinstance(found, tuple)
         return revisions_view(*found)
 
     async def files_of(self, revision: str) -> dict[str, str]:
-        """The files of a revision. Raises `EditError` where there is none, and `WorkEndedError`."""
+        """The files of a revision. Raises `EditError` where there is none, and `WorkerError`."""
         found = await self._editing.ask((await self.open()).files, "files_of", self._revisions, revision)
         assert isinstance(found, dict)
         return found
 
     async def save(self, draft: Draft, name: str, message: str, by: Actor) -> RevisionView:
-        """Save the draft under a name. Raises `EditError` and `WorkEndedError`."""
+        """Save the draft under a name. Raises `EditError` and `WorkerError`."""
         asked = self._revisions, draft.base, name, message, by, self._identity.now()
         saved = await self._editing.ask(draft.files, "saved", *asked)
         assert isinstance(saved, Revision)
@@ -257,7 +257,7 @@ class Workshop:
     async def restore(self, draft: Draft, files: Files, name: str, by: Actor) -> str:
         """Let the draft become these files, those of the revision `name`; JSON of a `FilesView` of what is other now.
 
-        Raises `EditError` and `WorkEndedError`.
+        Raises `EditError` and `WorkerError`.
         """
         edits = [
             WriteText(file=path, was=draft.files.get(path), text=files.get(path))
@@ -268,7 +268,7 @@ class Workshop:
         return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
 
     async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> str:
-        """Return what is answered to a question about a text, as JSON. Raises `WorkEndedError`."""
+        """Return what is answered to a question about a text, as JSON. Raises `WorkerError`."""
         draft = await self.open()
         answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
         assert isinstance(answer, str)
@@ -277,14 +277,14 @@ class Workshop:
     async def ask_pipelines(self, question: PipelineQuestion | bytes) -> str:
         """Return what is answered to a question about the pipelines, as JSON; bytes are the body of a `Preview`.
 
-        Raises `EditError`, `BodyError` and `WorkEndedError`.
+        Raises `EditError`, `BodyError` and `WorkerError`.
         """
         answer = await self._asked(question, as_json=True)
         assert isinstance(answer, str)
         return answer
 
     async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
-        """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
+        """Add an example to the draft. Raises `EditError` and `WorkerError`."""
         question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)
         (made,) = await self._asked(question, as_json=False)
         edit = AddEntry(file=made.file, path=[*made.path, 0], value=made.example)

@@ -19,8 +19,7 @@ from sequence_planner.journal import run_journal
 from sequence_planner.journal.archive import Archive, Index
 from sequence_planner.journal.run_journal import RecordPlace
 from sequence_planner.mes.retention import OrderFile, order_files
-from sequence_planner.process import worker
-from sequence_planner.process.worker import EndedEarlyError
+from sequence_planner.process.task import BackgroundTask, WorkerError
 from sequence_planner.retention import retention as folder
 from sequence_planner.retention.retention import (
     Day,
@@ -42,6 +41,7 @@ FIRST_AFTER: Final = 60.0  # seconds after the start: what is needed to produce 
 EVERY: Final = 600.0  # seconds between two passes
 SOON: Final = 5.0  # seconds where the last pass has left something to do
 LONGEST: Final = 3600.0  # seconds after which a pass is given up
+_NICENESS: Final = 10  # below the station and what people wait for
 
 
 @dataclass(frozen=True)
@@ -135,17 +135,18 @@ class RetentionService:
     async def _pass(self, by: Actor | None) -> None:
         self.busy = by or SYSTEM
         task = RetentionTask(self._url, self._model, self.retention, self.busy, everything=by is not None)
+        work = BackgroundTask(folder.do, (task,), "retention", _NICENESS, errors=(StorageError,), leads=True)
         trouble: str | None = None
         try:
-            done = await worker.carried_out("sequence_planner.retention.retention:do", task, LONGEST)
-            assert isinstance(done, Done)
+            async with asyncio.timeout(LONGEST):
+                done = await work.found()
             self.done, self.last_done = done, self._office.now()
             if done.records or done.orders or done.removed:
                 LOG.info("what is old was cut", records=done.records, orders=done.orders, files_removed=done.removed)
             await self.look()
         except StorageError as error:
             trouble = str(error)
-        except (EndedEarlyError, TimeoutError) as error:
+        except (WorkerError, TimeoutError) as error:
             trouble = f"its process has ended too early ({type(error).__name__}): is memory short? It is tried again"
         except Exception as error:  # whatever it is, the next pass may be better
             LOG.exception("retention failed")
