@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -31,8 +30,9 @@ from sequence_planner.model.stage_documents import (
     UndiscretiseDocument,
 )
 from sequence_planner.testing import Example, examples
+from support.places import DOCS
 
-TEXT = (Path(__file__).parents[2] / "docs" / "pipelines.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "pipelines.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```\w+ (\S+)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import sequence_planner
+from support.places import DOCS
 
 ROOT = Path(sequence_planner.__file__).parent
 NAME = sequence_planner.__name__
@@ -137,4 +138,4 @@ def test_classes_have_names_of_their_own() -> None:
 @pytest.mark.parametrize("layer", LAYERS)
 def test_each_package_is_in_the_picture(layer: str) -> None:
     """A newcomer finds every package in the table of `docs/architecture.md`."""
-    assert f"`{layer}`" in (Path(__file__).parents[3] / "docs" / "architecture.md").read_text(encoding="utf-8")
+    assert f"`{layer}`" in (DOCS / "architecture.md").read_text(encoding="utf-8")

@@ -14,9 +14,10 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.commands import AcknowledgeTask, ProblemKind, ReportProblem, SolveProblem
 from sequence_planner.controller.commands.production import Command, ReleaseControl, TakeControl
 from sequence_planner.core.actor import ActorKind
+from support.waiting import until
 
 from .example_view import example_view
-from .running import Controller, Server, until
+from .running import Controller, Server
 
 
 def problem(answer: httpx.Response, status: int, slug: str) -> dict[str, Any]:
