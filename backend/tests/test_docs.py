@@ -33,9 +33,9 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import DOCS, REPOSITORY
 
-REPOSITORY = Path(__file__).parents[2]
-TEXT = "".join((REPOSITORY / "docs" / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))
+TEXT = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))
 BLOCKS = re.findall(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
 ERRORS = re.findall(r"^\| `` (.*?) `` \| `` (\d+:\d+: .*) `` \|$", TEXT, re.MULTILINE)
 EXPRESSION_ERRORS = re.findall(r"^\| `` (.*?) `` \| `` (\d+): (.*) `` \|$", TEXT, re.MULTILINE)

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).parents[2]
-SOURCE = REPOSITORY / "backend" / "src" / "sequence_planner"
-TEXT = (REPOSITORY / "docs" / "command-line.md").read_text(encoding="utf-8")
-EXPORT = (REPOSITORY / "docs" / "export.md").read_text(encoding="utf-8")
+from support.places import DOCS, REPOSITORY, SOURCES
+
+TEXT = (DOCS / "command-line.md").read_text(encoding="utf-8")
+EXPORT = (DOCS / "export.md").read_text(encoding="utf-8")
 SESSION = re.compile(r"^```console\n\$ (.*)\n((?:.*\n)*?)```$", re.MULTILINE)
 SESSIONS = [*SESSION.findall(TEXT), *SESSION.findall(EXPORT)]
 KINDS = re.compile(r'"([a-z]+(?:-[a-z]+)+)"')
@@ -41,7 +41,7 @@ def test_it_prints_what_is_shown(line: str, printed: str) -> None:
 
 
 def test_every_kind_of_warning_is_described() -> None:
-    files = [*(SOURCE / "analysis" / "checks").glob("*.py"), SOURCE / "cli" / "model" / "check.py"]
+    files = [*(SOURCES / "analysis" / "checks").glob("*.py"), SOURCES / "cli" / "model" / "check.py"]
     kinds = {kind for file in files for kind in KINDS.findall(file.read_text(encoding="utf-8"))}
     rows = re.findall(r"^\| ((?:`[a-z-]+`(?:, )?)+) \|", TEXT, re.MULTILINE)
     described = {kind for row in rows for kind in re.findall(r"`([a-z-]+)`", row)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.parser import parse
@@ -12,17 +11,16 @@ from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import Supervision
 from sequence_planner.synthesis.transition_relation import Plant
+from support.places import DOCS, SINGLE_BOLT
 
-REPOSITORY = Path(__file__).parents[2]
-MODEL = REPOSITORY / "models" / "single_bolt"
-TEXT = (REPOSITORY / "docs" / "first-station.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "first-station.md").read_text(encoding="utf-8")
 PROSE = re.sub(r"^```.*?^```$", "", TEXT, flags=re.MULTILINE | re.DOTALL)
 BLOCKS = re.findall(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
 
 
 def written() -> str:
     """All that the files of the model say, in one line."""
-    files = (path.read_text(encoding="utf-8") for path in sorted(MODEL.rglob("*.*")) if path.is_file())
+    files = (path.read_text(encoding="utf-8") for path in sorted(SINGLE_BOLT.rglob("*.*")) if path.is_file())
     return " ".join(" ".join(files).split())
 
 
@@ -41,7 +39,7 @@ def test_the_pipelines_are_those_of_the_model() -> None:
     assert len(pipelines) == 2
     assert "*poses" in pipelines[1]
     text = "".join(f"{place}:\n{pipeline}" for place, pipeline in zip("ab", pipelines, strict=True))
-    robot = read_text((MODEL / "resources" / "robot.yaml").read_text(encoding="utf-8"), "robot.yaml").content
+    robot = read_text((SINGLE_BOLT / "resources" / "robot.yaml").read_text(encoding="utf-8"), "robot.yaml").content
     assert isinstance(robot, dict)
     topics = robot["topics"]
     expected = {"a": topics["/robot/state"]["pipeline"], "b": topics["/robot/command"]["pipeline"]}
@@ -50,7 +48,7 @@ def test_the_pipelines_are_those_of_the_model() -> None:
 
 def test_the_guard_shown_is_the_one_that_is_added() -> None:
     ((ability, shown),) = ((label, content) for kind, label, content in BLOCKS if kind == "guard")
-    automaton: Automaton = prepare_station(MODEL).automaton
+    automaton: Automaton = prepare_station(SINGLE_BOLT).automaton
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
     reached = supervision.reachable(supervised=True)
     guard = supervision.plant.where(resolve_predicate(parse(shown.strip()), NameScope(automaton.types)))

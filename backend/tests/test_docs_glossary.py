@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
-PAGE = Path(__file__).parents[2] / "docs" / "glossary.md"
+from support.places import DOCS
+
+PAGE = DOCS / "glossary.md"
 TERMS, SOURCES = (
     [[cell.strip() for cell in line.strip("|").split("|")] for line in part.splitlines() if line.startswith("| ")]
     for part in PAGE.read_text(encoding="utf-8").split("## Sources")

@@ -12,10 +12,10 @@ from typer.main import get_command
 
 from sequence_planner.cli.lazy import LazyCommand
 from sequence_planner.cli.main import app
+from support.places import BACKEND, DOCS, REPOSITORY
 
-REPOSITORY = Path(__file__).parents[2]
-PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
-SOURCES = "".join(each.read_text(encoding="utf-8") for each in (REPOSITORY / "backend" / "src").rglob("*.py"))
+PAGES = [REPOSITORY / "README.md", *sorted((DOCS).glob("*.md"))]
+SOURCES = "".join(each.read_text(encoding="utf-8") for each in (BACKEND / "src").rglob("*.py"))
 # Of `docker compose`, curl, pip and the like, which stand on a line with a command of ours.
 OF_OTHERS = {"--system", "--home-dir", "--pty", "--uid", "--setenv", "--url", "--require-hashes", "--no-deps"}
 

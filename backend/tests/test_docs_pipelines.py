@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -19,8 +18,9 @@ from sequence_planner.model.stages.map import TableRowDocument
 from sequence_planner.model.stages.registry import KINDS, StageDocument
 from sequence_planner.model.stages.timing import BoundsDocument, EveryDocument
 from sequence_planner.testing import Example, examples
+from support.places import DOCS
 
-TEXT = (Path(__file__).parents[2] / "docs" / "pipelines.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "pipelines.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```\w+ (\S+)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
 
 

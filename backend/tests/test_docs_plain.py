@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -14,8 +13,9 @@ from sequence_planner.model.fields import DocumentPart
 from sequence_planner.planning.efa_planner import plan_transitions
 from sequence_planner.planning.problem import goals_of
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import DOCS
 
-TEXT = (Path(__file__).parents[2] / "docs" / "plain-automata.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "plain-automata.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")

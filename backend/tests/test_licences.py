@@ -11,8 +11,7 @@ from typing import cast
 import pytest
 
 from licences import licences, locked, trouble, troubles
-
-BACKEND = Path(__file__).parents[1]
+from support.places import BACKEND
 
 
 def test_no_package_of_the_run_time_set_is_copyleft() -> None:

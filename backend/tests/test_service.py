@@ -19,10 +19,10 @@ from sequence_planner.cli.main import app
 from sequence_planner.process.service_manager import ServiceManager
 from sequence_planner.settings import PREFIX, Configuration
 from sequence_planner.startup.station_process import UNUSABLE
+from support.places import BACKEND, REPOSITORY
 
-ROOT = Path(__file__).parents[2]
-UNIT = ROOT / "deploy" / "sequence-planner@.service"
-PAGE = ROOT / "frontend" / "build"
+UNIT = REPOSITORY / "deploy" / "sequence-planner@.service"
+PAGE = REPOSITORY / "frontend" / "build"
 
 
 def settings(section: str) -> dict[str, list[str]]:
@@ -98,7 +98,7 @@ def test_nobody_is_told_where_nobody_asks() -> None:
 
 @pytest.mark.skipif(not (PAGE / "index.html").is_file(), reason="the page is not built: make page")
 def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
-    script = ROOT / "backend" / "packaging" / "distribute.py"
+    script = BACKEND / "packaging" / "distribute.py"
     subprocess.run([sys.executable, script, PAGE, tmp_path], check=True, capture_output=True, timeout=120)
     (wheel,), (sdist,) = tmp_path.glob("*.whl"), tmp_path.glob("*.tar.gz")
     with zipfile.ZipFile(wheel) as archive:
@@ -109,7 +109,7 @@ def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
     for said in ("Author: The developers of Sequence Planner", "Keywords: automation", "Classifier: Typing :: Typed"):
         assert said in metadata
     assert "# Sequence Planner" in metadata  # the README
-    source, page = ROOT / "backend" / "src", PAGE
+    source, page = BACKEND / "src", PAGE
     modules = {each.relative_to(source).as_posix() for each in source.rglob("*.py") if "page" not in each.parts}
     built = {f"sequence_planner/page/{each.relative_to(page).as_posix()}" for each in page.rglob("*") if each.is_file()}
     templates = source / "sequence_planner" / "cli" / "templates"

@@ -18,10 +18,9 @@ from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import Supervision, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
+from support.places import DOCS, MODELS, REPOSITORY
 
-REPOSITORY = Path(__file__).parents[2]
-MODELS = REPOSITORY / "models"
-TEXT = (REPOSITORY / "docs" / "tutorial.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "tutorial.md").read_text(encoding="utf-8")
 FIRST_PART, SECOND_PART = TEXT.split("\n# Part 2")
 
 

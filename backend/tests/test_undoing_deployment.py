@@ -32,8 +32,8 @@ from sequence_planner.process.parent_watch import DEPLOYED, OVERTAKEN
 from sequence_planner.startup import deployment
 from sequence_planner.startup.deployment import LONGEST_START, UnderWay
 from sequence_planner.startup.station_process import Executed, StationProcess
+from support.places import SINGLE_BOLT
 
-MODEL = Path(__file__).parents[2] / "models" / "single_bolt"
 NOTE = DeploymentNote(revision="1" * 40, name="Repaired", by="anna", time=1.0)
 
 
@@ -64,7 +64,7 @@ class Now:
 
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
-    return Path(shutil.copytree(MODEL, tmp_path / "model"))
+    return Path(shutil.copytree(SINGLE_BOLT, tmp_path / "model"))
 
 
 @pytest.fixture
@@ -158,7 +158,7 @@ def test_one_that_is_overtaken_while_it_starts_gets_all_the_time_again(model: Pa
     now.seconds += 2
     watch.look()
     assert controller.done == ["stop", "spawn"]
-    assert read_contents(model) == read_contents(MODEL)
+    assert read_contents(model) == read_contents(SINGLE_BOLT)
 
 
 def test_one_that_waits_as_somebody_else_commands_has_not_failed(model: Path, beside: Path, now: Now) -> None:
@@ -183,7 +183,7 @@ def test_one_that_dies_while_it_waits_has_failed(model: Path, beside: Path, now:
     controller.ended = 1
     watch.look()
     assert controller.done == ["stop", "spawn"]
-    assert read_contents(model) == read_contents(MODEL)
+    assert read_contents(model) == read_contents(SINGLE_BOLT)
 
 
 def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_first(
@@ -296,7 +296,7 @@ def test_whoever_starts_after_a_cut_off_finds_the_model_whole(model: Path, besid
         assert read_contents(model) == before
     assert undo_what_was_cut_off(model) is None, "once is enough"
     if not whole:
-        assert sorted(each.name for each in model.rglob("*")) == sorted(each.name for each in MODEL.rglob("*"))
+        assert sorted(each.name for each in model.rglob("*")) == sorted(each.name for each in SINGLE_BOLT.rglob("*"))
 
 
 def test_a_model_that_is_half_brought_back_is_brought_back(model: Path, beside: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 
@@ -21,8 +19,8 @@ from sequence_planner.language.types import Value
 from sequence_planner.process.budget import Budget
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
+from support.places import BOLT_TIGHTENING, MODELS
 
-MODELS = Path(__file__).parents[3] / "models"
 PATIENCE = 60.0
 
 
@@ -112,5 +110,5 @@ def test_both_ways_find_the_pairs_of_a_station(folder: str) -> None:
 
 
 def test_no_time_is_no_answer() -> None:
-    made = prepare_station(MODELS / "bolt_tightening").automaton
+    made = prepare_station(BOLT_TIGHTENING).automaton
     assert never_together(made, synthesise(made), Budget.seconds(0.0), most_bits=0) is None

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from controller.bench import cell, until
+from controller.bench import cell
 from controller.rig import truck_engine
 from core.building import automaton
 from sequence_planner.analysis.analysis import Analysis
@@ -19,6 +19,7 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.process.task import WorkerError
+from support.waiting import until_async
 
 
 def processes() -> list[Child]:
@@ -69,7 +70,7 @@ def test_whoever_no_longer_wants_it_does_not_wait() -> None:
 def test_a_process_that_is_killed_is_not_waited_for() -> None:
     async def scenario() -> None:
         computing = asyncio.create_task(all_of(truck_engine()[0].automaton))
-        await until(lambda: bool(processes()))
+        await until_async(lambda: bool(processes()))
         processes()[0].kill()
         with pytest.raises(WorkerError, match="has ended without an answer"):
             await computing

@@ -12,14 +12,13 @@ from sequence_planner.analysis.cache import automaton_read_before, content_key, 
 from sequence_planner.analysis.store import folder, key
 from sequence_planner.cli import loading
 from sequence_planner.cli.loading import load_model, usable_automaton
-
-MODELS = Path(__file__).parents[3] / "models"
+from support.places import MODELS, SINGLE_BOLT
 
 
 @pytest.fixture
 def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    return Path(shutil.copytree(MODELS / "single_bolt", tmp_path / "model"))
+    return Path(shutil.copytree(SINGLE_BOLT, tmp_path / "model"))
 
 
 def test_a_model_that_was_read_before_is_not_read_again(model: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.places import CELL
 
-CELL = Path(__file__).parents[1] / "stations" / "cell"
 DOMAIN = 1 + (os.getpid() + 30) % 100
 MESSAGES = {
     "PressState": "bool closed\nuint8 mode\nfloat64 force\nstring program\nfloat64[2] position\nTool tool\n",

@@ -15,7 +15,8 @@ from sequence_planner.journal.audit import read
 from sequence_planner.model.files import read_files
 from sequence_planner.server.settings import Settings
 from sequence_planner.station import prepare_station
-from server.running import Loop, Server, free_port
+from server.running import Loop, Server
+from support.network import free_port
 
 from .pressing import DOMAIN, press, station
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import CELL, command
+from cli.commands import command
 from db.servers import Server
 from journal.acts import act, filled
 from journal.happened import happened
@@ -32,6 +32,7 @@ from sequence_planner.journal import audit, checkpoints, run_journal
 from sequence_planner.journal.checkpoints import key_file
 from sequence_planner.journal.verify import verify
 from sequence_planner.model.files import read_files
+from support.places import CELL
 
 Anew = Callable[[], str]
 

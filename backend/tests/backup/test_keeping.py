@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import CELL
 from journal.acts import filled
 from sequence_planner.backup.archive import How, Maker
 from sequence_planner.backup.errors import BackupError, Trouble, trouble_of
@@ -18,6 +17,7 @@ from sequence_planner.backup.service import BackupTask, Shelf, Step, back_up, do
 from sequence_planner.backup.settings import Keeping
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import mark_of
+from support.places import CELL
 
 MAKER = Maker(how=How.SCHEDULE, name="Sequence Planner")
 

@@ -7,15 +7,15 @@ from shutil import copytree
 
 import pytest
 
-from cli.commands import TRUCK
 from core.replaying import replay
 from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.large_reachability import FarAnswers, from_afar
 from sequence_planner.analysis.checks.supervised import subjects_of
 from sequence_planner.cli.loading import load_model
 from sequence_planner.synthesis.supervisor import supervised, supervisor
+from support.places import BOLT_TIGHTENING
 
-STATION = TRUCK.with_name("truck_engine_station")
+STATION = BOLT_TIGHTENING.with_name("truck_engine_station")
 LOOSENED = (
     "position == AttachAtlasTCPPose implies end_effector.tool in {none, ATLASTOOL}",
     "position == AttachAtlasTCPPose implies end_effector.tool in {none, ATLASTOOL, OFTOOL}",

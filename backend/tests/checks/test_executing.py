@@ -8,12 +8,11 @@ from checks.small import device, found
 from sequence_planner.analysis.checks.rules import check_executing
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.model.loader import load_station
-
-STATIONS = Path(__file__).parents[1] / "stations"
+from support.places import WORKED_EXAMPLE
 
 
 def test_the_worked_example_warns_about_run_nut_and_about_nothing_else() -> None:
-    (warning,) = check_executing(ground(load_station(STATIONS / "worked_example")))
+    (warning,) = check_executing(ground(load_station(WORKED_EXAMPLE)))
     assert warning.place.file.endswith("nutrunner.yaml")
     assert (warning.place.line, warning.place.column, warning.kind) == (19, 13, "relies-on-executing")
     assert warning.message == (

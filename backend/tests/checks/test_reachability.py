@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from sequence_planner.analysis.checks.reachability import cannot_be
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
 from sequence_planner.automaton.automaton import Automaton
@@ -16,8 +14,7 @@ from sequence_planner.language.syntax import Expression
 from sequence_planner.model.loader import load_station
 from sequence_planner.synthesis.supervisor import Supervision
 from sequence_planner.synthesis.transition_relation import Plant
-
-STATIONS = Path(__file__).parents[1] / "stations"
+from support.places import WORKED_EXAMPLE
 
 
 def predicate(automaton: Automaton, text: str) -> Expression:
@@ -26,7 +23,7 @@ def predicate(automaton: Automaton, text: str) -> Expression:
 
 def test_what_is_reached_is_never_said_to_be_impossible() -> None:
     """For every pair of values of every two variables of the worked example."""
-    automaton = ground(load_station(STATIONS / "worked_example"))
+    automaton = ground(load_station(WORKED_EXAMPLE))
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
     members = supervision.plant.diagrams.exported(supervision.reachable(supervised=False)).members()
     full = [synchronise(automaton, {**automaton.initial_valuation, **member}) for member in members]

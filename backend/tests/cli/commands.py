@@ -10,11 +10,6 @@ from typer.testing import CliRunner
 
 from sequence_planner.cli.main import app
 
-TESTS = Path(__file__).parents[1]
-CELL = TESTS / "stations" / "cell"
-EXAMPLE = TESTS / "stations" / "worked_example"
-TRUCK = TESTS.parents[1] / "models" / "bolt_tightening"
-
 PLAIN = """
 {"name": "two-users", "variables": {"user": ["idle", "waits", "has"], "free": "bool"},
  "initial": "user == idle and free",

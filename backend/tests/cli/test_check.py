@@ -6,13 +6,14 @@ import json
 import shutil
 from pathlib import Path
 
-from cli.commands import CELL, EXAMPLE, TRUCK, as_json, command, plain
+from cli.commands import as_json, command, plain
+from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
 
 
 def test_a_fine_station() -> None:
-    code, document = as_json("check", TRUCK)
+    code, document = as_json("check", BOLT_TIGHTENING)
     assert code == 0
-    assert (document["model"], document["findings"]) == (str(TRUCK), [])
+    assert (document["model"], document["findings"]) == (str(BOLT_TIGHTENING), [])
     assert document["summary"]["kind"] == "station"
     assert "robot.move_to_position(bolt_pair_1)" in document["summary"]["guarded_abilities"]
 
@@ -66,11 +67,11 @@ def test_one_of_each_is_told_as_one(tmp_path: Path) -> None:
 
 
 def test_warnings_for_programs() -> None:
-    code, document = as_json("check", EXAMPLE)
+    code, document = as_json("check", WORKED_EXAMPLE)
     assert code == 1
     (finding,) = [each for each in document["findings"] if each["kind"] == "relies-on-executing"]
     assert finding.pop("message").startswith("`nutrunner.run_nut` finishes only after it was seen executing")
-    file = str(EXAMPLE / "resources" / "nutrunner.yaml")
+    file = str(WORKED_EXAMPLE / "resources" / "nutrunner.yaml")
     place = {"file": file, "line": 19, "column": 13}
     assert finding == {"severity": "warning", "kind": "relies-on-executing", **place, "trace": None}
 

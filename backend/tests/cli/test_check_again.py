@@ -14,8 +14,7 @@ from sequence_planner.analysis.store import folder
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.cli.analysing import Found, Limits, checked
 from sequence_planner.cli.model import check as module
-
-MODELS = Path(__file__).parents[3] / "models"
+from support.places import MODELS
 
 
 @pytest.fixture

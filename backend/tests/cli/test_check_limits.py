@@ -11,12 +11,13 @@ from shutil import copytree
 import pytest
 
 from checks.large import write_large_station
-from cli.commands import TRUCK, as_json, command
+from cli.commands import as_json, command
 from sequence_planner.analysis.worker import telling
 from sequence_planner.cli.analysing import Limits, checked
 from sequence_planner.cli.loading import load_model
 from sequence_planner.process.memory_limit import MemoryLimitError, memory_limit
 from sequence_planner.process.task import WorkerError
+from support.places import BOLT_TIGHTENING
 
 COUNTS = """
   made: {type: 0..200}
@@ -42,7 +43,7 @@ def growing() -> Iterator[int]:
 
 
 def test_the_deadline_is_that_of_everything_and_what_is_left_is_said() -> None:
-    model = load_model(TRUCK)
+    model = load_model(BOLT_TIGHTENING)
     found = checked(model.automaton, model.connections, Limits(deadline=0.001))
     assert found.unfinished is not None
     assert found.unfinished.startswith(
@@ -52,7 +53,7 @@ def test_the_deadline_is_that_of_everything_and_what_is_left_is_said() -> None:
 
 def test_a_model_that_cannot_be_read_in_time_is_one_of_which_nothing_was_found_out(tmp_path: Path) -> None:
     """It may be usable, for all that is known."""
-    station = copytree(TRUCK.with_name("truck_engine_station"), tmp_path / "truck_engine_station")
+    station = copytree(BOLT_TIGHTENING.with_name("truck_engine_station"), tmp_path / "truck_engine_station")
     late = f"{station}: it could not be read within 0.1 s: allow more with --deadline\n"
     assert command("check", station, "--deadline", "0.1") == (1, "", late)
 
@@ -92,10 +93,10 @@ def test_the_limit_is_a_setting() -> None:
     for wrong in ("much", "0", "-1", "nan"):
         with pytest.raises(MemoryLimitError, match=r"write how many GB, 0\.25 to 1024"):
             memory_limit({"SEQUENCE_PLANNER_MEMORY": wrong})
-    code, _, err = command("check", TRUCK, "--memory", "0")
+    code, _, err = command("check", BOLT_TIGHTENING, "--memory", "0")
     assert (code, "--memory" in err) == (2, True)
 
 
 def test_what_is_kept_of_a_model_leaves_the_checks_to_be_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert as_json("check", TRUCK) == as_json("check", TRUCK)
+    assert as_json("check", BOLT_TIGHTENING) == as_json("check", BOLT_TIGHTENING)

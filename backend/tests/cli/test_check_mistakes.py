@@ -7,12 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import TRUCK, command
+from cli.commands import command
+from support.places import BOLT_TIGHTENING
 
 
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
-    return Path(shutil.copytree(TRUCK, tmp_path / "station"))
+    return Path(shutil.copytree(BOLT_TIGHTENING, tmp_path / "station"))
 
 
 def change(file: Path, old: str, new: str) -> None:

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from cli.commands import CELL, EXAMPLE, TESTS, TRUCK, as_json, command, plain
+from cli.commands import as_json, command, plain
 from sequence_planner.cli.loading import load_model
+from support.places import BOLT_TIGHTENING, CELL, TESTS, WORKED_EXAMPLE
 
 SCHEMA = TESTS.parents[1] / "docs" / "schemas" / "efa.schema.json"
 
 
-@pytest.mark.parametrize("model", [EXAMPLE, TRUCK, CELL], ids=lambda path: path.name)
+@pytest.mark.parametrize("model", [WORKED_EXAMPLE, BOLT_TIGHTENING, CELL], ids=lambda path: path.name)
 def test_a_station_as_a_plain_automaton_that_can_be_read(model: Path, tmp_path: Path) -> None:
     file = tmp_path / "station.efa.json"
     code, out, _ = command("export", model, "--to", "efa", "--output", file)
@@ -26,8 +27,8 @@ def test_a_station_as_a_plain_automaton_that_can_be_read(model: Path, tmp_path: 
 
 def test_the_same_starts_are_guarded(tmp_path: Path) -> None:
     file = tmp_path / "station.efa.json"
-    command("export", EXAMPLE, "--to", "efa", "--output", file)
-    station, written = (as_json("check", model)[1]["summary"] for model in (EXAMPLE, file))
+    command("export", WORKED_EXAMPLE, "--to", "efa", "--output", file)
+    station, written = (as_json("check", model)[1]["summary"] for model in (WORKED_EXAMPLE, file))
     assert written["kind"] == "plain automaton"
     assert {"operator.place_bolt", "robot.move(bolt_pair)"} <= set(written["guarded_abilities"])
     assert written["guarded_abilities"] == station["guarded_abilities"]
@@ -35,7 +36,7 @@ def test_the_same_starts_are_guarded(tmp_path: Path) -> None:
 
 def test_its_goals_can_be_planned(tmp_path: Path) -> None:
     file = tmp_path / "station.efa.json"
-    command("export", EXAMPLE, "--to", "efa", "--output", file)
+    command("export", WORKED_EXAMPLE, "--to", "efa", "--output", file)
     code, document = as_json("plan", file, "goal_1", "--deadline", "60")
     assert (code, document["status"]) == (0, "plan")
     assert document["transitions"].count("tick") >= 5
@@ -50,7 +51,7 @@ def test_to_standard_output(tmp_path: Path) -> None:
 
 
 def test_what_is_not_said_and_new_names() -> None:
-    code, _, err = command("export", TRUCK, "--to", "efa")
+    code, _, err = command("export", BOLT_TIGHTENING, "--to", "efa")
     lines = err.splitlines()
     assert code == 0
     assert lines[0] == "restart abilities are left out: robot.move_to_previous"

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import EXAMPLE, TRUCK, command, plain
+from cli.commands import command, plain
+from support.places import BOLT_TIGHTENING, WORKED_EXAMPLE
 
 
 def test_the_problem_is_put_beside_the_domain(tmp_path: Path) -> None:
     file = tmp_path / "station.pddl"
     goal = "bolts[bolt_pair_1] == tightened"
-    assert command("export", TRUCK, "--to", "pddl", "--goal", goal, "--output", file) == (0, "", "")
+    assert command("export", BOLT_TIGHTENING, "--to", "pddl", "--goal", goal, "--output", file) == (0, "", "")
     problem = (tmp_path / "station.problem.pddl").read_text(encoding="utf-8")
     assert file.read_text(encoding="utf-8").startswith("(define (domain ")
     assert "(:goal (reached_bolts_bolt_pair_1_tightened))" in problem
@@ -30,7 +31,7 @@ def test_a_plain_automaton_asks_for_what_is_wanted(tmp_path: Path) -> None:
 def test_in_smv_from_another_state(tmp_path: Path) -> None:
     state = tmp_path / "state.json"
     state.write_text(json.dumps({"state": {"bolts": "placed"}}), encoding="utf-8")
-    code, out, err = command("export", EXAMPLE, "--to", "smv", "--state", state)
+    code, out, err = command("export", WORKED_EXAMPLE, "--to", "smv", "--state", state)
     assert (code, err) == (0, "")
     assert "\nMODULE main\n" in out
     assert "  init(bolts) := v_placed;\n" in out
@@ -44,6 +45,6 @@ def test_in_smv_from_another_state(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_refused(options: tuple[str, ...], said: str) -> None:
-    code, out, err = command("export", EXAMPLE, *options)
+    code, out, err = command("export", WORKED_EXAMPLE, *options)
     assert (code, out) == (2, "")
     assert err.startswith(said)

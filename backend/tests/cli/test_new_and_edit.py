@@ -17,7 +17,7 @@ from ruamel.yaml import YAML
 
 from cli.commands import as_json, command
 from running.signing_in import signed_in
-from running.stations import DOMAIN
+from support.network import DOMAIN
 
 
 @pytest.fixture

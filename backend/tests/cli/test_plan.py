@@ -9,15 +9,16 @@ from pathlib import Path
 import pytest
 from pytest import MonkeyPatch
 
-from cli.commands import EXAMPLE, as_json, command, plain
+from cli.commands import as_json, command, plain
 from sequence_planner.export.unified import installed
+from support.places import WORKED_EXAMPLE
 
 PLACED = json.dumps({"state": {"bolts": "placed"}})
 
 
 def test_the_plan_of_the_worked_example() -> None:
     """Six ticks and three starts, as the semantics says."""
-    code, document = as_json("plan", EXAMPLE, "--state", "-", given=PLACED)
+    code, document = as_json("plan", WORKED_EXAMPLE, "--state", "-", given=PLACED)
     assert (code, document["status"], document["contract"]) == (0, "plan", "minimal")
     assert (document["goals"], document["left_out"], document["ticks"]) == (["tighten_bolt_pair"], [], 6)
     assert [sorted(tick["starts"]) for tick in document["schedule"]] == [
@@ -33,7 +34,7 @@ def test_the_plan_of_the_worked_example() -> None:
 
 
 def test_a_fast_plan_says_so_or_is_minimal() -> None:
-    code, document = as_json("plan", EXAMPLE, "--state", "-", "--contract", "fast", given=PLACED)
+    code, document = as_json("plan", WORKED_EXAMPLE, "--state", "-", "--contract", "fast", given=PLACED)
     assert (code, document["status"]) == (0, "plan")
     assert document["contract"] in ("fast", "minimal")
     assert document["ticks"] >= 6
@@ -42,7 +43,7 @@ def test_a_fast_plan_says_so_or_is_minimal() -> None:
 
 def test_a_plan_for_people() -> None:
     """A lane for each resource that does something."""
-    code, out, err = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", given=PLACED)
+    code, out, err = command("plan", WORKED_EXAMPLE, "tighten_bolt_pair", "--state", "-", given=PLACED)
     assert (code, err) == (0, "")
     *lanes, said = [line.split() for line in out.splitlines()]
     assert lanes[0] == ["tick", "nutrunner", "robot"]
@@ -53,32 +54,32 @@ def test_a_plan_for_people() -> None:
 
 
 def test_what_is_expected_is_shown_when_asked_for() -> None:
-    _, out, _ = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", "--expected", given=PLACED)
+    _, out, _ = command("plan", WORKED_EXAMPLE, "tighten_bolt_pair", "--state", "-", "--expected", given=PLACED)
     assert out.splitlines()[-3].split() == ["6", "~", "run_nut.torque_is_reached"]
 
 
 def test_lanes_that_do_not_fit_become_one(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "30")
-    _, out, _ = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", given=PLACED)
+    _, out, _ = command("plan", WORKED_EXAMPLE, "tighten_bolt_pair", "--state", "-", given=PLACED)
     assert out.splitlines()[1] in ("      robot.move(above)", "      nutrunner.run_nut")
 
 
 def test_what_holds_already_needs_no_plan() -> None:
-    code, out, _ = command("plan", EXAMPLE, "--goal", "robot.pose == home")
+    code, out, _ = command("plan", WORKED_EXAMPLE, "--goal", "robot.pose == home")
     assert (code, out) == (0, "robot.pose == home: nothing to do, all of it holds already\n")
-    assert as_json("plan", EXAMPLE, "--goal", "robot.pose == home")[1]["contract"] == "minimal"
+    assert as_json("plan", WORKED_EXAMPLE, "--goal", "robot.pose == home")[1]["contract"] == "minimal"
 
 
 def test_goals_by_expression() -> None:
-    code, document = as_json("plan", EXAMPLE, "--goal", "robot.pose == above", "--goal", "bolts == placed")
+    code, document = as_json("plan", WORKED_EXAMPLE, "--goal", "robot.pose == above", "--goal", "bolts == placed")
     assert (code, set(document["goals"])) == (0, {"robot.pose == above", "bolts == placed"})
     assert sorted(document["starts"]) == ["operator.place_bolt", "robot.move(above)"]
-    code, _, err = command("plan", EXAMPLE, "--goal", "robot.pose = above")
+    code, _, err = command("plan", WORKED_EXAMPLE, "--goal", "robot.pose = above")
     assert (code, err.startswith("--goal 'robot.pose = above': ")) == (2, True)
 
 
 def test_circumstances() -> None:
-    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above")
+    goal = ("plan", WORKED_EXAMPLE, "--goal", "robot.pose == above")
     assert as_json(*goal)[1]["status"] == "plan"
     code, document = as_json(*goal, "--offline", "robot")
     assert (code, document["status"]) == (1, "none")
@@ -87,18 +88,18 @@ def test_circumstances() -> None:
     assert as_json(*goal, "--without", "robot.move(home)")[1]["status"] == "plan"
     code, document = as_json(*goal, "--without", "robot.move(above)")
     assert (code, document["status"]) == (1, "none")
-    assert command("plan", EXAMPLE, "--offline", "robo")[0::2] == (
+    assert command("plan", WORKED_EXAMPLE, "--offline", "robo")[0::2] == (
         2,
         "there is no resource `robo`; did you mean `robot`?\n",
     )
-    assert command("plan", EXAMPLE, "--without", "robot.move(abov)")[0::2] == (
+    assert command("plan", WORKED_EXAMPLE, "--without", "robot.move(abov)")[0::2] == (
         2,
         "there is no ability `robot.move(abov)`; did you mean `robot.move(above)`?\n",
     )
 
 
 def test_it_says_why_there_is_no_plan_at_all() -> None:
-    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above", "--offline", "robot", "--offline", "operator")
+    goal = ("plan", WORKED_EXAMPLE, "--goal", "robot.pose == above", "--offline", "robot", "--offline", "operator")
     code, out, _ = command(*goal)
     first, *rest = out.splitlines()
     assert (code, first.startswith("no plan at all, proven: robot.pose == above (")) == (1, True)
@@ -117,7 +118,7 @@ def test_it_says_why_there_is_no_plan_at_all() -> None:
 
 
 def test_it_says_which_ability_out_of_service_is_in_the_way() -> None:
-    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above", "--without", "robot.move(above)")
+    goal = ("plan", WORKED_EXAMPLE, "--goal", "robot.pose == above", "--without", "robot.move(above)")
     code, out, _ = command(*goal)
     assert (code, out.splitlines()[1:]) == (
         1,
@@ -137,14 +138,14 @@ def test_it_says_which_ability_out_of_service_is_in_the_way() -> None:
 
 @pytest.mark.skipif(installed(), reason="the planners are installed")
 def test_another_planner_needs_the_extra() -> None:
-    code, _, err = command("plan", EXAMPLE, "--goal", "robot.pose == above", "--with", "fast-downward")
+    code, _, err = command("plan", WORKED_EXAMPLE, "--goal", "robot.pose == above", "--with", "fast-downward")
     needs = "fast-downward needs the libraries of the extra `pddl`: run `pip install .[pddl]` in `backend`\n"
     assert (code, err) == (2, needs)
 
 
 @pytest.mark.skipif(not installed(), reason="needs the libraries of the extra `pddl`")
 def test_another_planner_finds_a_fast_plan() -> None:
-    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above", "--with", "fast-downward")
+    goal = ("plan", WORKED_EXAMPLE, "--goal", "robot.pose == above", "--with", "fast-downward")
     code, document = as_json(*goal)
     assert (code, document["status"], document["starts"]) == (0, "plan", ["robot.move(above)"])
     code, _, err = command(*goal[:-1], "fast-upward")
@@ -152,20 +153,20 @@ def test_another_planner_finds_a_fast_plan() -> None:
 
 
 def test_nothing_to_plan_for() -> None:
-    code, _, err = command("plan", EXAMPLE)
+    code, _, err = command("plan", WORKED_EXAMPLE)
     assert (code, err) == (2, "no operation is active in this state: name one whose goal to plan, or give a --goal\n")
 
 
 def test_no_plan() -> None:
     """With the acknowledgement unknown nobody can place a bolt."""
     given = json.dumps({"state": {"operator.acknowledged": None}})
-    code, out, _ = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", given=given)
+    code, out, _ = command("plan", WORKED_EXAMPLE, "tighten_bolt_pair", "--state", "-", given=given)
     assert code == 1
     assert out.startswith("no plan at all, proven: tighten_bolt_pair (")
 
 
 def test_an_operation_that_is_none() -> None:
-    code, _, err = command("plan", EXAMPLE, "tighten")
+    code, _, err = command("plan", WORKED_EXAMPLE, "tighten")
     assert (code, err) == (2, "there is no operation `tighten`; did you mean `tighten_bolt_pair`?\n")
 
 
@@ -241,7 +242,7 @@ def test_that_no_plan_has_fewer_than_one_transition_is_not_said(tmp_path: Path) 
 
 def asking(folder: Path, condition: str) -> Path:
     """The worked example, in which a bolt is placed only on a condition about operations."""
-    copy = Path(shutil.copytree(EXAMPLE, folder / "example"))
+    copy = Path(shutil.copytree(WORKED_EXAMPLE, folder / "example"))
     (copy / "operations.yaml").write_text("place: {precondition: bolts == empty, goal: bolts == placed}\n")
     file = copy / "resources" / "operator.yaml"
     text = file.read_text(encoding="utf-8")

@@ -7,13 +7,14 @@ from shutil import copytree
 
 import pytest
 
-from cli.commands import CELL, EXAMPLE, TRUCK, as_json, command, plain
+from cli.commands import as_json, command, plain
 from sequence_planner.analysis.store import kept
 from sequence_planner.cli.loading import load_model
+from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
 
 
 def test_one_ability_and_its_effects() -> None:
-    code, out, _ = command("show", EXAMPLE, "operator.place_bolt", "bolts")
+    code, out, _ = command("show", WORKED_EXAMPLE, "operator.place_bolt", "bolts")
     assert code == 0
     assert (
         out
@@ -43,7 +44,7 @@ The station
 
 
 def test_all_of_it() -> None:
-    code, out, _ = command("show", TRUCK)
+    code, out, _ = command("show", BOLT_TIGHTENING)
     assert code == 0
     for part in (
         "Bolt tightening station (bolt_tightening)",
@@ -56,13 +57,13 @@ def test_all_of_it() -> None:
 
 
 def test_all_instances_of_a_name() -> None:
-    _, document = as_json("show", TRUCK, "robot.move_to_position")
+    _, document = as_json("show", BOLT_TIGHTENING, "robot.move_to_position")
     assert len(document["abilities"]) == 5
     assert document["variables"] == {}
 
 
 def test_phases_with_what_they_read_and_write() -> None:
-    _, document = as_json("show", EXAMPLE)
+    _, document = as_json("show", WORKED_EXAMPLE)
     assert set(document["phases"]) == {"sense", "finish", "start"}
     (start,) = [each for each in document["phases"]["start"] if each["name"] == "engine.next_engine.start"]
     assert start == {"name": "engine.next_engine.start", "reads": ["bolts"], "writes": ["bolts"]}
@@ -70,9 +71,9 @@ def test_phases_with_what_they_read_and_write() -> None:
 
 
 def test_a_name_that_nothing_has() -> None:
-    said = f"{EXAMPLE}: there is nothing called `robot.mov`; did you mean `robot.pose`?\n"
-    assert command("show", EXAMPLE, "robot.mov")[:2] == (2, "")
-    assert command("show", EXAMPLE, "robot.pos") == (2, "", said.replace("robot.mov", "robot.pos"))
+    said = f"{WORKED_EXAMPLE}: there is nothing called `robot.mov`; did you mean `robot.pose`?\n"
+    assert command("show", WORKED_EXAMPLE, "robot.mov")[:2] == (2, "")
+    assert command("show", WORKED_EXAMPLE, "robot.pos") == (2, "", said.replace("robot.mov", "robot.pos"))
 
 
 def test_a_plain_automaton(tmp_path: Path) -> None:
@@ -95,16 +96,16 @@ uncontrollable ask
 
 def test_the_guard_of_one_ability_is_the_same_as_among_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    _, alone, _ = command("show", TRUCK, "operator.place_bolt_pair(bolt_pair_1)")
-    assert kept(load_model(TRUCK).automaton) is None  # nothing else was found out for it
-    _, everything, _ = command("show", TRUCK)
+    _, alone, _ = command("show", BOLT_TIGHTENING, "operator.place_bolt_pair(bolt_pair_1)")
+    assert kept(load_model(BOLT_TIGHTENING).automaton) is None  # nothing else was found out for it
+    _, everything, _ = command("show", BOLT_TIGHTENING)
     lines = [line for line in alone.splitlines() if "supervisor" in line or "because" in line]
     assert len(lines) == 2
     assert set(lines) <= set(everything.splitlines())
 
 
 def test_where_time_is_short_it_says_so(tmp_path: Path) -> None:
-    station = copytree(TRUCK.with_name("truck_engine_station"), tmp_path / "truck_engine_station")
+    station = copytree(BOLT_TIGHTENING.with_name("truck_engine_station"), tmp_path / "truck_engine_station")
     code, out, err = command("show", station, "robot.move_to_position(HomeJOINTPose)", "--deadline", "0.1")
     late = "the safe states could not be computed within 0.1 s: allow more with --deadline\n"
     assert (code, "ability robot.move_to_position" in out) == (1, True)

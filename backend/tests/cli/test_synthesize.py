@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from cli.commands import EXAMPLE, TRUCK, as_json, command, plain
+from cli.commands import as_json, command, plain
+from support.places import BOLT_TIGHTENING, WORKED_EXAMPLE
 
 UNMEETABLE: dict[str, Any] = {
     "name": "heater",
@@ -28,7 +29,7 @@ def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_worked_example() -> None:
-    code, out, err = command("synthesize", EXAMPLE)
+    code, out, err = command("synthesize", WORKED_EXAMPLE)
     assert (code, err) == (0, "")
     assert out.splitlines() == [
         "Worked example: 180 states can be reached, 148 of them with the supervisor",
@@ -83,8 +84,8 @@ def test_where_no_short_condition_says_when_it_is_said_where_not(tmp_path: Path)
 
 def test_for_programs() -> None:
     """Every ability has a guard; what is kept from the first time says the same."""
-    first = as_json("synthesize", EXAMPLE)
-    assert first == as_json("synthesize", EXAMPLE)
+    first = as_json("synthesize", WORKED_EXAMPLE)
+    assert first == as_json("synthesize", WORKED_EXAMPLE)
     code, document = first
     assert code == 0
     assert (document["reachable_states"], document["supervised_states"]) == (180, 148)
@@ -108,7 +109,7 @@ def test_for_programs() -> None:
 
 
 def test_the_bolt_tightening_station() -> None:
-    _, document = as_json("synthesize", TRUCK)
+    _, document = as_json("synthesize", BOLT_TIGHTENING)
     restricted = {name: guard for name, guard in document["guards"].items() if guard != "true"}
     expected = {}
     for pair in ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3"):
@@ -144,7 +145,7 @@ def test_what_cannot_be_met_is_told_with_a_run(tmp_path: Path) -> None:
 
 
 def test_what_takes_too_long_is_said() -> None:
-    whole = TRUCK.with_name("truck_engine_station")  # its safe states alone take seconds
+    whole = BOLT_TIGHTENING.with_name("truck_engine_station")  # its safe states alone take seconds
     late = "the safe states could not be computed within 0.1 s: allow more with --deadline"
     code, document = as_json("synthesize", whole, "--deadline", "0.1")
     assert (code, document["reachable_states"], document["guards"]) == (1, None, None)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from cli.commands import EXAMPLE, as_json, command, plain
+from cli.commands import as_json, command, plain
+from support.places import WORKED_EXAMPLE
 
 ABOVE = "robot.move(above)"
 
 
 def test_what_each_step_did() -> None:
-    code, out, err = command("tick", EXAMPLE, "--set", "operator.acknowledged := true", "--start", ABOVE)
+    code, out, err = command("tick", WORKED_EXAMPLE, "--set", "operator.acknowledged := true", "--start", ABOVE)
     assert (code, err) == (0, "")
     assert out.splitlines() == [
         "1 sense        operator.acknowledged := true",
@@ -25,7 +26,7 @@ def test_what_each_step_did() -> None:
 
 
 def test_a_start_that_waits_says_for_what() -> None:
-    code, out, _ = command("tick", EXAMPLE, "--start", "engine.next_engine")
+    code, out, _ = command("tick", WORKED_EXAMPLE, "--start", "engine.next_engine")
     assert code == 1
     assert "engine.next_engine: waits, as `bolts == tightened` is false" in out
 
@@ -33,7 +34,7 @@ def test_a_start_that_waits_says_for_what() -> None:
 def test_a_start_that_the_supervisor_forbids() -> None:
     state = {"bolts": "placed", "robot.pose": "above", "robot.target_pose": "above"}
     given = json.dumps({"state": state})  # flags follow
-    code, document = as_json("tick", EXAMPLE, "--state", "-", "--start", "robot.move(bolt_pair)", given=given)
+    code, document = as_json("tick", WORKED_EXAMPLE, "--state", "-", "--start", "robot.move(bolt_pair)", given=given)
     assert code == 1
     assert document["starts"][0]["waits_for"] == [
         "specification no_standing_tool_on_placed_bolts forbids the state after it"
@@ -43,9 +44,9 @@ def test_a_start_that_the_supervisor_forbids() -> None:
 def test_ticks_are_piped_into_each_other() -> None:
     """A bolt is placed, and with it the operation becomes active."""
     place, said = "operator.place_bolt", "operator.place_bolt.operator_acknowledges"
-    _, first = as_json("tick", EXAMPLE, "--start", place)
+    _, first = as_json("tick", WORKED_EXAMPLE, "--start", place)
     assert first["published"] == {"operator.task": True}
-    code, second = as_json("tick", EXAMPLE, "--state", "-", "--effect", said, given=json.dumps(first))
+    code, second = as_json("tick", WORKED_EXAMPLE, "--state", "-", "--effect", said, given=json.dumps(first))
     assert code == 0
     assert second["finished"] == {
         "abilities": [place],
@@ -54,12 +55,14 @@ def test_ticks_are_piped_into_each_other() -> None:
     }
     assert second["operations"]["activated"] == ["tighten_bolt_pair"]
     assert second["active"] == ["tighten_bolt_pair"]
-    third = as_json("tick", EXAMPLE, "--state", "-", given=json.dumps({**second, "state": {"bolts": "tightened"}}))[1]
+    third = as_json(
+        "tick", WORKED_EXAMPLE, "--state", "-", given=json.dumps({**second, "state": {"bolts": "tightened"}})
+    )[1]
     assert third["operations"]["completed"] == ["tighten_bolt_pair"]
 
 
 def test_a_variable_that_is_unknown() -> None:
-    code, document = as_json("tick", EXAMPLE, "--unknown", "robot.pose", "--start", ABOVE)
+    code, document = as_json("tick", WORKED_EXAMPLE, "--unknown", "robot.pose", "--start", ABOVE)
     assert code == 1
     assert document["state"]["robot.pose"] is None
     assert document["starts"][0]["waits_for"][0] == "`robot.target_pose == robot.pose` is unknown"
@@ -74,7 +77,7 @@ def test_what_cannot_be() -> None:
         (("--effect", "robot.move(home).robot_arrives"), "is not enabled: `robot.target_pose != robot.pose` is false"),
         (("--state", "missing.json"), "missing.json holds no state"),
     ):
-        code, out, err = command("tick", EXAMPLE, *arguments)
+        code, out, err = command("tick", WORKED_EXAMPLE, *arguments)
         assert (code, out) == (2, "")
         assert said in err
     for given, said in (
@@ -82,7 +85,7 @@ def test_what_cannot_be() -> None:
         ('{"state": {"bolt": "empty"}}', "there is no variable `bolt`; did you mean `bolts`?"),
         ('{"state": {"bolts": 1}}', "`1` is no value of `bolts`, which ranges over {empty, placed, tightened}"),
     ):
-        code, out, err = command("tick", EXAMPLE, "--state", "-", given=given)
+        code, out, err = command("tick", WORKED_EXAMPLE, "--state", "-", given=given)
         assert (code, out) == (2, "")
         assert said in err
 

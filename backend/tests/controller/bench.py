@@ -7,12 +7,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from controller.journalling import journal
 from sequence_planner.automaton.state_set import Supervisor
@@ -27,8 +25,9 @@ from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import CELL
+from support.waiting import until_async
 
-CELL = Path(__file__).parents[1] / "stations" / "cell"
 STATE, COMMAND = "/arm/state", "/arm/command"
 STATE_TYPE, COMMAND_TYPE = "cell_msgs/msg/ArmState", "cell_msgs/msg/ArmCommand"
 POSES = {"home": [0.0, 0.0], "out": [1.0, 0.5], "unknown": [0.5, 0.25]}
@@ -96,16 +95,8 @@ class Bench:
 
     async def until(self, what: Callable[[], bool], seconds: float = 20) -> None:
         """Wait until `what` is true."""
-        await until(lambda: self.running.done() or what(), seconds)
+        await until_async(lambda: self.running.done() or what(), seconds=seconds)
         assert not self.running.done(), "the controller has ended"
-
-
-async def until(what: Callable[[], bool], seconds: float = 20) -> None:
-    """Wait until `what` is true."""
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end, "it did not come true in time"
-        await asyncio.sleep(0.01)
 
 
 @asynccontextmanager

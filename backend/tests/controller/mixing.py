@@ -6,12 +6,10 @@ Time is real. The tank is emulated, or says what a test wants.
 from __future__ import annotations
 
 import asyncio
-import os
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cache
-from pathlib import Path
 
 from controller.journalling import journal
 from sequence_planner.automaton.state_set import Supervisor
@@ -27,14 +25,12 @@ from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.servers import serve_clients
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.network import DOMAIN
+from support.places import MIXER
 
-MIXER = Path(__file__).parents[1] / "stations" / "mixer"
 STIR, STIR_TYPE = "/tank/stir", "mixer_msgs/action/Stir"
 LEVEL, LEVEL_TYPE = "/tank/level", "mixer_msgs/srv/Level"
 FLUSH, FLUSH_TYPE = "/tank/flush", "std_srvs/srv/Trigger"
-
-DOMAIN = 1 + (os.getpid() + 70) % 100
-PATIENCE = 30.0
 
 
 @cache
@@ -129,14 +125,6 @@ def living(devices: EmulatedDevices) -> Iterator[None]:
 async def start(controller: Controller) -> None:
     """Start production."""
     await controller.command(StartProduction(actor=SYSTEM))
-
-
-async def until(holds: Callable[[], object], what: str) -> None:
-    """Wait until `holds` returns something true."""
-    end = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < end, f"never happened: {what}"
-        await asyncio.sleep(0.01)
 
 
 def value(controller: Controller, name: str) -> Value | None:

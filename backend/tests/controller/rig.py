@@ -28,8 +28,8 @@ from sequence_planner.planning.problem import PlanRequest
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import BOLT_TIGHTENING
 
-TRUCK_ENGINE = Path(__file__).parents[3] / "models" / "bolt_tightening"
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 
 
@@ -43,7 +43,7 @@ def ready(folder: Path) -> tuple[ReadyStation, Supervisor, Planner]:
 
 def truck_engine() -> tuple[ReadyStation, Supervisor, Planner]:
     """The truck engine station."""
-    return ready(TRUCK_ENGINE)
+    return ready(BOLT_TIGHTENING)
 
 
 Acknowledging = Callable[[WaitingTask, float], bool]
@@ -70,7 +70,7 @@ class Rig:
     thinking: int = 0  # ticks that pass until the planner answers
     patience: float = 20.0  # seconds within which it has to
     improves: bool = True  # whether better plans are asked for
-    folder: Path = TRUCK_ENGINE
+    folder: Path = BOLT_TIGHTENING
     silent: set[str] = field(default_factory=set)  # topics from which nothing comes
     started: list[str] = field(default_factory=list)
     completed: list[str] = field(default_factory=list)

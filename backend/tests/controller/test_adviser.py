@@ -10,7 +10,7 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from controller.bench import cell, until
+from controller.bench import cell
 from core.building import predicate_of
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.controller.commands.command import CommandRefused
@@ -19,6 +19,7 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.planning.problem import Contract, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from support.waiting import until_async
 
 
 def processes() -> list[Child]:
@@ -92,7 +93,7 @@ def test_one_that_is_killed_is_replaced_and_who_asked_is_told() -> None:
         with pytest.raises(CommandRefused, match="Nothing was changed by asking") as refused:
             await asking
         assert (refused.value.slug, refused.value.status) == ("advisor-unavailable", 503)
-        await until(lambda: [each.pid for each in processes()] not in ([], [process.pid]))
+        await until_async(lambda: [each.pid for each in processes()] not in ([], [process.pid]))
         assert (await adviser.answer(fetching(), 20)).verdict is Verdict.FOUND
 
     run(scenario)

@@ -17,7 +17,7 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from controller.bench import CELL, IDENTITY
+from controller.bench import IDENTITY
 from controller.journalling import journal
 from core.actors import ADAM, EVA, person
 from core.budget import examples
@@ -50,6 +50,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import CELL
 
 WHY = "seen with my own eyes"
 DEMO = person("Demonstration", kind=ActorKind.DEMONSTRATION)

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import pytest
 
-from controller.mixing import DOMAIN, Plant, alarms, play, until, value
+from controller.mixing import Plant, alarms, play, value
 from controller.tank_talker import TOPIC, TYPE
 from pipelines.station_writing import write_station
 from sequence_planner.controller.controller import Controller
@@ -27,6 +27,8 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Transport
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.network import DOMAIN
+from support.waiting import until_async
 
 TANK = """\
 topics:
@@ -134,13 +136,13 @@ async def heard(tank: Tank, controller: Controller) -> None:
         tank.say()
         return state(controller) == ("on", "low")
 
-    await until(known, "it is heard")
+    await until_async(known, "it is heard")
 
 
 def test_another_type_on_a_topic(folder: Path) -> None:
     async def scenario(plant: Plant, controller: Controller) -> None:
         Tank(plant, "std_msgs/msg/String")
-        await until(lambda: any("std_msgs/msg/String" in text for text in of_tank(controller)), "it is reported")
+        await until_async(lambda: any("std_msgs/msg/String" in text for text in of_tank(controller)), "it is reported")
         assert state(controller) == (None, None)
 
     run(folder, scenario)
@@ -162,8 +164,8 @@ def test_a_payload_that_is_no_message(folder: Path, data: bytes, kind: str) -> N
         await heard(tank, controller)
         for _ in range(3):
             tank.send(data)
-        await until(lambda: state(controller) == (None, None), "it is unknown")
-        await until(lambda: any("(3 times, first at " in text for text in of_tank(controller)), "it is counted")
+        await until_async(lambda: state(controller) == (None, None), "it is unknown")
+        await until_async(lambda: any("(3 times, first at " in text for text in of_tank(controller)), "it is counted")
         (text,) = of_tank(controller)
         assert TYPE in text
         await heard(tank, controller)
@@ -189,8 +191,8 @@ def test_a_value_that_means_nothing(
         await heard(tank, controller)
         for _ in range(3):
             tank.say(mode, level)
-        await until(lambda: state(controller) == known, "what means nothing is unknown")
-        await until(lambda: any("(3 times, first at " in text for text in of_tank(controller)), "it is counted")
+        await until_async(lambda: state(controller) == known, "what means nothing is unknown")
+        await until_async(lambda: any("(3 times, first at " in text for text in of_tank(controller)), "it is counted")
         (text,) = of_tank(controller)
         assert told in text
         await heard(tank, controller)
@@ -203,7 +205,7 @@ def test_a_publisher_that_is_started_anew(folder: Path) -> None:
         tank = Tank(plant)
         await heard(tank, controller)
         tank.transport.close()
-        await until(lambda: state(controller) == (None, None), "it is unknown without a publisher")
+        await until_async(lambda: state(controller) == (None, None), "it is unknown without a publisher")
         assert of_tank(controller) == [
             f"No message any more on {TOPIC} (its publishers have gone): the values of tank are unknown"
         ]
@@ -217,14 +219,14 @@ def test_a_flood(folder: Path) -> None:
     async def scenario(plant: Plant, controller: Controller) -> None:
         feed = controller.devices.feeds.topics[TOPIC]
         async with talker(folder, 10_000, {}):
-            await until(lambda: feed.messages > 5_000, "the flood is heard")
+            await until_async(lambda: feed.messages > 5_000, "the flood is heard")
             seen = controller.execution.ticks
-            await until(lambda: controller.execution.ticks > seen + 10, "the controller ticks on")
+            await until_async(lambda: controller.execution.ticks > seen + 10, "the controller ticks on")
         tank = Tank(plant)
         await heard(tank, controller)
         tank.say("off")
         asked = time.monotonic()
-        await until(lambda: value(controller, "tank.mode") == "off", "what comes after the flood is heard")
+        await until_async(lambda: value(controller, "tank.mode") == "off", "what comes after the flood is heard")
         assert time.monotonic() - asked < 2.0
 
     run(folder, scenario)
@@ -240,14 +242,14 @@ def test_a_quality_of_service_that_is_not_kept(tmp_path: Path, policy: str, seco
 
     async def scenario(plant: Plant, controller: Controller) -> None:
         async with talker(own, 100, quality) as process:
-            await until(lambda: value(controller, "tank.mode") == "on", "it is heard")
+            await until_async(lambda: value(controller, "tank.mode") == "on", "it is heard")
             process.kill()
             killed = time.monotonic()
-            await until(lambda: state(controller) == (None, None), "the promise is broken")
+            await until_async(lambda: state(controller) == (None, None), "the promise is broken")
             assert time.monotonic() - killed < 4.0  # of the topic's own deadline, 5 s, and DDS's lease, 10 s
             (text,) = of_tank(controller)
             assert text.startswith(f"No message any more on {TOPIC} (")
         async with talker(own, 100, quality):
-            await until(lambda: value(controller, "tank.mode") == "on", "it is heard again")
+            await until_async(lambda: value(controller, "tank.mode") == "on", "it is heard again")
 
     run(own, scenario)

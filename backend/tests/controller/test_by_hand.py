@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import pytest
 from pydantic import JsonValue
@@ -19,8 +18,8 @@ from sequence_planner.controller.recovery.manual import KIND, LATENCY, LONGEST, 
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
+from support.places import BOLT_TIGHTENING, MODELS
 
-MODELS = Path(__file__).parents[3] / "models"
 STATIONS = sorted(each.name for each in MODELS.iterdir() if (each / "station.yaml").exists())
 
 
@@ -180,7 +179,7 @@ def test_what_a_person_forces_and_what_was_not_heard_is_none_of_it() -> None:
 
 
 def test_before_production_people_may_move_what_they_like() -> None:
-    rig = Watched(folder=MODELS / "bolt_tightening")
+    rig = Watched(folder=BOLT_TIGHTENING)
     rig.run(1)
     rig.put("robot.pose", "bolt_pair_1")
     assert rig.told == []

@@ -14,12 +14,10 @@ from cyclonedds.topic import Topic
 
 from controller.asking import Asking, Stirrer
 from controller.mixing import (
-    DOMAIN,
     FLUSH,
     FLUSH_TYPE,
     LEVEL,
     LEVEL_TYPE,
-    MIXER,
     STIR,
     Plant,
     alarms,
@@ -27,12 +25,14 @@ from controller.mixing import (
     mixer,
     play,
     start,
-    until,
     value,
 )
 from sequence_planner.ros.actions import GoalStatus
 from sequence_planner.ros.transports.cyclonedds_network import raw_types, release
 from sequence_planner.station import prepare_station
+from support.network import DOMAIN
+from support.places import MIXER
+from support.waiting import until_async
 
 KINDS = ["memory", "cyclonedds"]
 
@@ -43,13 +43,13 @@ def test_an_operation_is_carried_out_with_services_and_an_action(kind: str) -> N
         devices, _ = plant.tank()
         controller = plant.controller(mixer()[1])
         with living(devices):
-            await until(lambda: value(controller, "tank.stirring") == "idle", "no goal yet")
+            await until_async(lambda: value(controller, "tank.stirring") == "idle", "no goal yet")
             assert value(controller, "tank.level") is None  # nothing is asked before production is started
             await start(controller)
-            await until(lambda: value(controller, "tank.level") == 2, "the level is read")
-            await until(lambda: value(controller, "tank.stirring") == "executing", "the goal is executed")
-            await until(lambda: controller.view().operations["make"].completed == 1, "the operation is completed")
-            await until(lambda: value(controller, "tank.flushed") is False, "nothing is asked any more")
+            await until_async(lambda: value(controller, "tank.level") == 2, "the level is read")
+            await until_async(lambda: value(controller, "tank.stirring") == "executing", "the goal is executed")
+            await until_async(lambda: controller.view().operations["make"].completed == 1, "the operation is completed")
+            await until_async(lambda: value(controller, "tank.flushed") is False, "nothing is asked any more")
         assert value(controller, "tank.stirring") == "idle"
         assert alarms(controller) == []
 
@@ -68,10 +68,10 @@ def test_a_server_of_another_mapping_is_an_alarm_before_anything_is_asked_of_it(
         def told() -> list[str]:
             return [each for each in alarms(controller) if "nothing is asked of it" in each]
 
-        await until(told, "it is told")
+        await until_async(told, "it is told")
         assert told()[0].startswith(f"another node serves {FLUSH} on Eclipse Cyclone DDS (rmw_cyclonedds_cpp)")
         release(reader)
-        await until(lambda: not told(), "it is not told any more")
+        await until_async(lambda: not told(), "it is not told any more")
 
     play("cyclonedds", scenario)
 
@@ -81,13 +81,13 @@ def test_a_goal_tells_its_feedback_its_end_and_its_result(kind: str) -> None:
     async def scenario(plant: Plant) -> None:
         server, asking = Stirrer(plant), Asking(plant)
         asking.set(stir=True, pace="fast")
-        await until(lambda: asking.value("stirring") == "executing", "it executes")
+        await until_async(lambda: asking.value("stirring") == "executing", "it executes")
         assert (server.taken, asking.value("mixture"), asking.value("turns")) == ([[2.0]], "separate", 0)
         assert server.work is not None
         server.work.feedback({"turned": 3.5})
-        await until(lambda: asking.value("mixture") == "mixed", "feedback is measured")
+        await until_async(lambda: asking.value("mixture") == "mixed", "feedback is measured")
         server.end(GoalStatus.SUCCEEDED, turns=4)
-        await until(lambda: asking.value("stirring") == "succeeded", "it succeeds")
+        await until_async(lambda: asking.value("stirring") == "succeeded", "it succeeds")
         assert asking.value("turns") == 4
         asking.set(stir=False)
         assert (asking.value("stirring"), asking.value("mixture"), asking.value("turns")) == ("idle", "separate", 0)
@@ -102,18 +102,20 @@ def test_a_goal_is_cancelled_when_its_output_falls_and_the_next_waits_for_that(k
     async def scenario(plant: Plant) -> None:
         server, asking = Stirrer(plant), Asking(plant)
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "executing", "it executes")
+        await until_async(lambda: asking.value("stirring") == "executing", "it executes")
         asking.set(stir=False)
         asking.set(stir=True)
-        await until(lambda: len(server.taken) == 2, "the next goal is sent")
+        await until_async(lambda: len(server.taken) == 2, "the next goal is sent")
         assert server.cancelled == 1
-        await until(lambda: asking.value("stirring") == "executing", "it executes")
+        await until_async(lambda: asking.value("stirring") == "executing", "it executes")
         asking.set(stir=False)
-        await until(lambda: asking.value("stirring") == "idle", "nothing is under way")
+        await until_async(lambda: asking.value("stirring") == "idle", "nothing is under way")
         assert (len(server.taken), server.cancelled) == (2, 2)
         asking.set(stir=True)
         asking.set(stir=False)  # before it was accepted
-        await until(lambda: asking.value("stirring") == "idle" and server.cancelled == len(server.taken), "it is over")
+        await until_async(
+            lambda: asking.value("stirring") == "idle" and server.cancelled == len(server.taken), "it is over"
+        )
         asking.end()
 
     play(kind, scenario)
@@ -123,14 +125,14 @@ def test_a_goal_that_is_refused_is_not_sent_again() -> None:
     async def scenario(plant: Plant) -> None:
         server, asking = Stirrer(plant, accepts=False), Asking(plant)
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "rejected", "it is rejected")
+        await until_async(lambda: asking.value("stirring") == "rejected", "it is rejected")
         assert asking.reported(STIR) == [(f"{STIR} does not accept the goal", 1)]
         await asyncio.sleep(0.3)
         assert len(server.taken) == 1
         server.accepts = True
         asking.set(stir=False)
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "executing", "the next one is taken")
+        await until_async(lambda: asking.value("stirring") == "executing", "the next one is taken")
         asking.end()
 
     play("memory", scenario)
@@ -141,14 +143,14 @@ def test_a_goal_for_a_server_that_is_not_there_is_lost_and_is_not_sent_to_one_th
     async def scenario(plant: Plant) -> None:
         asking = Asking(plant)
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "lost", "it is lost")
+        await until_async(lambda: asking.value("stirring") == "lost", "it is lost")
         assert [text.split(" ")[0] for text, _ in asking.reported(STIR)] == ["nobody"]
         server = Stirrer(plant)
         await asyncio.sleep(1.0)
         assert (server.taken, asking.value("stirring")) == ([], "lost")
         asking.set(stir=False)
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "executing", "the next one is taken")
+        await until_async(lambda: asking.value("stirring") == "executing", "the next one is taken")
         asking.end()
 
     play(kind, scenario)
@@ -159,10 +161,10 @@ def test_a_goal_is_lost_with_its_server_and_is_not_sent_to_one_that_is_started_a
     async def scenario(plant: Plant) -> None:
         server, asking = Stirrer(plant), Asking(plant)
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "executing", "it executes")
+        await until_async(lambda: asking.value("stirring") == "executing", "it executes")
         server.die()
         again = Stirrer(plant)
-        await until(lambda: asking.value("stirring") == "lost", "it is lost")
+        await until_async(lambda: asking.value("stirring") == "lost", "it is lost")
         assert asking.value("mixture") == "separate"
         await asyncio.sleep(0.3)
         assert again.taken == []
@@ -176,15 +178,15 @@ def test_a_controller_that_is_started_anew_sees_its_goal_and_sends_no_other(kind
     async def scenario(plant: Plant) -> None:
         server, before = Stirrer(plant), Asking(plant)
         before.set(stir=True)
-        await until(lambda: before.value("stirring") == "executing", "it executes")
+        await until_async(lambda: before.value("stirring") == "executing", "it executes")
         before.end()
         asking = Asking(plant)
-        await until(lambda: asking.value("stirring") == "executing", "the goal is seen")
+        await until_async(lambda: asking.value("stirring") == "executing", "the goal is seen")
         asking.set(stir=True)
         await asyncio.sleep(0.3)
         assert len(server.taken) == 1
         asking.set(stir=False)
-        await until(lambda: asking.value("stirring") == "idle", "the goal can be cancelled")
+        await until_async(lambda: asking.value("stirring") == "idle", "the goal can be cancelled")
         assert (len(server.taken), server.cancelled) == (1, 1)
         asking.end()
 
@@ -196,7 +198,7 @@ def test_what_a_service_says_is_unknown_without_an_answer_and_reported_once(kind
     async def scenario(plant: Plant) -> None:
         asking = Asking(plant)
         level = f"{LEVEL} response"
-        await until(lambda: sum(count for _, count in asking.reported(level)) >= 2, "two calls have failed")
+        await until_async(lambda: sum(count for _, count in asking.reported(level)) >= 2, "two calls have failed")
         assert len(asking.reported(level)) == 1
         assert (asking.value("level"), "tank" in asking.feeds.offline(asyncio.get_running_loop().time())) == (
             None,
@@ -213,11 +215,11 @@ def test_what_a_service_says_is_unknown_without_an_answer_and_reported_once(kind
 
         transport = plant.join("tank")
         transport.serve(LEVEL, LEVEL_TYPE, answer)
-        await until(lambda: asking.value("level") == 3, "it answers")
+        await until_async(lambda: asking.value("level") == 3, "it answers")
         await asyncio.sleep(0.5)
         assert calls[1] == 1
         transport.close()
-        await until(lambda: asking.value("level") is None, "it is unknown")
+        await until_async(lambda: asking.value("level") is None, "it is unknown")
         asking.end()
 
     play(kind, scenario)
@@ -233,10 +235,10 @@ def test_an_answer_that_makes_no_sense_is_unknown_and_counted() -> None:
         plant.join("tank").serve(LEVEL, LEVEL_TYPE, answer)
         asking = Asking(plant)
         level = f"{LEVEL} response"
-        await until(lambda: asking.reported(level) and asking.reported(level)[0][1] >= 3, "it is counted")
+        await until_async(lambda: asking.reported(level) and asking.reported(level)[0][1] >= 3, "it is counted")
         assert (asking.value("level"), len(asking.reported(level))) == (None, 1)
         answers.reverse()
-        await until(lambda: len(asking.reported(level)) == 2, "another cause")
+        await until_async(lambda: len(asking.reported(level)) == 2, "another cause")
         assert asking.reported(level)[1][0] == "level is 200, and tank.level ranges over 0..3"
         assert asking.value("level") is None
         asking.end()
@@ -251,12 +253,12 @@ def test_a_service_is_called_once_for_each_rise_and_forgotten_when_its_output_fa
             asking = Asking(plant)
             assert asking.value("flushed") is False
             asking.set(flush=True)
-            await until(lambda: asking.value("flushed") is True, "it is done")
+            await until_async(lambda: asking.value("flushed") is True, "it is done")
             asking.set(flush=False)
             assert asking.value("flushed") is False
             transport.close()
             asking.set(flush=True)
-            await until(lambda: asking.value("flushed") is None, "nobody answers")
+            await until_async(lambda: asking.value("flushed") is None, "nobody answers")
             assert len(asking.reported(f"{FLUSH} response")) == 1
             asking.set(flush=False)
             assert asking.value("flushed") is False
@@ -271,11 +273,11 @@ def test_an_emulated_action_is_aborted_by_hand_and_the_station_gets_out_of_it() 
         controller = plant.controller(mixer()[1])
         with living(devices):
             await start(controller)
-            await until(lambda: value(controller, "tank.stirring") == "executing", "the goal is executed")
+            await until_async(lambda: value(controller, "tank.stirring") == "executing", "the goal is executed")
             devices.put("tank.stirring", "aborted")
-            await until(lambda: value(controller, "tank.stirring") != "executing", "it is aborted")
+            await until_async(lambda: value(controller, "tank.stirring") != "executing", "it is aborted")
             assert value(controller, "product") == "nothing"
-            await until(lambda: controller.view().operations["make"].completed == 1, "it is done again")
+            await until_async(lambda: controller.view().operations["make"].completed == 1, "it is done again")
 
     play("memory", scenario)
 
@@ -286,9 +288,9 @@ def test_an_emulated_tank_serves_one_goal_at_a_time() -> None:
         with living(devices):
             asking, other = Asking(plant), Asking(plant)
             asking.set(stir=True)
-            await until(lambda: asking.value("stirring") == "executing", "it executes")
+            await until_async(lambda: asking.value("stirring") == "executing", "it executes")
             assert other.value("stirring") == "executing"
-            await until(lambda: asking.value("stirring") == "succeeded", "it succeeds")
+            await until_async(lambda: asking.value("stirring") == "succeeded", "it succeeds")
             assert (asking.value("turns"), asking.value("mixture")) == (4, "mixed")
             asking.end()
             other.end()
@@ -310,7 +312,7 @@ def test_an_override_in_a_goal_is_taken_by_the_goals_to_come(tmp_path: Path) -> 
         server, asking = Stirrer(plant), Asking(plant)
         asking.clients.set_override(f"{STIR} goal", "share", {"share": 0.1}, time.monotonic(), "somebody")
         asking.set(stir=True)
-        await until(lambda: asking.value("stirring") == "executing", "it executes")
+        await until_async(lambda: asking.value("stirring") == "executing", "it executes")
         assert server.work is not None
         assert server.work.goal["share"] == 0.1
         asking.end()

@@ -9,7 +9,7 @@ from typing import NoReturn
 
 import pytest
 
-from controller.bench import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell, until
+from controller.bench import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell
 from controller.journalling import journal
 from core.building import Does, automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
@@ -28,6 +28,7 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.station import ReadyStation
+from support.waiting import until_async
 
 
 def run(scenario: Callable[[Bench], Awaitable[None]]) -> None:
@@ -289,7 +290,7 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
         controller = Controller(IDENTITY, station, everything_is_safe, transport, database)
         controller.take_command()
         running = asyncio.create_task(controller.run())
-        await until(lambda: "restless" in controller.view().alarms)
+        await until_async(lambda: "restless" in controller.view().alarms)
         assert "blink" in controller.view().alarms["restless"].text
         ticks = controller.execution.ticks
         await asyncio.sleep(1)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import COMMAND, COMMAND_TYPE, POSES, STATE, STATE_TYPE, cell, until
+from controller.bench import COMMAND, COMMAND_TYPE, POSES, STATE, STATE_TYPE, cell
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.ros import exclusivity
 from sequence_planner.ros.qos import QualityOfService
@@ -29,8 +29,8 @@ from sequence_planner.simulation.manual_interface import (
 from sequence_planner.simulation.messages import spoken
 from sequence_planner.simulation.service import Emulation, emulate
 from sequence_planner.station import prepare_station
-
-MODELS = Path(__file__).parents[3] / "models"
+from support.places import BOLT_TIGHTENING
+from support.waiting import until_async
 
 
 def devices() -> EmulatedDevices:
@@ -58,18 +58,18 @@ def test_devices_obey_report_and_survive_what_cannot_be_read(monkeypatch: pytest
         person.subscribe(STATE, STATE_TYPE, QualityOfService.RELIABLE, hear)
         person.advertise(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE)
         person.advertise(BY_HAND_TOPIC, TEXT_TYPE, QualityOfService.RELIABLE)
-        await until(is_at("home"))
+        await until_async(is_at("home"))
         for nonsense in (b"", b"\x00\x01\x00\x00\xff"):
             person.publish(COMMAND, COMMAND_TYPE, nonsense)
             person.publish(BY_HAND_TOPIC, TEXT_TYPE, nonsense)
         person.publish(COMMAND, COMMAND_TYPE, registry.encode(COMMAND_TYPE, {"joints": POSES["out"]}))
-        await until(is_at("out"))
+        await until_async(is_at("out"))
         for change in ("what?", "arm.pose := nowhere", "arm.pose := home if arm.moving"):
             person.publish(BY_HAND_TOPIC, TEXT_TYPE, registry.encode(TEXT_TYPE, {"data": change}))
         person.publish(COMMAND, COMMAND_TYPE, registry.encode(COMMAND_TYPE, {"joints": POSES["home"]}))
-        await until(is_at("home"))
+        await until_async(is_at("home"))
         person.publish(COMMAND, COMMAND_TYPE, registry.encode(COMMAND_TYPE, {"joints": POSES["out"]}))
-        await until(is_at("out"))
+        await until_async(is_at("out"))
         assert not emulating.done()
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
@@ -90,11 +90,11 @@ def test_how_devices_stand_is_written_down_while_they_move(monkeypatch: pytest.M
         network, loop = MemoryNetwork(), asyncio.get_running_loop()
         emulation = Emulation(cell()[0], speed=20, kept_in=file)
         emulating = asyncio.create_task(emulate(emulation, lambda node: network.join(registry, node, loop)))
-        await until(lambda: stood() == "home")
+        await until_async(lambda: stood() == "home")
         person = network.join(registry, "person", loop)
         person.advertise(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE)
         person.publish(COMMAND, COMMAND_TYPE, registry.encode(COMMAND_TYPE, {"joints": POSES["out"]}))
-        await until(lambda: stood() == "out")
+        await until_async(lambda: stood() == "out")
         assert not emulating.done()
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
@@ -141,11 +141,13 @@ def answered(*lines: Line, emulation: Emulation | None = None) -> list[str]:
         person.subscribe(SAID_TOPIC, TEXT_TYPE, QualityOfService.RELIABLE, hear)
         for topic in (BY_HAND_TOPIC, FAULTS_TOPIC):
             person.advertise(topic, TEXT_TYPE, QualityOfService.RELIABLE)
-        await until(lambda: any(each.topic == SAID_TOPIC and each.direction == "publisher" for each in person.graph()))
+        await until_async(
+            lambda: any(each.topic == SAID_TOPIC and each.direction == "publisher" for each in person.graph())
+        )
         for topic, line in lines:
             so_far = tuple(answers)
             person.publish(topic, TEXT_TYPE, registry.encode(TEXT_TYPE, {"data": line}))
-            await until(partial(differs, answers, so_far))
+            await until_async(partial(differs, answers, so_far))
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
 
@@ -193,9 +195,9 @@ def test_a_device_that_goes_offline_by_script_has_no_endpoints_and_comes_back(mo
         emulation = Emulation(cell()[0], script=script, jitter=0.05)
         emulating = asyncio.create_task(emulate(emulation, lambda node: network.join(registry, node, loop)))
         both = {(STATE, "publisher"), (COMMAND, "subscriber")}
-        await until(lambda: on_the_network() == both)
-        await until(lambda: on_the_network() == set())
-        await until(lambda: on_the_network() == both)
+        await until_async(lambda: on_the_network() == both)
+        await until_async(lambda: on_the_network() == set())
+        await until_async(lambda: on_the_network() == both)
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
 
@@ -206,7 +208,7 @@ def test_only_the_devices_that_are_asked_for_are_emulated_and_they_see_the_other
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(exclusivity, "DISCOVERY", 0.05)
-    station = prepare_station(MODELS / "bolt_tightening")
+    station = prepare_station(BOLT_TIGHTENING)
     registry, pipelines = station.registry, station.pipelines
     torque = "nutrunner.programmed_torque_reached"
 
@@ -225,7 +227,7 @@ def test_only_the_devices_that_are_asked_for_are_emulated_and_they_see_the_other
         person.advertise(tool, pipelines.outgoing[tool].topic.type_name, pipelines.outgoing[tool].topic.quality)
         emulation = Emulation(station, speed=20, resources=frozenset({"nutrunner"}))
         emulating = asyncio.create_task(emulate(emulation, lambda node: network.join(registry, node, loop)))
-        await until(lambda: bool(heard))
+        await until_async(lambda: bool(heard))
         assert {e.topic for e in person.graph() if not e.own and e.direction == "publisher"} == {nut, SAID_TOPIC}
 
         def say_and_see(pose: str) -> bool:
@@ -237,8 +239,8 @@ def test_only_the_devices_that_are_asked_for_are_emulated_and_they_see_the_other
             person.publish(tool, type_name, registry.encode(type_name, command))
             return bool(heard[torque.split(".")[1]])
 
-        await until(lambda: not say_and_see("above_engine") and bool(heard["tool_is_running_forward"]))
-        await until(lambda: say_and_see("bolt_pair_1"))
+        await until_async(lambda: not say_and_see("above_engine") and bool(heard["tool_is_running_forward"]))
+        await until_async(lambda: say_and_see("bolt_pair_1"))
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
 

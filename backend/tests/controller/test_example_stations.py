@@ -9,8 +9,8 @@ import pytest
 
 from controller.rig import Acknowledging, Rig, at_once, never
 from sequence_planner.execution.vocabulary import PlanStatus
+from support.places import MODELS
 
-MODELS = Path(__file__).parents[3] / "models"
 BUFFER, AGV = MODELS / "robots_with_buffer", MODELS / "docking_agv"
 
 

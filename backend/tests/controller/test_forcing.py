@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -20,15 +19,15 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import WORKED_EXAMPLE
 
-EXAMPLE = Path(__file__).parents[1] / "stations" / "worked_example"
 NOW = Timestamp(1000.0, 10.0)
 WHY = "the sensor is not wired yet"
 
 
 @cache
 def prepared() -> tuple[Automaton, Supervisor]:
-    automaton = prepare_station(EXAMPLE).automaton
+    automaton = prepare_station(WORKED_EXAMPLE).automaton
     return automaton, synthesise(automaton)
 
 

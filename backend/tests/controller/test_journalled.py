@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from controller.bench import Arm, Bench, bench, cell, until
+from controller.bench import Arm, Bench, bench, cell
 from controller.journalling import journal
 from core.actors import EVA
 from sequence_planner.controller.commands.command import Command, CommandRefused
@@ -23,6 +23,7 @@ from sequence_planner.db.location import SqliteFile
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.journal import run_journal
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.waiting import until_async
 
 
 @contextmanager
@@ -112,7 +113,7 @@ def test_after_a_start_nothing_is_published_and_a_person_decides_where_devices_w
                 await asyncio.sleep(0.2)
                 assert arm.commands == []
                 await on.start()
-                await until(lambda: arm.commands[:1] == ["home"])
+                await until_async(lambda: arm.commands[:1] == ["home"])
 
     with journal() as database:
         asyncio.run(scenario(database))
@@ -183,7 +184,7 @@ def test_what_came_back_and_moves_nothing_needs_no_decision() -> None:
                 await on.until(lambda: value(on, "arm.pose") == "out")
                 assert on.controller.view().undecided == {}
                 await on.start()
-                await until(lambda: arm.commands[:1] == ["out"])
+                await until_async(lambda: arm.commands[:1] == ["out"])
 
     with journal() as database:
         asyncio.run(scenario(database))
@@ -260,6 +261,6 @@ def test_holding_is_possible_while_nothing_can_be_journalled_and_starts_nothing_
                 await asyncio.sleep(1)
                 assert set(arm.commands) == {"home"}
                 await on.controller.command(SetMode(actor=EVA, mode=Mode.AUTOMATIC))
-                await until(lambda: "out" in arm.commands)
+                await until_async(lambda: "out" in arm.commands)
 
     asyncio.run(scenario())

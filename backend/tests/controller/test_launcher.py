@@ -8,23 +8,12 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from running.stations import (
-    MODEL,
-    REPOSITORY,
-    RunningStation,
-    command,
-    descendants,
-    environment,
-    finished,
-    foreign_node,
-    free_port,
-    station,
-)
+from running.stations import MODEL, RunningStation, command, descendants, environment, finished, foreign_node, station
 from sequence_planner.core.secrets import CLIENT_SECRET, PASSWORD
 from sequence_planner.core.secrets import environment as with_secrets
 from sequence_planner.core.storage_error import DATABASE
@@ -32,17 +21,13 @@ from sequence_planner.process.parent_watch import DEPLOYED
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.startup import station_process as parts
 from sequence_planner.startup.station_process import UNUSABLE, Executed, StationProcess
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 
 def part(program: str) -> StationProcess:
     return StationProcess("part", Executed([sys.executable, "-c", program]))
-
-
-def eventually(what: Callable[[], bool], seconds: float = 20) -> None:
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end, "it did not come true in time"
-        time.sleep(0.02)
 
 
 def children(pid: int) -> list[int]:
@@ -133,7 +118,7 @@ def test_what_cannot_run_as_asked_is_given_up_at_first_but_not_once_it_ran() -> 
     program = f"import time; time.sleep(0.1); raise SystemExit({UNUSABLE})"
     refusing = part(program)
     refusing.spawn()
-    eventually(lambda: looked_after(refusing) == UNUSABLE)
+    until(lambda: looked_after(refusing) == UNUSABLE)
     refusing.end()
     running = part(program)
     running.spawn()
@@ -183,16 +168,16 @@ def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, short_
     ):
         try:
             # The fork server and the first part, or all of them.
-            eventually(lambda: begun(running.pid) == PARTS if after else bool(begun(running.pid)))
+            until(lambda: begun(running.pid) == PARTS if after else bool(begun(running.pid)))
             time.sleep(after)
             left = [each.number for each in descendants(running.pid)]
             running.send_signal(how)
             running.wait(20)
-            eventually(lambda: are_gone(left))
+            until(lambda: are_gone(left))
         finally:
             running.kill()
     assert running.returncode == (-how if how is signal.SIGKILL else 0)
-    eventually(lambda: [each.name for each in short_path.iterdir()] == ["log"])
+    until(lambda: [each.name for each in short_path.iterdir()] == ["log"])
 
 
 def test_no_secret_of_the_environment_is_shown_by_the_system(tmp_path: Path) -> None:
@@ -212,7 +197,7 @@ def test_no_secret_of_the_environment_is_shown_by_the_system(tmp_path: Path) -> 
     ):
         try:
             there = {"controller", "server", "emulate"}
-            eventually(lambda: all(any(each.runs(name) for each in descendants(running.pid)) for name in there))
+            until(lambda: all(any(each.runs(name) for each in descendants(running.pid)) for name in there))
             for each in descendants(running.pid):
                 shown = (Path("/proc") / str(each.number) / "environ").read_text(errors="replace")
                 assert not [secret for secret in secrets.values() if secret in shown], each.title
@@ -270,13 +255,13 @@ def test_what_is_killed_is_followed_soon_while_the_others_go_on(tmp_path: Path) 
         running.work_on(1)
         killed = running.child("server")
         os.kill(killed, signal.SIGKILL)
-        eventually(lambda: killed not in running.children("server"))  # another may answer sooner than anybody looks
-        eventually(running.up)
+        until(lambda: killed not in running.children("server"))  # another may answer sooner than anybody looks
+        until(running.up)
         assert running.get("production", "station") == "started"
         running.work_on(1)
         killed = running.child("controller")
         os.kill(killed, signal.SIGKILL)
-        eventually(lambda: running.production() == "waiting")
+        until(lambda: running.production() == "waiting")
         assert running.child("controller") != killed
 
 
@@ -287,11 +272,11 @@ def test_a_station_whose_fork_server_dies_goes_on_and_gets_another(tmp_path: Pat
         server = running.child("server")
         os.kill(before, signal.SIGKILL)
         os.kill(server, signal.SIGKILL)
-        eventually(lambda: server not in running.children("server"))
-        eventually(running.up)
+        until(lambda: server not in running.children("server"))
+        until(running.up)
         assert running.get("production", "station") == "started"
         running.work_on(1)
-        eventually(lambda: fork_servers(running) not in ([], [before]))
+        until(lambda: fork_servers(running) not in ([], [before]))
 
 
 def fork_servers(station: RunningStation) -> list[int]:

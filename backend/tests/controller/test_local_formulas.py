@@ -9,7 +9,6 @@ from pathlib import Path
 from hypothesis import given
 
 from controller.alarming.scene import alarms
-from controller.bench import CELL
 from controller.rig import Rig
 from controller.test_ticks import EVERYTHING_IS_SAFE, NOW
 from core.budget import examples
@@ -34,6 +33,7 @@ from sequence_planner.language.syntax import TRUE
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import PlanAnswer
+from support.places import CELL
 
 PLACES = EnumerationType(("home", "scanner", "out"))
 

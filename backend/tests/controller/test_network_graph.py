@@ -12,13 +12,14 @@ from statistics import median
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.bench import COMMAND, STATE, STATE_TYPE, Arm, bench, cell, until
+from controller.bench import COMMAND, STATE, STATE_TYPE, Arm, bench, cell
 from core.budget import TIMED
 from sequence_planner.controller.io.network import NetworkWatch, network_steps, network_view, uses
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.service import show_network
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.ros.transport import NetworkEndpoint, ServiceEnd
+from support.waiting import until_async
 
 from .test_network_watch import OBEYS, REPORTS
 
@@ -137,16 +138,16 @@ def test_the_graph_is_published_only_when_it_has_changed() -> None:
         async with bench() as b:
             link = Link()
             showing = asyncio.create_task(show_network(b.controller.devices.network, link))
-            await until(lambda: bool(link.told) and STATE in link.told[-1].nodes["/sequence_planner"].subscribes)
+            await until_async(lambda: bool(link.told) and STATE in link.told[-1].nodes["/sequence_planner"].subscribes)
             before = len(link.told)
             looks = b.controller.devices.network.seen
-            await until(lambda: b.controller.devices.network.seen is not looks)
+            await until_async(lambda: b.controller.devices.network.seen is not looks)
             arm = Arm(b.network)
-            await until(lambda: len(link.told) > before and "/emulated_devices" in link.told[-1].nodes)
+            await until_async(lambda: len(link.told) > before and "/emulated_devices" in link.told[-1].nodes)
             assert len(link.told) <= before + 1
             assert link.told[-1].services_known
             arm.transport.close()
-            await until(lambda: "/emulated_devices" not in link.told[-1].nodes)
+            await until_async(lambda: "/emulated_devices" not in link.told[-1].nodes)
             showing.cancel()
 
     asyncio.run(scenario())

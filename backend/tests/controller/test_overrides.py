@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import IDENTITY, until
+from controller.bench import IDENTITY
 from controller.journalling import journal
 from core.actors import EVA
 from pipelines.station_writing import station_with
@@ -31,6 +31,7 @@ from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.station import ReadyStation
 from sequence_planner.synthesis.supervisor import synthesise
+from support.waiting import until_async
 
 TANK = """
 topics:
@@ -171,15 +172,15 @@ def test_the_controller_sets_shows_and_tells_what_passes(tmp_path: Path) -> None
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)
         await controller.command(StartProduction(actor=SYSTEM))
-        await until(lambda: len(orders) == 1)
+        await until_async(lambda: len(orders) == 1)
         await controller.command(TakeControl(actor=EVA))
         await controller.command(SetOverride(actor=EVA, name="tank.speed", fields={"speed": 0.1}))
-        await until(lambda: len(orders) == 2)
+        await until_async(lambda: len(orders) == 2)
         assert controller.view().overrides["tank.speed"].actor == "Eva"
         with pytest.raises(CommandRefused):
             await controller.command(SetOverride(actor=EVA, name="tank.speed", fields={"speed": 9}))
         await controller.command(ClearOverride(actor=EVA, name="tank.speed"))
-        await until(lambda: len(orders) == 3)
+        await until_async(lambda: len(orders) == 3)
         await check_told(controller, station)
         running.cancel()
         await asyncio.gather(running, return_exceptions=True)

@@ -19,7 +19,7 @@ from queue import SimpleQueue
 
 import pytest
 
-from controller.bench import CELL, cell, until
+from controller.bench import cell
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.controller.planner_client import PlannerListener, PlannerProcess
 from sequence_planner.forking.child import Child
@@ -33,6 +33,8 @@ from sequence_planner.planning.problem import Circumstances, Goal, PlanAnswer, P
 from sequence_planner.process import worker
 from sequence_planner.process.budget import Budget
 from sequence_planner.process.worker import Companion, Ended, Word, WorkerQuestion, WorkerReady, stand_by
+from support.places import CELL
+from support.waiting import until_async
 
 
 @dataclass
@@ -85,7 +87,7 @@ def test_a_question_asked_at_once_is_answered() -> None:
         assert asking.planner.busy
         with pytest.raises(RuntimeError):
             asking.ask()
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         (answer,) = asking.answers
         assert isinstance(answer, PlanAnswer)
         assert answer.verdict is Verdict.FOUND
@@ -100,7 +102,7 @@ def test_it_says_why_there_is_no_plan_at_all() -> None:
         offline = Circumstances(offline=frozenset(automaton.resources))
         goals = goals_of(automaton, ("fetch(left)",))
         asking.planner.ask(DiagnosisRequest(initial_state(automaton), goals, offline))
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         (answer,) = asking.answers
         assert isinstance(answer, Diagnosis)
         assert answer.reason is not None
@@ -115,19 +117,19 @@ def test_it_says_why_there_is_no_plan_at_all() -> None:
 def test_an_error_nobody_thought_of_is_told_and_the_next_question_is_answered() -> None:
     async def scenario(asking: Asking) -> None:
         asking.ask_nonsense()
-        await until(lambda: bool(asking.failures))
+        await until_async(lambda: bool(asking.failures))
         ((why, again),) = asking.failures
         assert "KeyError" in why
         assert not again, "the same question would fail again"
         assert asking.planner.trouble == why
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         asking.ask()
-        await until(lambda: bool(asking.answers) or len(asking.failures) > 1)
+        await until_async(lambda: bool(asking.answers) or len(asking.failures) > 1)
         if not asking.answers:  # it was asked in the moment in which the process ended
             assert asking.failures[1][1], "it may be asked again"
-            await until(lambda: not asking.planner.busy)
+            await until_async(lambda: not asking.planner.busy)
             asking.ask()
-            await until(lambda: bool(asking.answers))
+            await until_async(lambda: bool(asking.answers))
         assert asking.planner.trouble is None
 
     run(scenario)
@@ -136,14 +138,14 @@ def test_an_error_nobody_thought_of_is_told_and_the_next_question_is_answered() 
 def test_one_that_is_killed_is_replaced_without_a_question_too() -> None:
     async def scenario(asking: Asking) -> None:
         asking.ask()
-        await until(lambda: bool(asking.answers))
+        await until_async(lambda: bool(asking.answers))
         (before,) = processes()
         before.kill()
-        await until(lambda: [p.pid for p in processes()] not in ([], [before.pid]))
+        await until_async(lambda: [p.pid for p in processes()] not in ([], [before.pid]))
         assert asking.failures == []
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         asking.ask()
-        await until(lambda: len(asking.answers) == 2)
+        await until_async(lambda: len(asking.answers) == 2)
 
     run(scenario)
 
@@ -157,9 +159,9 @@ def test_it_begins_with_a_question_and_ends_when_nobody_has_one(monkeypatch: pyt
         for number in range(1, 4):
             asking.ask()
             assert len(processes()) == 1
-            await until(partial(asking.has, number))
+            await until_async(partial(asking.has, number))
             began = time.monotonic()
-            await until(lambda: processes() == [])
+            await until_async(lambda: processes() == [])
             assert time.monotonic() - began > 0.1, "it may be asked more at once"
             assert not asking.planner.busy
         assert asking.failures == []
@@ -175,7 +177,7 @@ def test_a_question_in_the_moment_in_which_it_ends_is_answered(monkeypatch: pyte
     async def scenario(asking: Asking) -> None:
         for number in range(1, 6):
             asking.ask()
-            await until(partial(asking.has, number))
+            await until_async(partial(asking.has, number))
         assert asking.failures == []
 
     run(scenario)
@@ -184,7 +186,7 @@ def test_a_question_in_the_moment_in_which_it_ends_is_answered(monkeypatch: pyte
 def test_one_that_stands_still_holds_up_nothing_and_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     async def scenario(asking: Asking) -> None:
         asking.ask()
-        await until(lambda: bool(asking.answers))
+        await until_async(lambda: bool(asking.answers))
         (still,) = processes()
         assert still.pid is not None
         os.kill(still.pid, signal.SIGSTOP)
@@ -192,12 +194,12 @@ def test_one_that_stands_still_holds_up_nothing_and_is_replaced(monkeypatch: pyt
         began = time.monotonic()
         asking.ask()
         assert time.monotonic() - began < 0.1
-        await until(lambda: bool(asking.failures))
+        await until_async(lambda: bool(asking.failures))
         assert asking.failures == [("the planner was silent too long and is started again", True)]
         monkeypatch.undo()
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         asking.ask()
-        await until(lambda: len(asking.answers) == 2)
+        await until_async(lambda: len(asking.answers) == 2)
 
     run(scenario)
 
@@ -207,11 +209,11 @@ def test_one_that_dies_again_and_again_is_replaced_ever_later() -> None:
         died: list[float] = []
         asking.ask()
         for _ in range(3):
-            await until(lambda: bool(processes()))
+            await until_async(lambda: bool(processes()))
             (process,) = processes()
             process.kill()
             died.append(time.monotonic())
-            await until(partial(has_gone, process.pid))
+            await until_async(partial(has_gone, process.pid))
         assert died[2] - died[1] > 1.5
         assert asking.planner.trouble == "the planner has ended and is started again"
 
@@ -226,7 +228,7 @@ def test_a_question_that_is_called_off_is_not_answered_and_the_next_one_is() -> 
             asking.planner.call_off()
             assert not asking.planner.busy
         asking.ask()
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         await asyncio.sleep(0.2)
         assert len(asking.answers) == 1
         assert asking.failures == []
@@ -238,17 +240,17 @@ def test_a_question_that_is_called_off_is_not_answered_and_the_next_one_is() -> 
 def test_after_one_that_has_died_over_a_question_engines_are_in_processes_of_their_own() -> None:
     async def scenario(asking: Asking) -> None:
         asking.ask()
-        await until(lambda: bool(asking.answers))
+        await until_async(lambda: bool(asking.answers))
         (first,) = processes()
         assert first.pid is not None
         os.kill(first.pid, signal.SIGSTOP)
         asking.ask()
         first.kill()
-        await until(lambda: bool(asking.failures))
+        await until_async(lambda: bool(asking.failures))
         assert asking.failures == [("the planner has ended and is started again", True)]
-        await until(lambda: not asking.planner.busy)
+        await until_async(lambda: not asking.planner.busy)
         asking.ask()
-        await until(lambda: len(asking.answers) == 2)
+        await until_async(lambda: len(asking.answers) == 2)
         (cautious,) = processes()
         assert cautious.pid != first.pid
         titles = set(map(title, descendants(os.getpid())))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Timeouts
 from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
@@ -16,8 +14,8 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import BOLT_TIGHTENING
 
-MODEL = Path(__file__).parents[3] / "models" / "bolt_tightening"
 PLACES = EnumerationType(("home", "between", "work"))
 
 
@@ -62,7 +60,7 @@ def test_a_device_that_was_pushed_away_and_does_not_come_back_is_noticed() -> No
 
 def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     execution, still = made()
-    station = prepare_station(MODEL)
+    station = prepare_station(BOLT_TIGHTENING)
     alarms = PlanAlarms(execution, Inputs(station.pipelines, station.registry), still, WhoCan(execution))
     execution.start_production()
     tick(execution, "between", 1.0)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 from controller.rig import Rig
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.simulation.devices import EmulatedDevices
+from support.places import MODELS
 
-BUFFER = Path(__file__).parents[3] / "models" / "robots_with_buffer"
+BUFFER = MODELS / "robots_with_buffer"
 PICK = "robot_1.pick"
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import CELL, COMMAND, COMMAND_TYPE, Arm, cell, until
+from controller.bench import COMMAND, COMMAND_TYPE, Arm, cell
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.ipc import ControllerClient
@@ -19,6 +19,8 @@ from sequence_planner.ros import exclusivity
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.places import CELL
+from support.waiting import until_async
 
 
 @pytest.fixture(autouse=True)
@@ -56,7 +58,7 @@ def test_it_says_for_whom_it_waits_and_commands_once_that_has_ended(tmp_path: Pa
             return alarm is not None and alarm.ended is None
 
         with arm.saying("home"):
-            await until(waits)
+            await until_async(waits)
             assert client.view is not None
             assert "/other" in client.view.alarms["rival"].text
             with pytest.raises(CommandRefused, match=r"/arm/command \(node /other\)") as refused:
@@ -71,8 +73,8 @@ def test_it_says_for_whom_it_waits_and_commands_once_that_has_ended(tmp_path: Pa
                     await asyncio.sleep(0.1)
 
             await asyncio.wait_for(begin(), 30)
-            await until(lambda: client.view is not None and client.view.production is Production.STARTED)
-            await until(lambda: not waits())
+            await until_async(lambda: client.view is not None and client.view.production is Production.STARTED)
+            await until_async(lambda: not waits())
         for task in living:
             task.cancel()
         await asyncio.wait(living)

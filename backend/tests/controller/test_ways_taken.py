@@ -6,7 +6,7 @@ import pytest
 
 from controller.ways import Taken, after_a_fault, errand_of, execution_in
 from core.building import predicate_of
-from planning.advice.rules import MODELS, station
+from planning.advice.rules import station
 from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise, update_operations
 from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
@@ -22,6 +22,7 @@ from sequence_planner.planning.problem import ORDINARY, Plan, PlanTick, goals_of
 from sequence_planner.planning.recovery.proposals import OfferKind
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.station import prepare_station
+from support.places import MODELS
 
 NAME = "bolt_tightening"
 TO_ABOVE, LEAVES = "robot.move_to_position(above_engine)", "robot.move_to_position(home).robot_leaves"

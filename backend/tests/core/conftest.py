@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from sequence_planner.automaton.automaton import Automaton
@@ -10,14 +8,13 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.model.loader import load_station
 from sequence_planner.synthesis.supervisor import Supervision, relevant, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
-
-STATIONS = Path(__file__).parent.parent / "stations"
+from support.places import WORKED_EXAMPLE
 
 
 @pytest.fixture(scope="session")
 def worked_example() -> Automaton:
     """The station of the worked example, read from its folder as any other."""
-    return ground(load_station(STATIONS / "worked_example"))
+    return ground(load_station(WORKED_EXAMPLE))
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,6 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 
@@ -35,6 +34,7 @@ from sequence_planner.planning.problem import (
 )
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.waiting import until
 
 from .budget import ONLY_TIMED, examples
 from .choices import made_by
@@ -142,13 +142,6 @@ def processes() -> list[Child]:
 def the(lane: str) -> Child:
     (process,) = (child for child in processes() if child.name == f"planner {lane}")
     return process
-
-
-def until(what: Callable[[], bool]) -> None:
-    end = time.monotonic() + 20
-    while not what():
-        assert time.monotonic() < end, "it did not come true in time"
-        time.sleep(0.01)
 
 
 @examples(15)

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import json
-from pathlib import Path
 
 import pytest
 
-from controller.bench import until
 from sequence_planner.editor.processes import EditingProcess
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.model.files import read_files
 from sequence_planner.process import worker
-
-STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
+from support.places import BOLT_TIGHTENING
+from support.waiting import until_async
 
 
 def living() -> list[Child]:
@@ -26,7 +24,7 @@ def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_que
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(worker, "RESTS_AFTER", 0.2)
-    files = read_files(STATION)
+    files = read_files(BOLT_TIGHTENING)
 
     async def shown(editing: EditingProcess) -> object:
         answer = await editing.ask(files, "shown", 1, None)
@@ -40,7 +38,7 @@ def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_que
             (before,) = living()
             assert await shown(editing) == first
             assert [each.pid for each in living()] == [before.pid], "it is kept as long as somebody asks"
-            await until(lambda: not living())
+            await until_async(lambda: not living())
             assert await shown(editing) == first
         finally:
             await editing.close()

@@ -12,25 +12,24 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import until
-from editor.models import BOLTS, bolts
+from editor.models import bolts
 from sequence_planner.editor.checks import checked
 from sequence_planner.editor.processes import CheckDesk, DraftProcess, working
 from sequence_planner.editor.schemas.check import CheckState, CheckView
 from sequence_planner.forking.starting import children
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.process.task import WorkerError
-
-PATIENCE = 60.0
+from support.places import BOLT_TIGHTENING
+from support.waiting import PATIENCE, until_async
 
 
 def last(tmp_path: Path, files: dict[str, str]) -> CheckView:
-    *_, found = checked(1, files, BOLTS, StartNeeds(), tmp_path)
+    *_, found = checked(1, files, BOLT_TIGHTENING, StartNeeds(), tmp_path)
     return found
 
 
 def test_a_model_is_found_fit_with_what_its_supervisor_adds(tmp_path: Path) -> None:
-    found = list(checked(7, bolts(), BOLTS, StartNeeds(), tmp_path))
+    found = list(checked(7, bolts(), BOLT_TIGHTENING, StartNeeds(), tmp_path))
     assert [each.state for each in found[:-1]] == [CheckState.CHECKING] * (len(found) - 1)
     assert found[0].doing == "reading it"
     done = found[-1]
@@ -111,10 +110,10 @@ class Desk:
     def __init__(self) -> None:
         self.told: list[CheckView] = []
         self.process = DraftProcess()
-        self.desk = CheckDesk(BOLTS, StartNeeds(), self.process, self.told.append)
+        self.desk = CheckDesk(BOLT_TIGHTENING, StartNeeds(), self.process, self.told.append)
 
     async def until(self, what: Callable[[CheckView], bool]) -> CheckView:
-        await until(lambda: bool(self.told) and what(self.told[-1]), PATIENCE)
+        await until_async(lambda: bool(self.told) and what(self.told[-1]))
         return self.told[-1]
 
 

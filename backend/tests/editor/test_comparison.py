@@ -7,18 +7,19 @@ from typing import Any
 
 import pytest
 
-from editor.models import BOLTS, SPECIFICATIONS, bolts
+from editor.models import SPECIFICATIONS, bolts
 from sequence_planner.editor.checks import compared, fitted
 from sequence_planner.editor.schemas import what_if
 from sequence_planner.editor.schemas.diff import ComparisonView, Difference, TransferView
 from sequence_planner.language.types import Value
+from support.places import BOLT_TIGHTENING
 
 RUN_NUT = "nutrunner.run_nut"
 AT_PAIR_1: dict[str, Value | None] = {"robot.pose": "bolt_pair_1", "robot.target_pose": "bolt_pair_1"}
 
 
 def compare(tmp_path: Path, old: dict[str, str], new: dict[str, str]) -> ComparisonView:
-    (found,) = compared(old, new, BOLTS, tmp_path)
+    (found,) = compared(old, new, BOLT_TIGHTENING, tmp_path)
     return found
 
 
@@ -32,7 +33,7 @@ def fit(
 ) -> TransferView:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(what_if, "ADVISING", 60.0)  # seconds: a busy machine finds ways late
-        (found,) = fitted(bolts(), new, BOLTS, present, running, reset, tmp_path)
+        (found,) = fitted(bolts(), new, BOLT_TIGHTENING, present, running, reset, tmp_path)
     return found
 
 

@@ -18,8 +18,8 @@ from sequence_planner.editor.processes import LanguageQuestionKind, PlaceInText
 from sequence_planner.model.files import FolderReader, read_files, write_files
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import Before, read_station
+from support.places import CELL
 
-CELL = Path(__file__).parents[1] / "stations" / "cell"
 MODELS = (bolts(), read_files(CELL))
 WORD = re.compile(r"[A-Za-z_][A-Za-z_0-9]*|[0-9]+|[:=,.(){}\[\]-]+")
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from editor.models import BOLTS, bolts
+from editor.models import bolts
 from sequence_planner.editor.checks import simulated
 from sequence_planner.editor.schemas.what_if import WhatIfView
 from sequence_planner.language.types import Value
+from support.places import BOLT_TIGHTENING
 
 PLACED: dict[str, Value | None] = {f"bolts[bolt_pair_{number}]": "placed" for number in (1, 2, 3)}
 
@@ -15,7 +16,7 @@ PLACED: dict[str, Value | None] = {f"bolts[bolt_pair_{number}]": "placed" for nu
 def simulate(
     folder: Path, files: dict[str, str], present: dict[str, Value | None], seconds: float = 30.0
 ) -> WhatIfView:
-    (found,) = simulated(files, BOLTS, present, seconds, 60.0, folder)
+    (found,) = simulated(files, BOLT_TIGHTENING, present, seconds, 60.0, folder)
     return found
 
 

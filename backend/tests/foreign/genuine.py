@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from foreign.peers import HERE, PATIENCE, Peer, eventually
+from foreign.peers import HERE, Peer
+from support.waiting import PATIENCE, until_async
 
 CYCLONE, FAST = "rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"
 NEEDED = ("rclpy", "std_msgs", "geometry_msgs", "example_interfaces")
@@ -58,7 +59,7 @@ class Genuine(Peer):
             found[:] = [each.removeprefix(f"{answer} ") for each in self.lines if each.split(" ")[0] == answer]
             return bool(found)
 
-        await eventually(printed, f"the peer says {answer}; it said {self.lines} and {self.complaints}")
+        await until_async(printed, f"the peer says {answer}; it said {self.lines} and {self.complaints}")
         return found[0]
 
 

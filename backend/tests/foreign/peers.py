@@ -13,13 +13,14 @@ import re
 import shutil
 import subprocess
 import sys
-import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+
+from support.waiting import PATIENCE
 
 FAST_DDS, ROS2_CLIENT = "fast_dds", "ros2_client"
 HERE = Path(__file__).parent
@@ -27,7 +28,6 @@ BUILT = HERE / ".built"
 HEADER = Path("/usr/include/fastdds/dds/topic/TopicDataType.hpp")
 RUST = (1, 88)
 COMPILATION = 900.0  # seconds; a crate's first compilation takes two minutes on two cores
-PATIENCE = 20.0  # seconds within which any vendor's discovery has come about
 
 
 def missing(peer: str) -> str | None:
@@ -119,14 +119,6 @@ async def running(program: Path, domain: int, *role: str) -> AsyncIterator[Peer]
         with suppress(ProcessLookupError):
             process.kill()
         await process.wait()
-
-
-async def eventually(holds: Callable[[], object], what: str) -> None:
-    """Wait until `holds` returns something true; fail with `what` when it does not in time."""
-    deadline = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < deadline, f"never happened: {what}"
-        await asyncio.sleep(0.01)
 
 
 if __name__ == "__main__":

@@ -10,17 +10,17 @@ from functools import cache
 import pytest
 
 from foreign.genuine import CYCLONE, FAST, Genuine, genuine, lacking
-from foreign.peers import PATIENCE, eventually
 from sequence_planner.ros.actions import ActionClient, ActionServer, GoalOutcome, GoalStatus, GoalWork, cancelled
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, Sample, Transport
 from sequence_planner.ros.transports.choice import TransportChoice, open_transport
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.network import DOMAIN
+from support.waiting import PATIENCE, until_async
 
 TEXT, POSE, ADD = "std_msgs/msg/String", "geometry_msgs/msg/PoseStamped", "example_interfaces/srv/AddTwoInts"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 RELIABLE, LATCHED = QualityOfService.RELIABLE, QualityOfService.LATCHED
-DOMAIN = 1 + (os.getpid() + 75) % 100
 TRANSPORTS: tuple[TransportChoice, ...] = ("cyclonedds", "rclpy")
 #: Where the station runs on rclpy it has one middleware in this process, that of RMW_IMPLEMENTATION.
 OURS = os.environ.get("RMW_IMPLEMENTATION", FAST)
@@ -67,7 +67,7 @@ class Station:
             self.say("/ping", TEXT, {"data": "-"})
             return bool(self.texts("/pong"))
 
-        await eventually(answered, "the peer answers")
+        await until_async(answered, "the peer answers")
 
     async def add(self, a: int, b: int) -> object:
         request = registry().encode(f"{ADD}_Request", {"a": a, "b": b})
@@ -134,12 +134,12 @@ def test_topics_both_ways(transport: TransportChoice, rmw: str) -> None:
             for text in ("a", "ab", "åäö 語"):
                 station.say("/ping", TEXT, {"data": text})
             station.say("/pose/in", POSE, pose)
-            await eventually(lambda: station.texts("/pong")[-1:] == ["åäö 語åäö 語"], "the last answer comes")
+            await until_async(lambda: station.texts("/pong")[-1:] == ["åäö 語åäö 語"], "the last answer comes")
             assert [each for each in station.texts("/pong") if each != "--"] == ["aa", "abab", "åäö 語åäö 語"]
-            await eventually(lambda: station.heard["/pose/out"], "the pose comes back")
+            await until_async(lambda: station.heard["/pose/out"], "the pose comes back")
             [turned] = station.heard["/pose/out"]
             assert turned["header"] == {"stamp": {"sec": -1, "nanosec": 7}, "frame_id": "bäsebäse"}
-            await eventually(lambda: station.texts("/genuine/latched") == ["last"], "what was kept comes")
+            await until_async(lambda: station.texts("/genuine/latched") == ["last"], "what was kept comes")
             quiet(peer)
 
     play(transport, scenario)
@@ -206,7 +206,7 @@ def test_each_sees_the_other_by_name(transport: TransportChoice, rmw: str) -> No
                     "/cell/genuine"
                 }
 
-            await eventually(named, "the genuine node is named")
+            await until_async(named, "the genuine node is named")
             [pong] = [each for each in station.transport.graph() if each.topic == "/pong" and not each.own]
             assert pong.type_hash == registry().type_hash(TEXT)
             for _ in range(100):

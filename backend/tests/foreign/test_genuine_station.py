@@ -11,7 +11,8 @@ import pytest
 
 from foreign.genuine import lacking
 from foreign.test_genuine import OURS
-from running.stations import MODEL, eventually, process, station
+from running.stations import MODEL, process, station
+from support.waiting import until
 
 PACKAGE = "truck_engine_msgs"
 
@@ -30,20 +31,20 @@ def test_a_station_works_with_devices_over_genuine_ros(
     log = tmp_path / "devices.log"
     devices = ("emulate", str(MODEL), "--transport", theirs, "--speed", "5")
     with process(log, *devices) as emulated, station(tmp_path, "--transport", ours) as running:
-        eventually(lambda: running.value("robot.pose") is not None)
-        eventually(lambda: running.get("alarms") == {})
+        until(lambda: running.value("robot.pose") is not None)
+        until(lambda: running.get("alarms") == {})
         answer = running.post("production/start", {})
         assert answer.status_code == 204, answer.text
         running.work_on(1)
         emulated.kill()
         emulated.wait()
-        eventually(lambda: running.value("robot.pose") is None)
+        until(lambda: running.value("robot.pose") is None)
         with process(log, *devices):
-            eventually(lambda: running.value("robot.pose") is not None)
+            until(lambda: running.value("robot.pose") is not None)
             killed = running.child("controller")
             os.kill(killed, signal.SIGKILL)
-            eventually(lambda: killed not in running.children("controller"))
-            eventually(lambda: running.production() == "waiting")
-            eventually(lambda: running.value("robot.pose") is not None)
+            until(lambda: killed not in running.children("controller"))
+            until(lambda: running.production() == "waiting")
+            until(lambda: running.value("robot.pose") is not None)
     assert "Traceback" not in log.read_text() + running.log.read_text()
     assert "[WARN]" not in log.read_text() + running.log.read_text()

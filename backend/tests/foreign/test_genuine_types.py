@@ -14,13 +14,14 @@ from pathlib import Path
 import pytest
 
 from foreign.genuine import lacking
-from foreign.test_genuine import DOMAIN, OURS
-from running.stations import REPOSITORY
+from foreign.test_genuine import OURS
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.choice import open_transport
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.network import DOMAIN
+from support.places import REPOSITORY
 
 CHANGED = "truck_engine_msgs/msg/RobotCommand"
 MODELS = sorted(path.parent for path in (REPOSITORY / "models").glob("*/messages"))

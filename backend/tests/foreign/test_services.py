@@ -18,14 +18,15 @@ import pytest
 from structlog.testing import capture_logs
 
 from foreign.genuine import CYCLONE
-from foreign.peers import FAST_DDS, PATIENCE, ROS2_CLIENT, Peer, built, eventually, running
+from foreign.peers import FAST_DDS, ROS2_CLIENT, Peer, built, running
 from sequence_planner.ros import names
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, ServiceEnd, TellsServices, Transport
 from sequence_planner.ros.transports.choice import TransportChoice, open_transport
 from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.network import DOMAIN
+from support.waiting import PATIENCE, until_async
 
-DOMAIN = 1 + (os.getpid() + 25) % 100
 Role = tuple[str, ...]
 ASKS_AS_WE_DO, SERVES_AS_WE_DO = (ROS2_CLIENT, "call", "cyclone"), (ROS2_CLIENT, "serve", "cyclone")
 VENDORS = {FAST_DDS: "eProsima Fast DDS", ROS2_CLIENT: "RustDDS"}
@@ -80,7 +81,7 @@ def test_a_server_that_does_not_tell_its_mapping_is_not_called(registry: Message
         with pytest.raises(NoServerError, match="it would execute garbage, so nothing was sent"):
             await station.call(SERVICE, TYPE, request, PATIENCE)
         assert peer.lines == []
-        await eventually(lambda: servers(station), "the server is seen")
+        await until_async(lambda: servers(station), "the server is seen")
         [server] = servers(station)
         assert (server.service, server.vendor, server.understood) == (SERVICE, VENDORS[role[0]], False)
 
@@ -121,7 +122,7 @@ def test_a_client_that_does_not_tell_its_mapping_is_not_answered(registry: Messa
         with capture_logs() as log:
             station.serve(SERVICE, TYPE, add)
             if role == ASKS_AS_WE_DO:
-                await eventually(lambda: log, "the request is noticed")
+                await until_async(lambda: log, "the request is noticed")
             await asyncio.sleep(2)  # in which the client asks some ten times
         assert (asked, peer.lines) == ([], [])
         dropped = [event for event in log if "(no clientid)" in event["event"]]
@@ -141,7 +142,7 @@ def test_a_client_on_fast_dds_is_named_once_and_does_not_fill_the_log(
 
         with capture_logs() as log:
             station.serve(SERVICE, TYPE, add)
-            await eventually(lambda: log, "the client is noticed")
+            await until_async(lambda: log, "the client is noticed")
             capfd.readouterr()
             await asyncio.sleep(3)  # in which it asks some thirty times
         [told] = log
@@ -176,7 +177,7 @@ def test_a_server_of_the_same_mapping_understands_each_call(registry: MessageReg
         # As many at a time as the peer keeps.
         assert await asyncio.gather(*(added(number, 1) for number in range(10))) == list(range(1, 11))
         expected = [f"asked {-(2**62)} + {2**62 - 1}", *(f"asked {number} + 1" for number in range(10))]
-        await eventually(lambda: len(peer.lines) >= len(expected) + peer.lines.count(LOOKING), "each call is heard")
+        await until_async(lambda: len(peer.lines) >= len(expected) + peer.lines.count(LOOKING), "each call is heard")
         assert sorted(line for line in peer.lines if line != LOOKING) == sorted(expected)
 
     play(registry, SERVES_AS_WE_DO, scenario)
@@ -190,7 +191,7 @@ def test_a_client_of_the_same_mapping_gets_its_answers(registry: MessageRegistry
             return registry.encode(f"{TYPE}_Response", {"sum": 5})
 
         station.serve(SERVICE, TYPE, add)
-        await eventually(lambda: len(peer.lines) >= 3, "the client has its answers")
+        await until_async(lambda: len(peer.lines) >= 3, "the client has its answers")
         assert set(peer.lines) == {"answered 5"}
 
     play(registry, ASKS_AS_WE_DO, scenario)

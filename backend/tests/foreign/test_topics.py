@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-import os
 from collections.abc import Awaitable, Callable, Sequence
 from functools import cache
 
 import pytest
 
-from foreign.peers import FAST_DDS, ROS2_CLIENT, built, eventually, running
+from foreign.peers import FAST_DDS, ROS2_CLIENT, built, running
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport
 from sequence_planner.ros.transports.choice import open_transport
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.network import DOMAIN
+from support.waiting import until_async
 
 TEXT, JOINTS = "std_msgs/msg/String", "sensor_msgs/msg/JointState"
 RELIABLE, LATCHED = QualityOfService.RELIABLE, QualityOfService.LATCHED
-# Of DDS: other tests are elsewhere. Above 100 its ports are those that the system hands out to anybody.
-DOMAIN = 1 + (os.getpid() + 25) % 100
 BOTH = pytest.mark.parametrize("peer", [FAST_DDS, ROS2_CLIENT])
 
 
@@ -63,7 +62,7 @@ def play(peer: str, scenario: Callable[[Station], Awaitable[None]], late: Callab
             async with running(program, DOMAIN, "echo"):
                 late(station)
                 await scenario(station)
-            await eventually(lambda: station.foreign() == [], "the peer is gone")
+            await until_async(lambda: station.foreign() == [], "the peer is gone")
         finally:
             transport.close()
 
@@ -81,10 +80,10 @@ def test_commands_are_read_and_answered(peer: str) -> None:
             station.say("/ping", TEXT, {"data": "-"})  # The peer may not know yet who listens to its pong.
             return bool(station.texts("/pong"))
 
-        await eventually(greeted, "the peer answers")
+        await until_async(greeted, "the peer answers")
         for text in ("a", "ab", "abc", "abcd", "åäö 語"):
             station.say("/ping", TEXT, {"data": text})
-        await eventually(lambda: station.texts("/pong")[-1] == "åäö 語åäö 語", "the last answer comes")
+        await until_async(lambda: station.texts("/pong")[-1] == "åäö 語åäö 語", "the last answer comes")
         answers = [text for text in station.texts("/pong") if text != "--"]
         assert answers == ["aa", "abab", "abcabc", "abcdabcd", "åäö 語åäö 語"]
 
@@ -111,7 +110,7 @@ def test_nested_messages_with_arrays_mean_the_same_on_both_sides(peer: str) -> N
             station.say("/joints/in", JOINTS, said)
             return bool(station.heard["/joints/out"])
 
-        await eventually(answered, "the peer answers")
+        await until_async(answered, "the peer answers")
         assert all(heard == answer for heard in station.heard["/joints/out"])
 
     play(peer, scenario, begin)
@@ -126,10 +125,10 @@ def test_latched_samples_reach_late_joiners_on_both_sides(peer: str) -> None:
 
     async def scenario(station: Station) -> None:
         station.hear("/kept/out", TEXT, LATCHED)
-        await eventually(lambda: "last" in station.texts("/kept/out"), "the peer has had it, and says it again")
+        await until_async(lambda: "last" in station.texts("/kept/out"), "the peer has had it, and says it again")
         again = Station(station.transport)
         again.hear("/kept/out", TEXT, LATCHED)
-        await eventually(lambda: again.texts("/kept/out") == ["last"], "who comes later still gets the last one")
+        await until_async(lambda: again.texts("/kept/out") == ["last"], "who comes later still gets the last one")
 
     play(peer, scenario, begin)
 
@@ -149,10 +148,10 @@ def test_the_peer_is_seen_with_its_types_and_policies(peer: str) -> None:
         def seen() -> set[tuple[str, str, str, bool]]:
             return {(e.topic, e.type_name, e.direction, e.transient_local) for e in station.foreign()}
 
-        await eventually(lambda: wanted <= seen(), "all its endpoints are seen")
+        await until_async(lambda: wanted <= seen(), "all its endpoints are seen")
         assert all(endpoint.reliable for endpoint in station.foreign() if endpoint.topic in {w[0] for w in wanted})
         if peer == ROS2_CLIENT:  # It tells its node, as ROS 2 does; plain DDS has none.
-            await eventually(
+            await until_async(
                 lambda: "/foreign" in {e.node for e in station.foreign() if e.topic == "/pong"}, "its node is known"
             )
 
@@ -173,7 +172,7 @@ def test_who_asks_for_more_than_the_peer_offers_gets_nothing(peer: str) -> None:
             station.say("/ping", TEXT, {"data": "-"})
             return len(station.texts("/pong")) > 3
 
-        await eventually(greeted, "the peer answers")
+        await until_async(greeted, "the peer answers")
         assert demanding.texts("/pong") == []
 
     play(peer, scenario, begin)

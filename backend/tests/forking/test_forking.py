@@ -19,9 +19,8 @@ from forking import works
 from sequence_planner.forking import starting
 from sequence_planner.forking.child import LOST, Child
 from sequence_planner.forking.starting import children, hang_up, start
-
-PATIENCE = 20.0
-TESTS = Path(__file__).parents[1]
+from support.places import TESTS
+from support.waiting import PATIENCE, until
 
 
 def is_there(pid: int) -> bool:
@@ -30,13 +29,6 @@ def is_there(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except (FileNotFoundError, ProcessLookupError):  # it ends just now
         return False
-
-
-def until(what: Callable[[], bool]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not what():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 @contextmanager

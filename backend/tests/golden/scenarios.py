@@ -18,8 +18,9 @@ from sequence_planner.controller.commands.recovery import ConfirmEstimates, Stop
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.simulation.faults import FaultKind
+from support.places import MODELS
 
-STATIONS: Final = Path(__file__).parents[3] / "models"
+STATIONS: Final = MODELS
 BOLTS, TRUCK = STATIONS / "bolt_tightening", STATIONS / "truck_engine_station"
 PAIR: Final = {BOLTS: "bolt_pair_1", TRUCK: "AtBoltPair1TCPPose"}
 Script = Callable[[Life], Awaitable[None]]

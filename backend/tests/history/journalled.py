@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from controller.journalling import journal
-from controller.rig import TRUCK_ENGINE, ready
+from controller.rig import ready
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
 from sequence_planner.execution.executor import Executor
@@ -16,6 +16,7 @@ from sequence_planner.execution.record.recorder import RunRecorder, model_digest
 from sequence_planner.execution.state import InitialState
 from sequence_planner.history.simulation import SimulatedStation
 from sequence_planner.journal.writer import RunWriter
+from support.places import BOLT_TIGHTENING
 
 NOW = Timestamp(1_800_000_000.0, 500.0)
 
@@ -24,7 +25,7 @@ NOW = Timestamp(1_800_000_000.0, 500.0)
 def worked(seconds: float, snapshot_every: int = 50) -> Iterator[tuple[Database, Executor]]:
     """The bolt tightening station, at work for so many seconds, and the execution as it is at the end."""
     with journal() as database:
-        yield database, asyncio.run(life(database, TRUCK_ENGINE, seconds, snapshot_every))
+        yield database, asyncio.run(life(database, BOLT_TIGHTENING, seconds, snapshot_every))
 
 
 async def life(

@@ -17,7 +17,7 @@ from sqlalchemy import text
 
 from cli.commands import command
 from controller.journalling import journal
-from controller.rig import TRUCK_ENGINE, ready
+from controller.rig import ready
 from history.journalled import NOW, life, worked
 from sequence_planner.automaton.automaton import Kind, VariableDeclaration
 from sequence_planner.controller.restore import beginning
@@ -39,11 +39,11 @@ from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.journal.retention import trim
 from sequence_planner.language.types import EnumerationType
 from sequence_planner.version import VERSION
+from support.places import BOLT_TIGHTENING, TESTS
 
 Worked = tuple[Database, Executor]
-STATION, SUPERVISOR, _ = ready(TRUCK_ENGINE)
+STATION, SUPERVISOR, _ = ready(BOLT_TIGHTENING)
 AUTOMATON = STATION.automaton
-TESTS = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="module")
@@ -95,11 +95,11 @@ def test_another_process_replays_it_too(past: Worked) -> None:
     database, _ = past
     code = (
         "import sys\n"
-        "from controller.rig import TRUCK_ENGINE, ready\n"
+        "from controller.rig import BOLT_TIGHTENING, ready\n"
         "from sequence_planner.execution.record.replay import replay\n"
         "from sequence_planner.journal.full_run import WholeRun\n"
         "from sequence_planner.db.database import Database\n"
-        "station, supervisor, _ = ready(TRUCK_ENGINE)\n"
+        "station, supervisor, _ = ready(BOLT_TIGHTENING)\n"
         "database = Database.open(sys.argv[1], create=False)\n"
         "with database.reading() as connection:\n"
         "    found = list(replay(WholeRun(connection), station.automaton, supervisor))\n"
@@ -156,12 +156,12 @@ def test_what_another_version_has_written_and_cannot_be_done_again_is_said_with_
             patch.setattr("sequence_planner.execution.record.recorder.VERSION", "0.1.0")
             patch.setattr("sequence_planner.execution.executor.answered", lambda *_: {})
             confirm = partial(Executor.confirm, names=frozenset({"bolts[bolt_pair_1]"}), by="Eva", now=NOW)
-            asyncio.run(life(database, TRUCK_ENGINE, 3.0, then=confirm))
+            asyncio.run(life(database, BOLT_TIGHTENING, 3.0, then=confirm))
         with database.reading() as connection:
             confirmed = run_journal.before(connection, None, 1, {kind_of(Confirmed)})[0].number
             known = beginning(connection, AUTOMATON, NOW)
         assert known is not None
-        asyncio.run(life(database, TRUCK_ENGINE, 3.0, known=known.beginning))
+        asyncio.run(life(database, BOLT_TIGHTENING, 3.0, known=known.beginning))
         with database.reading() as connection:
             begun = run_journal.before(connection, None, 1, {BEGUN})[0].number
         with pytest.raises(HistoryError) as refused:
@@ -173,7 +173,7 @@ def test_what_another_version_has_written_and_cannot_be_done_again_is_said_with_
         assert said.endswith(f"; this one goes on from record {begun}")
         assert replayed(database, to=confirmed - 1), "what can be done again is"
         assert replayed(database, from_=begun)[-1].difference is None
-        code, _, err = command("journal", "replay", TRUCK_ENGINE, "--database", f"sqlite:///{database.place}")
+        code, _, err = command("journal", "replay", BOLT_TIGHTENING, "--database", f"sqlite:///{database.place}")
         assert (code, "another version of the program, 0.1.0" in err) == (2, True)
 
 
@@ -231,7 +231,7 @@ def test_a_second_life_begins_with_what_the_first_has_left() -> None:
         with database.reading() as connection:
             found = beginning(connection, AUTOMATON, NOW)
         assert found is not None
-        asyncio.run(life(database, TRUCK_ENGINE, 5.0, known=found.beginning))
+        asyncio.run(life(database, BOLT_TIGHTENING, 5.0, known=found.beginning))
         lives = replayed(database)
         assert not lives[-1].difference
         begun = [each.record.number for each in lives if each.record.kind == BEGUN]

@@ -9,12 +9,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from controller.rig import TRUCK_ENGINE
 from history.journalled import worked
 from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import HistoryError
 from sequence_planner.history.client import HistoryProcess
 from sequence_planner.history.timeline import LookBack, MomentView
+from support.places import BOLT_TIGHTENING
 
 PATIENCE = 120.0
 
@@ -27,7 +27,7 @@ def database() -> Iterator[Database]:
 
 def test_one_that_is_late_or_dies_is_replaced(database: Database) -> None:
     async def told() -> list[str]:
-        process = HistoryProcess(TRUCK_ENGINE, f"sqlite:///{database.place}")
+        process = HistoryProcess(BOLT_TIGHTENING, f"sqlite:///{database.place}")
         slugs = []
         try:
             for patience, act in ((0.01, "wait"), (PATIENCE, "kill"), (PATIENCE, "wait")):
@@ -53,7 +53,7 @@ def test_one_that_is_late_or_dies_is_replaced(database: Database) -> None:
 
 def test_questions_wait_for_their_turn(database: Database) -> None:
     async def told() -> list[int]:
-        process = HistoryProcess(TRUCK_ENGINE, f"sqlite:///{database.place}")
+        process = HistoryProcess(BOLT_TIGHTENING, f"sqlite:///{database.place}")
         try:
             found = await asyncio.gather(*(process.ask(LookBack(number), PATIENCE) for number in (4, 2, 3)))
         finally:

@@ -11,17 +11,19 @@ from typing import Any
 import httpx
 import pytest
 
-from controller.rig import TRUCK_ENGINE, ready
+from controller.rig import ready
 from history.journalled import life
 from sequence_planner.auth.roles import Role
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.journal import checkpoints, run_journal
 from sequence_planner.server.settings import Settings
-from server.running import Loop, Server, free_port
+from server.running import Loop, Server
 from server.test_acting import problem
+from support.network import free_port
+from support.places import BOLT_TIGHTENING
 
 HISTORY = "/api/v1/history"
-AUTOMATON = ready(TRUCK_ENGINE)[0].automaton
+AUTOMATON = ready(BOLT_TIGHTENING)[0].automaton
 PATIENCE = 120.0  # seconds; the process that looks back prepares the station first
 
 
@@ -35,11 +37,11 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         page=folder,
         database=f"sqlite:///{folder / 'station.sqlite'}",
         port=free_port(),
-        model=TRUCK_ENGINE,
+        model=BOLT_TIGHTENING,
     )
     server = Server(loop, settings)
     server.start()
-    asyncio.run(life(server.identity.database, TRUCK_ENGINE, 12.0))
+    asyncio.run(life(server.identity.database, BOLT_TIGHTENING, 12.0))
     yield server
     server.stop()
     loop.close()

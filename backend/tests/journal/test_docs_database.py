@@ -21,8 +21,9 @@ from sequence_planner.db.database import Database
 from sequence_planner.db.location import SqliteFile
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Outcome
+from support.places import DOCS
 
-TEXT = (Path(__file__).parents[3] / "docs" / "database.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "database.md").read_text(encoding="utf-8")
 SHIFT_BEGINS = 1772431092.25  # 2026-03-02 05:58:12.25 UTC
 
 

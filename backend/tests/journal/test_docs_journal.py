@@ -16,8 +16,9 @@ from journal.happened import happened
 from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.retention import trim
+from support.places import DOCS
 
-TEXT = (Path(__file__).parents[3] / "docs" / "journal.md").read_text(encoding="utf-8")
+TEXT = (DOCS / "journal.md").read_text(encoding="utf-8")
 
 
 def _program(name: str, given: str, *arguments: str) -> tuple[int, str, str]:

@@ -25,9 +25,9 @@ from sequence_planner.mes.webhooks.deliveries import Pace
 from sequence_planner.mes.webhooks.delivery import Deliverer, Patience, Sender
 from sequence_planner.mes.webhooks.endpoints import Seal, Webhook, key_file
 from sequence_planner.mes.webhooks.targets import Targets
+from support.places import TESTS
+from support.waiting import PATIENCE, until
 
-TESTS = Path(__file__).parents[1]
-PATIENCE = 20.0  # seconds
 PACE = Pace(first=0.02, longest=0.1, longest_hold=0.05, attempts=7)
 
 
@@ -137,13 +137,6 @@ def another(url: str, receiver: Receiver) -> Iterator[subprocess.Popen[bytes]]:
             yield process
         finally:
             process.kill()
-
-
-def until(condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.01)
 
 
 def test_after_kill_9_it_goes_on_where_it_was_and_loses_nothing(tmp_path: Path, receiver: Receiver) -> None:

@@ -9,8 +9,7 @@ import pytest
 
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station
-
-CELL = Path(__file__).parents[1] / "stations" / "cell"
+from support.places import CELL
 
 
 def copy_of_cell(folder: Path) -> Path:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.station import prepare_station
+from support.places import BOLT_TIGHTENING
 
-STATION = prepare_station(Path(__file__).parents[3] / "models" / "bolt_tightening")
+STATION = prepare_station(BOLT_TIGHTENING)
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 
 

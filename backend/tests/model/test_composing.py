@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,8 +14,8 @@ from sequence_planner.language.syntax import Span
 from sequence_planner.model.source import ModelError, SourceText
 from sequence_planner.model.yaml import reader
 from sequence_planner.model.yaml.reader import Node, compose_slowly, read_text
+from support.places import REPOSITORY
 
-REPOSITORY = Path(__file__).parents[3]
 FILES = sorted(
     path for folder in ("models", "backend/tests/stations") for path in (REPOSITORY / folder).glob("**/*.yaml")
 )

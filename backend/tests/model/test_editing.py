@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import difflib
-from pathlib import Path
 
 import pytest
 
 from sequence_planner.model.paths import EditError, parse_path, shown_path
 from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
 from sequence_planner.model.yaml.reader import EntryPath, read_text
+from support.places import BOLT_TIGHTENING
 
-STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
-TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(STATION.glob("**/*.yaml"))}
+TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(BOLT_TIGHTENING.glob("**/*.yaml"))}
 KEYS_OF_GUARDS = ("enabled", "executing", "when", "precondition", "goal", "forbidden", "rest")
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import difflib
 import re
-from pathlib import Path
 
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -13,9 +12,9 @@ from hypothesis import strategies as st
 from core.budget import examples
 from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
 from sequence_planner.model.yaml.reader import EntryPath, read_text
+from support.places import BOLT_TIGHTENING
 
-STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
-TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(STATION.glob("**/*.yaml"))}
+TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(BOLT_TIGHTENING.glob("**/*.yaml"))}
 
 # -- documents -------------------------------------------------------------------------------------------------------
 

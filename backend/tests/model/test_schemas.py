@@ -13,16 +13,12 @@ from jsonschema import Draft202012Validator
 
 from sequence_planner.model.json_schema import FILES, schema_of
 from sequence_planner.model.yaml.reader import read_text
+from support.places import BOLT_TIGHTENING, DOCS, MODELS, REPOSITORY, STATIONS
 
-REPOSITORY = Path(__file__).parents[3]
-SCHEMAS = REPOSITORY / "docs" / "schemas"
-STATIONS = [
-    path.parent
-    for folder in (REPOSITORY / "models", REPOSITORY / "backend" / "tests" / "stations")
-    for path in sorted(folder.glob("*/station.yaml"))
-]
-DOCUMENTS = [path for station in STATIONS for path in (*station.glob("*.yaml"), *station.glob("resources/*.yaml"))]
-PAGE = (REPOSITORY / "docs" / "model.md").read_text(encoding="utf-8")
+SCHEMAS = DOCS / "schemas"
+FOLDERS = [path.parent for folder in (MODELS, STATIONS) for path in sorted(folder.glob("*/station.yaml"))]
+DOCUMENTS = [path for station in FOLDERS for path in (*station.glob("*.yaml"), *station.glob("resources/*.yaml"))]
+PAGE = (DOCS / "model.md").read_text(encoding="utf-8")
 SHOWN = dict(re.findall(r"^```yaml ([\w/]+\.yaml)\n((?:.*\n)*?)```$", PAGE, re.MULTILINE))
 
 
@@ -45,7 +41,7 @@ def test_every_document_of_the_page_too(file: str) -> None:
 
 
 def test_the_documents_name_their_schemas() -> None:
-    truck = REPOSITORY / "models" / "bolt_tightening"
+    truck = BOLT_TIGHTENING
     for path in (*truck.glob("*.yaml"), *truck.glob("resources/*.yaml")):
         named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", path.read_text(encoding="utf-8"))
         assert named, path

@@ -9,8 +9,7 @@ import pytest
 
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station, read_station
-
-MODELS = Path(__file__).parents[3] / "models"
+from support.places import MODELS, SINGLE_BOLT
 
 
 @pytest.fixture
@@ -38,7 +37,7 @@ def test_what_is_kept_is_what_the_files_mean(name: str, cache: Path) -> None:
 
 def test_a_change_is_seen(tmp_path: Path, cache: Path) -> None:
     folder = tmp_path / "single_bolt"
-    shutil.copytree(MODELS / "single_bolt", folder)
+    shutil.copytree(SINGLE_BOLT, folder)
     prepare_station(folder)
     resource = min(folder.glob("resources/*.yaml"))
     whole = resource.read_text(encoding="utf-8")
@@ -50,7 +49,7 @@ def test_a_change_is_seen(tmp_path: Path, cache: Path) -> None:
 
 
 def test_what_is_damaged_is_read_anew(cache: Path) -> None:
-    expected = prepare_station(MODELS / "single_bolt").automaton
+    expected = prepare_station(SINGLE_BOLT).automaton
     for kept in cache.glob("station-*"):
         kept.write_bytes(kept.read_bytes()[:-10])
-    assert prepare_station(MODELS / "single_bolt").automaton == expected
+    assert prepare_station(SINGLE_BOLT).automaton == expected

@@ -18,7 +18,8 @@ from sequence_planner.auth.tables import ATTEMPTS, PEOPLE, PROVIDER_FLOWS, SESSI
 from sequence_planner.journal.audit import read
 from sequence_planner.journal.entry import Entry
 from sequence_planner.server.settings import Settings
-from server.running import Loop, Server, free_port
+from server.running import Loop, Server
+from support.network import free_port
 
 SESSION = "/api/v1/session"
 

@@ -7,7 +7,6 @@ import re
 import shutil
 import subprocess
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urljoin, urlsplit
 
@@ -16,8 +15,9 @@ import pytest
 
 from sequence_planner.auth.oidc.settings import ProviderSettings
 from sequence_planner.auth.roles import Role
+from support.places import REPOSITORY
 
-E2E = Path(__file__).parents[3] / "e2e"
+E2E = REPOSITORY / "e2e"
 SCRIPT = E2E / "station" / "provider.mjs"
 CLIENT, SECRET = "station", "a secret: with + signs % and more"
 PEOPLE: dict[str, dict[str, Any]] = {

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cli.commands import TRUCK, command
+from cli.commands import command
 from core.budget import examples
 from sequence_planner.auth.oidc.addresses import is_safe
 from sequence_planner.auth.oidc.flow import SignInFlow
@@ -18,6 +18,7 @@ from sequence_planner.auth.oidc.settings import ProviderSettings
 from sequence_planner.auth.roles import Role
 from sequence_planner.cli.station.run import server as server_command
 from sequence_planner.core.secrets import CLIENT_SECRET
+from support.places import BOLT_TIGHTENING
 
 ISSUER = "https://id.example/realms/works"
 OPTIONS = ProviderOptions(issuer=ISSUER, client="station", roles=("operator=shift", "administrator=it=admins"))
@@ -105,7 +106,7 @@ def test_a_file_without_a_secret_is_refused(tmp_path: Path, text: str | bytes, w
     ],
 )
 def test_a_station_does_not_start_with_what_cannot_be_used(arguments: tuple[str, ...], why: str) -> None:
-    code, out, err = command("run", TRUCK, *arguments)
+    code, out, err = command("run", BOLT_TIGHTENING, *arguments)
     assert (code, out) == (2, "")
     assert why in err
 

@@ -9,8 +9,7 @@ from pathlib import Path
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.runtime import RunningPipelines
 from sequence_planner.station import ReadyStation, prepare_station
-
-CELL = Path(__file__).parents[1] / "stations" / "cell"
+from support.places import CELL
 
 
 def write_station(folder: Path, resource: str, messages: Mapping[str, str], enumerations: str = "") -> Path:

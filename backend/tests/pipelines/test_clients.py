@@ -13,6 +13,7 @@ from sequence_planner.cli.loading import load_model
 from sequence_planner.model.source import ModelError
 from sequence_planner.pipelines.graph import GoalState
 from sequence_planner.station import ReadyStation, prepare_station
+from support.places import TESTS
 
 TANK = """\
 services:
@@ -141,7 +142,7 @@ def test_what_is_wrong_is_found_with_its_place(tmp_path: Path, old: str, new: st
 
 def test_the_page_shows_the_mixer() -> None:
     """What the page about pipelines shows is part of a station that is run by tests."""
-    tests = Path(__file__).parents[1]
+    tests = TESTS
     page = (tests.parents[1] / "docs" / "pipelines.md").read_text(encoding="utf-8")
     shown = page.split("## Services and actions")[1].split("```yaml\n")[1].split("```")[0]
     assert shown in (tests / "stations" / "mixer" / "resources" / "tank.yaml").read_text(encoding="utf-8")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,12 +11,12 @@ from sequence_planner.pipelines.chain_runtime import first_message
 from sequence_planner.simulation.devices import CommandReader
 from sequence_planner.simulation.messages import spoken
 from sequence_planner.station import ReadyStation, prepare_station
+from support.places import BOLT_TIGHTENING, CELL
 
-from .station_writing import CELL, Heard, station_with
+from .station_writing import Heard, station_with
 
-TRUCK = Path(__file__).parents[3] / "models" / "bolt_tightening"
 STATION = prepare_station(CELL)
-TRUCK_STATION = prepare_station(TRUCK)
+TRUCK_STATION = prepare_station(BOLT_TIGHTENING)
 COMMAND = STATION.pipelines.outgoing["/arm/command"]
 POINTS = {"home": (0.0, 0.0), "out": (1.0, 0.5)}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,8 +22,7 @@ from sequence_planner.model.stages.confinement import missing
 from sequence_planner.model.stages.python import PythonCourse, PythonStage
 from sequence_planner.pipelines.examples import failures, loading_failures
 from sequence_planner.station import prepare_station
-
-PATIENCE = 20.0  # seconds for what must happen on a busy machine
+from support.waiting import PATIENCE, until
 
 FORCE = """
 import os, subprocess, sys, time
@@ -103,13 +102,6 @@ def call(course: PythonCourse, mode: object, force: object = 1.0) -> tuple[objec
     record = course.take(Record({"force": force, "mode": mode}), 0.0)
     assert record is not None
     return record.values["valve"], record.values["text"], record.troubles
-
-
-def until(happened: Callable[[], bool]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not happened():
-        assert time.monotonic() < end, "it has not happened in time"
-        time.sleep(0.001)
 
 
 def is_gone(process: int) -> bool:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import time
 from collections.abc import Awaitable, Callable
 from functools import cache
 
@@ -12,12 +10,7 @@ from sequence_planner.ros.transport import Transport
 from sequence_planner.ros.transports.choice import TransportChoice, open_transport
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.ros.types.messages import MessageRegistry
-
-#: Test runs side by side must not meet. Above 100 the ports of a domain can be those the system gives to others.
-DOMAIN = 1 + os.getpid() % 100
-
-#: Seconds within which a process has started and any vendor's discovery has come about, on a busy computer.
-PATIENCE = 30.0
+from support.network import DOMAIN
 
 
 @cache
@@ -61,14 +54,6 @@ def play(kind: str, scenario: Callable[[Network], Awaitable[None]]) -> None:
             network.close()
 
     asyncio.run(run())
-
-
-async def eventually(holds: Callable[[], object], what: str) -> None:
-    """Wait until `holds` returns something true; fail with `what` when it does not in time."""
-    deadline = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < deadline, f"never happened: {what}"
-        await asyncio.sleep(0.01)
 
 
 async def settle() -> None:

@@ -10,9 +10,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
-from ros_networks import DOMAIN
-
 from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
+from support.network import DOMAIN
 
 
 async def start(kind: str) -> asyncio.subprocess.Process:

@@ -20,10 +20,12 @@ from typing import Any
 import pytest
 from jazzy_facts import rclpy_facts
 
-BACKEND = Path(__file__).parents[2]
-SOURCE = BACKEND / "src" / "sequence_planner"
+from support.places import BACKEND, SOURCES
+
 FACTS = rclpy_facts()
-USERS = sorted(path for path in SOURCE.rglob("*.py") if re.search(r"^\s*(from|import) rclpy\b", path.read_text(), re.M))
+USERS = sorted(
+    path for path in SOURCES.rglob("*.py") if re.search(r"^\s*(from|import) rclpy\b", path.read_text(), re.M)
+)
 
 
 def parameters(signature: str) -> inspect.Signature:

@@ -7,7 +7,7 @@ import importlib.util
 from collections.abc import Mapping
 
 import pytest
-from ros_networks import Network, eventually, play, standard
+from ros_networks import Network, play, standard
 from structlog.testing import capture_logs
 
 from sequence_planner.ros.actions import (
@@ -25,6 +25,7 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NoServerError, Transport
 from sequence_planner.ros.types.errors import MessageValueError
 from sequence_planner.ros.types.standard_types import GOAL_STATUSES
+from support.waiting import until_async
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -70,7 +71,7 @@ def test_a_goal_gives_feedback_status_and_result(kind: str) -> None:
             assert (await first.result()).status == GoalStatus.SUCCEEDED
         told.clear()
         goal = await client.send_goal({"order": 7}, 10.0, lambda values: told.append(values["sequence"]))
-        await eventually(lambda: goal.status == GoalStatus.EXECUTING, "the status is told")
+        await until_async(lambda: goal.status == GoalStatus.EXECUTING, "the status is told")
         assert await goal.result() == GoalOutcome(GoalStatus.SUCCEEDED, {"sequence": [0, 1, 1, 2, 3, 5, 8]})
         assert told == [[0, 1], [0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], [0, 1, 1, 2, 3, 5]]
         server.close()
@@ -163,7 +164,7 @@ def test_nonsense_about_goals_is_counted_and_harms_nobody() -> None:
         vandal.advertise(status, GOAL_STATUSES, QualityOfService.LATCHED)
         vandal.publish(feedback, f"{FIBONACCI}_FeedbackMessage", b"\0\1\0\0" + b"\xff" * 40)
         vandal.publish(status, GOAL_STATUSES, b"\0\1\0\0" + b"\xff" * 4)
-        await eventually(lambda: client.malformed == 2, "the nonsense is counted")
+        await until_async(lambda: client.malformed == 2, "the nonsense is counted")
         goal = await client.send_goal({"order": 3}, 10.0)
         told = {"goal_info": {"goal_id": {"uuid": list(goal.id)}}, "status": 77}
         vandal.publish(status, GOAL_STATUSES, standard().encode(GOAL_STATUSES, {"status_list": [told]}))

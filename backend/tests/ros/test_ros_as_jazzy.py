@@ -17,7 +17,7 @@ from cyclonedds.util import duration
 from hypothesis import given
 from hypothesis import strategies as st
 from jazzy_facts import Announced, announced
-from ros_networks import DOMAIN, Network, eventually, play, standard
+from ros_networks import Network, play, standard
 
 from core.budget import examples
 from sequence_planner.ros import names
@@ -25,6 +25,8 @@ from sequence_planner.ros.actions import ActionClient, ActionServer, GoalOutcome
 from sequence_planner.ros.call_header import CallHeader, split_header, with_header
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.cyclonedds_network import RawSample, raw_types, take_all
+from support.network import DOMAIN
+from support.waiting import until_async
 
 SET, FIBONACCI = "std_srvs/srv/SetBool", "example_interfaces/action/Fibonacci"
 IDENTITIES = ("serviceid", "clientid")
@@ -112,7 +114,7 @@ def test_our_endpoints_tell_what_genuine_ones_tell() -> None:
             for each in announced()
             if each.topic == "ros_discovery_info" or each.topic.split("/")[2].startswith(("set", "ask", "fib", "other"))
         }
-        await eventually(lambda: expected.keys() <= dict(seen_by(participant)).keys(), "all endpoints are seen")
+        await until_async(lambda: expected.keys() <= dict(seen_by(participant)).keys(), "all endpoints are seen")
         ours = dict(seen_by(participant))
         assert {key: told["typehash"] for key, told in ours.items() if key in expected} == {
             key: told["typehash"] for key, told in expected.items()
@@ -163,7 +165,7 @@ def test_a_server_that_announces_itself_as_rmw_cyclonedds_does_is_called(first_b
             station.call("/cell/set", SET, standard().encode(f"{SET}_Request", {"data": True}), 20.0)
         )
         taken: list[RawSample] = []
-        await eventually(lambda: took(reader, taken) or calling.done(), "the server is asked")
+        await until_async(lambda: took(reader, taken) or calling.done(), "the server is asked")
         found = split_header(taken[0].data)
         assert found is not None
         assert standard().decode(f"{SET}_Request", found[1]) == {"data": True}
@@ -190,11 +192,11 @@ def test_a_client_that_announces_itself_as_rmw_cyclonedds_does_is_answered() -> 
         answered: Topic[RawSample] = Topic(participant, "rr/cell/askReply", reply)
         writer = DataWriter(participant, asked, quality(told_by("rq/cell/askRequest", identity)))
         reader = DataReader(participant, answered, quality(told_by("rr/cell/askReply", identity)))
-        await eventually(writer.get_matched_subscriptions, "the server is seen")
+        await until_async(writer.get_matched_subscriptions, "the server is seen")
         body = standard().encode(f"{SET}_Request", {"data": True})
         writer.write(request(with_header(CallHeader(7, 1), body)))
         taken: list[RawSample] = []
-        await eventually(lambda: took(reader, taken), "the client is answered")
+        await until_async(lambda: took(reader, taken), "the client is answered")
         found = split_header(taken[0].data)
         assert found is not None
         assert found[0] == CallHeader(7, 1)

@@ -7,10 +7,11 @@ import importlib.util
 import sys
 
 import pytest
-from ros_networks import DOMAIN, standard
+from ros_networks import standard
 
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.choice import TransportChoice, open_transport
+from support.network import DOMAIN
 
 RCLPY = importlib.util.find_spec("rclpy") is not None
 

@@ -14,7 +14,7 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ros_networks import DOMAIN, Network, eventually, play, settle, standard
+from ros_networks import Network, play, settle, standard
 from ros_processes import peer
 
 from sequence_planner.ros.qos import QualityOfService
@@ -25,6 +25,8 @@ from sequence_planner.ros.transports.cyclonedds_network import loopback_configur
 from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.simulation.faults import garbage
+from support.network import DOMAIN, free_domain
+from support.waiting import until_async
 
 TEXT = "std_msgs/msg/String"
 RELIABLE = QualityOfService.RELIABLE
@@ -68,13 +70,13 @@ def test_another_process_answers_and_is_seen_to_leave(kind: str, expected: Expec
         station.subscribe("/pong", TEXT, RELIABLE, listen)
         both = {f"publisher /pong {TEXT}": expected, f"subscriber /ping {TEXT}": expected}
         async with peer(kind):
-            await eventually(lambda: foreign() == both, f"the {kind} peer is seen")
-            await eventually(greeted, "the peer answers")
+            await until_async(lambda: foreign() == both, f"the {kind} peer is seen")
+            await until_async(greeted, "the peer answers")
             for text in ("a", "ab", "abc", "abcd", "åäö"):
                 say(text)
-            await eventually(lambda: heard[-1] == "ÅÄÖ", "the last answer comes")
+            await until_async(lambda: heard[-1] == "ÅÄÖ", "the last answer comes")
             assert [text for text in heard if text != "HELLO"] == ["A", "AB", "ABC", "ABCD", "ÅÄÖ"]
-        await eventually(lambda: not foreign(), "the peer is gone")
+        await until_async(lambda: not foreign(), "the peer is gone")
 
     play("cyclonedds", scenario)
 
@@ -87,7 +89,7 @@ def test_a_publisher_that_is_not_of_ros_is_shown_as_it_is() -> None:
         writers = [
             DataWriter(participant, Topic(participant, name, struct)) for name in ("rt/tool/state", "tool/state")
         ]
-        await eventually(station.graph, "the publisher is seen")
+        await until_async(station.graph, "the publisher is seen")
         await settle()
         [endpoint] = station.graph()
         assert (endpoint.topic, endpoint.type_name) == ("/tool/state", "plant::Raw")
@@ -112,7 +114,7 @@ def test_a_peer_with_a_stale_definition_delivers_nothing(tmp_path: Path) -> None
         heard: list[Sample] = []
         station.subscribe("/robot/state", "cell_msgs/msg/State", RELIABLE, heard.extend)
         device.advertise("/robot/state", "cell_msgs/msg/State", RELIABLE)
-        await eventually(lambda: len(station.graph()) == len(device.graph()) == 2, "both see each other")
+        await until_async(lambda: len(station.graph()) == len(device.graph()) == 2, "both see each other")
         device.publish("/robot/state", "cell_msgs/msg/State", old.encode("cell_msgs/msg/State", {"pose": 1}))
         await settle()
         assert heard == []
@@ -129,9 +131,9 @@ def test_garbage_of_an_emulated_device_arrives_and_is_no_message(type_name: str,
         heard: list[Sample] = []
         station.subscribe("/robot/state", type_name, RELIABLE, heard.extend)
         device.advertise("/robot/state", type_name, RELIABLE)
-        await eventually(lambda: len(station.graph()) == len(device.graph()) == 2, "both see each other")
+        await until_async(lambda: len(station.graph()) == len(device.graph()) == 2, "both see each other")
         device.publish("/robot/state", type_name, garbage(standard().encode(type_name, values)))
-        await eventually(lambda: heard, "it arrives")
+        await until_async(lambda: heard, "it arrives")
         with pytest.raises(MalformedMessageError):
             standard().decode(type_name, heard[0].data)
 
@@ -159,10 +161,10 @@ def test_messages_of_every_shape_pass(tmp_path: Path) -> None:
         for name, _ in kinds:
             station.subscribe(f"/{name}", f"cell_msgs/msg/{name}", RELIABLE, heard.extend)
             device.advertise(f"/{name}", f"cell_msgs/msg/{name}", RELIABLE)
-        await eventually(lambda: len(station.graph()) == len(device.graph()) == 4, "both see each other")
+        await until_async(lambda: len(station.graph()) == len(device.graph()) == 4, "both see each other")
         for name, values in kinds:
             device.publish(f"/{name}", f"cell_msgs/msg/{name}", registry.encode(f"cell_msgs/msg/{name}", values))
-        await eventually(lambda: len(heard) == 2, "both arrive")
+        await until_async(lambda: len(heard) == 2, "both arrive")
         decoded = {sample.topic: registry.decode(f"cell_msgs/msg/{sample.topic[1:]}", sample.data) for sample in heard}
         assert decoded == {"/Cell": cell, "/Ping": {}}
 
@@ -272,9 +274,9 @@ def test_the_domain_is_that_of_the_environment(monkeypatch: pytest.MonkeyPatch) 
         monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
         loop = asyncio.get_running_loop()
         here = open_transport("cyclonedds", standard(), "station", loop)
-        elsewhere = open_transport("cyclonedds", standard(), "station", loop, DOMAIN + 1)
+        elsewhere = open_transport("cyclonedds", standard(), "station", loop, free_domain())
         try:
-            await eventually(here.graph, "the device is seen")
+            await until_async(here.graph, "the device is seen")
             assert elsewhere.graph() == []
         finally:
             here.close()

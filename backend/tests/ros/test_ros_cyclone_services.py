@@ -9,12 +9,14 @@ from cyclonedds.qos import Policy, Qos
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
-from ros_networks import DOMAIN, Network, eventually, play, settle, standard
+from ros_networks import Network, play, settle, standard
 from structlog.testing import capture_logs
 
 from sequence_planner.ros.call_header import CallHeader, with_header
 from sequence_planner.ros.transport import NoServerError
 from sequence_planner.ros.transports.cyclonedds_network import RawSample, raw_types, release
+from support.network import DOMAIN
+from support.waiting import until_async
 
 ADD = "example_interfaces/srv/AddTwoInts"
 REQUEST = standard().encode(f"{ADD}_Request", {"a": 1, "b": 2})
@@ -67,11 +69,11 @@ def test_requests_of_who_does_not_carry_clientid_are_dropped_and_logged_once() -
         participant = DomainParticipant(DOMAIN)
         topic = foreign_request_topic(participant)
         foreign = DataWriter(participant, topic, QOS)
-        await eventually(foreign.get_matched_subscriptions, "the server is seen")
+        await until_async(foreign.get_matched_subscriptions, "the server is seen")
         with capture_logs() as logs:
             for number in range(5):
                 foreign.write(RAW(with_header(CallHeader(1, number), REQUEST)))
-            await eventually(lambda: logs, "the log says so")
+            await until_async(lambda: logs, "the log says so")
             await settle()
         assert heard == []
         assert [(log["service"], log["log_level"]) for log in logs] == [("/add", "warning")]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given
-from ros_networks import Network, eventually, play, standard
+from ros_networks import Network, play, standard
 from ros_processes import peer
 
 from core.budget import examples
@@ -25,6 +25,7 @@ from sequence_planner.ros.types.type_description import (
     read_description,
 )
 from sequence_planner.ros.types.type_discovery import TypeNotFoundError, find_type, serve_types
+from support.waiting import until_async
 
 KINDS = ["memory", "cyclonedds"]
 CELL = "cell_msgs/msg/Cell"
@@ -51,7 +52,7 @@ async def seen(transport: Transport, topic: str) -> NetworkEndpoint:
     def publishers() -> list[NetworkEndpoint]:
         return [e for e in transport.graph() if e.topic == topic and e.direction == "publisher" and e.node]
 
-    await eventually(publishers, f"the publisher of {topic} is seen")
+    await until_async(publishers, f"the publisher of {topic} is seen")
     return publishers()[0]
 
 
@@ -72,7 +73,7 @@ def test_a_type_found_on_the_network_can_be_used(kind: str, tmp_path: Path) -> N
         assert ours.fields(CELL) == theirs.fields(CELL)
         heard: list[Sample] = []
         station.subscribe("/cell", CELL, QualityOfService.LATCHED, heard.extend)
-        await eventually(lambda: heard, "the cell is heard")
+        await until_async(lambda: heard, "the cell is heard")
         assert ours.decode(CELL, heard[0].data) == theirs.decode(CELL, heard[0].data)
         device.close()
         assert await find_type(station, ours, endpoint, 0.1) == found  # nobody has to be asked again
@@ -105,7 +106,7 @@ def test_a_type_of_a_program_that_knows_nothing_of_ros_is_found() -> None:
         ours, route = MessageRegistry.from_folder(None), "plant_msgs/msg/Route"
         station = network.join("station", ours)
         async with peer("route"):
-            await eventually(station.graph, "the publisher is seen")
+            await until_async(station.graph, "the publisher is seen")
             [endpoint] = station.graph()
             found = await find_type(station, ours, endpoint, 10.0)
             assert found == FoundType(route, ours.type_hash(route), "a program that does not tell its node")
@@ -118,7 +119,7 @@ def test_a_type_of_a_program_that_knows_nothing_of_ros_is_found() -> None:
             }
             heard: list[Sample] = []
             station.subscribe("/route", route, QualityOfService.LATCHED, heard.extend)
-            await eventually(lambda: heard, "the route is heard")
+            await until_async(lambda: heard, "the route is heard")
             points = [{"x": 1.5, "level": 200}]
             said = {"name": "nuts", "points": points, "codes": [1, 65535], "labels": ["a", "b"], "closed": True}
             assert ours.decode(route, heard[0].data) == said

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given
-from ros_networks import eventually, standard
+from ros_networks import standard
 
 from core.budget import examples
 from core.choices import Choices, made_by
@@ -23,6 +23,7 @@ from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.types.definitions import FieldType
 from sequence_planner.ros.types.errors import MalformedMessageError, MessageDefinitionError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.waiting import until_async
 
 SERVICES = [standard().service(name) for name in standard().service_names()]
 TYPES = [
@@ -197,7 +198,7 @@ def test_a_flood_at_10_khz_keeps_memory_flat() -> None:
         await asyncio.sleep(0.5)
         with memory_stays_below(4 * CAPACITY * size // 10):
             await asyncio.to_thread(thread.join)
-        await eventually(lambda: heard == seconds * 10_000, "all samples are heard")
+        await until_async(lambda: heard == seconds * 10_000, "all samples are heard")
 
     asyncio.run(scenario())
 

@@ -10,11 +10,12 @@ from typing import Literal
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ros_networks import Network, eventually, play, settle, standard
+from ros_networks import Network, play, settle, standard
 
 from core.budget import examples
 from sequence_planner.ros.qos import QualityEvent, QualityOfService, disagreements
 from sequence_planner.ros.transport import Sample
+from support.waiting import until_async
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -118,7 +119,7 @@ def test_both_sides_are_told_that_they_do_not_agree(
         station.watch(of_station.append)
         device.advertise("/tool/state", TEXT, QualityOfService.of(offered))
         station.subscribe("/tool/state", TEXT, QualityOfService.of(wanted), heard.extend)
-        await eventually(lambda: of_device and of_station, "both are told")
+        await until_async(lambda: of_device and of_station, "both are told")
         device.publish("/tool/state", TEXT, HELLO)
         await settle()
         assert heard == []
@@ -142,17 +143,17 @@ def test_a_deadline_that_is_missed_is_told_to_both_sides(kind: str) -> None:
         quality = QualityOfService.of({"deadline": 0.2})
         device.advertise("/tool/state", TEXT, quality)
         station.subscribe("/tool/state", TEXT, quality, heard.extend)
-        await eventually(lambda: len(station.graph()) >= 2, "the publisher is seen")
+        await until_async(lambda: len(station.graph()) >= 2, "the publisher is seen")
 
         def arrives() -> bool:
             device.publish("/tool/state", TEXT, HELLO)
             return bool(heard)
 
-        await eventually(arrives, "a sample arrives")
+        await until_async(arrives, "a sample arrives")
         of_device.clear()
         of_station.clear()
         stopped = time.monotonic()
-        await eventually(lambda: of_device and of_station, "both are told")
+        await until_async(lambda: of_device and of_station, "both are told")
         assert time.monotonic() - stopped > 0.1
         assert (of_device[0].kind, of_station[0].kind) == ("deadline", "deadline")
         assert "no sample received within its deadline of 0.2 s" in of_station[0].text
@@ -176,7 +177,7 @@ def test_who_agrees_is_told_nothing_and_the_graph_shows_what_was_agreed(kind: st
             device.publish("/tool/state", TEXT, HELLO)
             return bool(heard)
 
-        await eventually(arrives, "a sample arrives")
+        await until_async(arrives, "a sample arrives")
         times = {(e.direction, e.deadline, e.liveliness) for e in station.graph() if e.topic == "/tool/state"}
         assert times == {("publisher", 5.0, 4.0), ("subscriber", 6.0, None)}
         station.close()

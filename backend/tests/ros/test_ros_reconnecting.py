@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import signal
 
-from ros_networks import Network, eventually, play, standard
+from ros_networks import Network, play, standard
 from ros_processes import peer
 
 from sequence_planner.ros.actions import ActionClient, GoalStatus, LostGoalError
 from sequence_planner.ros.qos import QualityEvent, QualityOfService
 from sequence_planner.ros.transport import NoAnswerError, Sample, Transport
+from support.waiting import until_async
 
 TEXT, ADD, FIBONACCI = "std_msgs/msg/String", "example_interfaces/srv/AddTwoInts", "example_interfaces/action/Fibonacci"
 HELLO = standard().encode(TEXT, {"data": "hello"})
@@ -41,14 +42,14 @@ def test_a_device_that_is_killed_and_started_again_is_matched_again() -> None:
             return bool(heard)
 
         async with peer("device") as device:
-            await eventually(echoed, "the device answers")
+            await until_async(echoed, "the device answers")
             await answered(station)
             goal = await client.send_goal({"order": 5}, 10.0)
             device.kill()
             await device.wait()
         heard.clear()
         async with peer("device"):
-            await eventually(echoed, "the device that was started again answers")
+            await until_async(echoed, "the device that was started again answers")
             await answered(station)
             try:
                 await goal.result(renewal=1.0)
@@ -77,15 +78,15 @@ def test_a_device_that_hangs_loses_its_liveliness() -> None:
             return bool(heard)
 
         async with peer("device") as device:
-            await eventually(echoed, "the device answers")
+            await until_async(echoed, "the device answers")
             assert events == []
             device.send_signal(signal.SIGSTOP)
-            await eventually(lambda: events, "the station is told")
+            await until_async(lambda: events, "the station is told")
             assert [(event.topic, event.direction, event.kind) for event in events] == [
                 ("/pong", "subscriber", "liveliness")
             ]
             device.send_signal(signal.SIGCONT)
             heard.clear()
-            await eventually(echoed, "the device answers again")
+            await until_async(echoed, "the device answers again")
 
     play("cyclonedds", scenario)

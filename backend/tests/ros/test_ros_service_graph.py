@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import time
-from collections.abc import Callable
 from uuid import UUID
-
-from ros_networks import DOMAIN
 
 from sequence_planner.ros.environment import vendor_of
 from sequence_planner.ros.names import ros_service
@@ -16,6 +12,8 @@ from sequence_planner.ros.transport import NetworkEndpoint, ServiceEnd, TellsSer
 from sequence_planner.ros.transports.choice import open_transport
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.network import DOMAIN
+from support.waiting import until_async
 
 TRIGGER = "std_srvs/srv/Trigger"
 
@@ -35,14 +33,6 @@ async def told(transport: Transport, service: str) -> ServiceEnd:
                 if end.service == service and end.role == "server" and end.node is not None:
                     return end
             await asyncio.sleep(0.02)
-
-
-async def until(what: Callable[[], bool]) -> None:
-    """Wait until `what` is true."""
-    end = time.monotonic() + 10
-    while not what():
-        assert time.monotonic() < end, "it did not come true in time"
-        await asyncio.sleep(0.02)
 
 
 def test_a_server_is_told_with_its_node() -> None:
@@ -77,9 +67,9 @@ def test_an_endpoint_is_told_anew_when_its_node_is_known_and_gone_with_it() -> N
             return [each for each in one.graph() if each.topic == "/press/seen"]
 
         other.advertise("/press/seen", "std_msgs/msg/Bool", QualityOfService.LATCHED)
-        await until(lambda: [(each.node, each.vendor) for each in seen()] == [("/press", "Eclipse Cyclone DDS")])
+        await until_async(lambda: [(each.node, each.vendor) for each in seen()] == [("/press", "Eclipse Cyclone DDS")])
         other.close()
-        await until(lambda: not seen())
+        await until_async(lambda: not seen())
         one.close()
 
     asyncio.run(scenario())

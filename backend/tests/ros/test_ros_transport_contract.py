@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from ros_networks import Network, eventually, play, settle, standard
+from ros_networks import Network, play, settle, standard
 from ros_peer import ROUNDS, STREAMED
 from ros_processes import peer
 
@@ -20,6 +20,7 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport, TransportError
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.waiting import until_async
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -69,8 +70,8 @@ def own(transport: Transport, topic: str) -> list[NetworkEndpoint]:
 
 async def met(publisher: Transport, subscriber: Transport, topic: str) -> None:
     """Wait until both sides of a topic know each other."""
-    await eventually(lambda: seen(publisher, topic, "subscriber"), f"the subscriber of {topic} is seen")
-    await eventually(lambda: seen(subscriber, topic, "publisher"), f"the publisher of {topic} is seen")
+    await until_async(lambda: seen(publisher, topic, "subscriber"), f"the subscriber of {topic} is seen")
+    await until_async(lambda: seen(subscriber, topic, "publisher"), f"the publisher of {topic} is seen")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -83,7 +84,7 @@ def test_samples_arrive_in_order_on_the_event_loop(kind: str) -> None:
         await met(device, station, "/tool/state")
         for text in ("one", "", "trois", "vier", "fünf"):
             say(device, "/tool/state", text)
-        await eventually(lambda: len(listener.samples) == 5, "all samples arrive")
+        await until_async(lambda: len(listener.samples) == 5, "all samples arrive")
         assert listener.texts == ["one", "", "trois", "vier", "fünf"]
         assert listener.threads == {threading.get_ident()}
         assert {sample.topic for sample in listener.samples} == {"/tool/state"}
@@ -111,7 +112,7 @@ def test_twenty_topics_at_a_hundred_hertz_lose_nothing(kind: str) -> None:
             return all(listener.texts[-1:] == [str(ROUNDS - 1)] for listener in listeners.values())
 
         async with peer("stream"):
-            await eventually(all_there, "the last samples arrive")
+            await until_async(all_there, "the last samples arrive")
         expected = [str(number) for number in range(ROUNDS)]
         assert {topic: listener.texts for topic, listener in listeners.items()} == dict.fromkeys(STREAMED, expected)
 
@@ -134,7 +135,7 @@ def test_the_graph_tells_own_from_foreign(kind: str) -> None:
         fast = kind == "rclpy" and os.environ.get("RMW_IMPLEMENTATION") != "rmw_cyclonedds_cpp"
         vendor = None if kind == "memory" else "eProsima Fast DDS" if fast else "Eclipse Cyclone DDS"
         expected = {replace(published, vendor=vendor), replace(subscribed, vendor=vendor)}
-        await eventually(lambda: expected <= set(station.graph()), "the nodes are named")
+        await until_async(lambda: expected <= set(station.graph()), "the nodes are named")
         assert [endpoint.direction for endpoint in own(device, "/tool/state")] == ["publisher"]
 
     play(kind, scenario)
@@ -147,10 +148,10 @@ def test_another_publisher_of_ones_topic_is_seen(kind: str) -> None:
         first.advertise("/tool/command", TEXT, RELIABLE)
         assert seen(first, "/tool/command", "publisher") == []
         second.advertise("/tool/command", TEXT, RELIABLE)
-        await eventually(lambda: seen(first, "/tool/command", "publisher"), "the other publisher is seen")
-        await eventually(lambda: seen(second, "/tool/command", "publisher"), "the first publisher is seen")
+        await until_async(lambda: seen(first, "/tool/command", "publisher"), "the other publisher is seen")
+        await until_async(lambda: seen(second, "/tool/command", "publisher"), "the first publisher is seen")
         for each in (first, second):
-            await eventually(partial(own, each, "/tool/command"), "one's own publisher is seen")
+            await until_async(partial(own, each, "/tool/command"), "one's own publisher is seen")
             assert len(own(each, "/tool/command")) == 1
 
     play(kind, scenario)
@@ -168,12 +169,12 @@ def test_a_late_joiner_gets_the_last_sample_of_a_latched_topic(kind: str) -> Non
         station.subscribe("/plan/latched", TEXT, LATCHED, latched)
         station.subscribe("/plan/latched", TEXT, RELIABLE, unlatched)
         station.subscribe("/plan/volatile", TEXT, RELIABLE, volatile)
-        await eventually(lambda: latched.samples, "the last sample arrives")
+        await until_async(lambda: latched.samples, "the last sample arrives")
         await settle()
         assert latched.texts == ["last"]
         assert volatile.samples == unlatched.samples == []
         say(device, "/plan/latched", "new")
-        await eventually(lambda: latched.texts == ["last", "new"], "later samples arrive")
+        await until_async(lambda: latched.texts == ["last", "new"], "later samples arrive")
 
     play(kind, scenario)
 
@@ -232,7 +233,7 @@ def test_who_asks_for_more_than_is_offered_gets_nothing(kind: str) -> None:
             say(device, "/camera", "frame")  # Best effort: what was sent before both sides were ready is lost.
             return bool(sensor.samples)
 
-        await eventually(heard, "a frame arrives")
+        await until_async(heard, "a frame arrives")
         await settle()
         assert reliable.samples == []
         [publisher] = seen(station, "/camera", "publisher")
@@ -253,7 +254,7 @@ def test_who_closes_is_gone_and_hears_nothing(kind: str) -> None:
         say(device, "/tool/state", "unheard")
         station.close()
         station.close()
-        await eventually(lambda: not seen(device, "/tool/state", "subscriber"), "the subscriber goes")
+        await until_async(lambda: not seen(device, "/tool/state", "subscriber"), "the subscriber goes")
         say(device, "/tool/state", "to nobody")
         device.close()
         assert set(threading.enumerate()) <= threads
@@ -277,7 +278,7 @@ def test_misuse_is_refused_with_a_reason(kind: str) -> None:
             say(station, "/tool/command", "go")
         station.advertise("/tool/command", TEXT, RELIABLE)
         station.advertise("/tool/command", TEXT, RELIABLE)  # harmless
-        await eventually(lambda: own(station, "/tool/command"), "the publisher is seen")
+        await until_async(lambda: own(station, "/tool/command"), "the publisher is seen")
         assert len(own(station, "/tool/command")) == 1
         with pytest.raises(TransportError, match="already advertised as std_msgs/msg/String"):
             station.advertise("/tool/command", NUMBER, RELIABLE)

@@ -25,11 +25,11 @@ from sequence_planner.ros.transports.rosbridge import PING_EVERY, SILENCE, Rosbr
 from sequence_planner.ros.types.definitions import FieldType
 from sequence_planner.ros.types.errors import MalformedMessageError, MessageValueError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.waiting import until_async
 
 TEXT, NUMBER, JOINTS = "std_msgs/msg/String", "std_msgs/msg/Int32", "sensor_msgs/msg/JointState"
 IMAGE = "sensor_msgs/msg/CompressedImage"
 RELIABLE, LATCHED = QualityOfService.RELIABLE, QualityOfService.LATCHED
-PATIENCE = 10.0  # seconds
 
 
 @cache
@@ -88,13 +88,6 @@ def play(url: str, scenario: Callable[[Network], Awaitable[None]]) -> None:
     assert set(threading.enumerate()) <= before
 
 
-async def eventually(holds: Callable[[], object], what: str) -> None:
-    deadline = time.monotonic() + PATIENCE
-    while not holds():
-        assert time.monotonic() < deadline, f"never happened: {what}"
-        await asyncio.sleep(0.01)
-
-
 def say(transport: RosbridgeTransport, topic: str, text: str) -> None:
     transport.publish(topic, TEXT, registry().encode(TEXT, {"data": text}))
 
@@ -109,10 +102,10 @@ def test_samples_arrive_in_order_on_the_event_loop(server: RosbridgeServer) -> N
         listener, before = Listener(), time.monotonic()
         station.subscribe("/tool/state", TEXT, RELIABLE, listener)
         device.advertise("/tool/state", TEXT, RELIABLE)
-        await eventually(lambda: server.subscribed("/tool/state") and len(server.operations) == 2, "both are there")
+        await until_async(lambda: server.subscribed("/tool/state") and len(server.operations) == 2, "both are there")
         for text in ("one", "", "trois", "vier", "fünf 語"):
             say(device, "/tool/state", text)
-        await eventually(lambda: len(listener.samples) == 5, "all samples arrive")
+        await until_async(lambda: len(listener.samples) == 5, "all samples arrive")
         assert listener.texts == ["one", "", "trois", "vier", "fünf 語"]
         assert listener.threads == {threading.get_ident()}
         received = [sample.received for sample in listener.samples]
@@ -131,14 +124,14 @@ def test_the_graph_holds_ones_own_and_those_heard(server: RosbridgeServer) -> No
             ("/tool/command", "publisher", "/station", True),
             ("/tool/state", "subscriber", "/station", False),
         ]
-        await eventually(lambda: server.subscribed("/tool/state"), "the server knows")
+        await until_async(lambda: server.subscribed("/tool/state"), "the server knows")
         assert foreign(station) == []
         server.publish("/tool/state", "std_msgs/String", {"data": "idle"})
-        await eventually(lambda: foreign(station), "the node is heard")
+        await until_async(lambda: foreign(station), "the node is heard")
         [heard] = foreign(station)
         assert (heard.topic, heard.type_name, heard.direction, heard.node) == ("/tool/state", TEXT, "publisher", None)
         server.stop()
-        await eventually(lambda: not foreign(station), "without a connection nobody is there")
+        await until_async(lambda: not foreign(station), "without a connection nobody is there")
 
     play(server.url, scenario)
 
@@ -150,11 +143,11 @@ def test_a_late_joiner_gets_the_last_sample_of_a_latched_topic(server: Rosbridge
             device.advertise(topic, TEXT, quality)
             for text in ("old", "last"):
                 say(device, topic, text)
-        await eventually(lambda: server.published("/latched")[-1:] == [{"data": "last"}], "all is said")
+        await until_async(lambda: server.published("/latched")[-1:] == [{"data": "last"}], "all is said")
         latched, volatile = Listener(), Listener()
         station.subscribe("/latched", TEXT, LATCHED, latched)
         station.subscribe("/volatile", TEXT, RELIABLE, volatile)
-        await eventually(lambda: latched.texts == ["last"], "the last one comes")
+        await until_async(lambda: latched.texts == ["last"], "the last one comes")
         assert volatile.samples == []
 
     play(server.url, scenario)
@@ -174,9 +167,9 @@ def test_messages_are_written_as_ros_1_writes_them(server: RosbridgeServer) -> N
         for topic, type_name, values in (("/joints", JOINTS, joints), ("/image", IMAGE, {"data": [0, 255, 16]})):
             station.advertise(topic, type_name, RELIABLE)
             station.subscribe(topic, type_name, RELIABLE, listener)
-            await eventually(partial(server.subscribed, topic), "the server knows")
+            await until_async(partial(server.subscribed, topic), "the server knows")
             station.publish(topic, type_name, registry().encode(type_name, values))
-        await eventually(lambda: len(listener.samples) == 2, "both come back")
+        await until_async(lambda: len(listener.samples) == 2, "both come back")
         [written] = server.published("/joints")
         assert written["header"] == {"stamp": {"secs": 5, "nsecs": 7}, "frame_id": "base"}
         assert written["velocity"] == [None]
@@ -308,13 +301,13 @@ def test_nonsense_is_said_once_for_each_cause_and_the_work_goes_on(server: Rosbr
     async def scenario(network: Network) -> None:
         station, listener = network.join(), Listener()
         station.subscribe("/tool/state", TEXT, RELIABLE, listener)
-        await eventually(lambda: server.subscribed("/tool/state"), "the server knows")
+        await until_async(lambda: server.subscribed("/tool/state"), "the server knows")
         for _ in range(20):
             for frame in nonsense:
                 server.send(frame)
             server.publish("/tool/state", "std_msgs/String", {"data": 5})
         server.publish("/tool/state", "std_msgs/String", {"data": "idle"})
-        await eventually(lambda: listener.texts == ["idle"], "what makes sense arrives")
+        await until_async(lambda: listener.texts == ["idle"], "what makes sense arrives")
         # Of a message that is none it is said that there was one: what it would have told is unknown.
         assert len(listener.samples) == 21
         for sample in listener.samples[:20]:
@@ -341,25 +334,25 @@ def test_a_server_that_comes_back_is_used_again_and_gets_no_old_commands(server:
         station.advertise("/tool/command", TEXT, RELIABLE)
         station.advertise("/tool/mode", TEXT, LATCHED)
         say(station, "/tool/mode", "slow")
-        await eventually(lambda: server.subscribed("/tool/state"), "the server knows")
+        await until_async(lambda: server.subscribed("/tool/state"), "the server knows")
         say(station, "/tool/command", "heard")
-        await eventually(lambda: server.published("/tool/command"), "a command arrives")
+        await until_async(lambda: server.published("/tool/command"), "a command arrives")
         server.publish("/tool/state", "std_msgs/String", {"data": "before"})
-        await eventually(lambda: foreign(station), "the node is heard")
+        await until_async(lambda: foreign(station), "the node is heard")
 
         server.stop()
-        await eventually(lambda: not foreign(station), "the loss is seen")
+        await until_async(lambda: not foreign(station), "the loss is seen")
         for _ in range(100):
             say(station, "/tool/command", "into the void")
         say(station, "/tool/mode", "fast")
         server.operations.clear()
         server.start()
-        await eventually(lambda: server.subscribed("/tool/state"), "it is subscribed to again")
-        await eventually(lambda: server.published("/tool/mode") == [{"data": "fast"}], "what is latched is said again")
+        await until_async(lambda: server.subscribed("/tool/state"), "it is subscribed to again")
+        await until_async(lambda: server.published("/tool/mode") == [{"data": "fast"}], "what is latched is said again")
         server.publish("/tool/state", "std_msgs/String", {"data": "after"})
         say(station, "/tool/command", "now")
-        await eventually(lambda: listener.texts == ["before", "after"], "samples arrive again")
-        await eventually(lambda: server.published("/tool/command"), "commands arrive again")
+        await until_async(lambda: listener.texts == ["before", "after"], "samples arrive again")
+        await until_async(lambda: server.published("/tool/command"), "commands arrive again")
         assert server.published("/tool/command") == [{"data": "now"}]
 
     with capture_logs() as log:
@@ -392,11 +385,11 @@ def test_a_server_that_freezes_counts_as_gone(server: RosbridgeServer) -> None:
     async def scenario(network: Network) -> None:
         station = network.join()
         station.subscribe("/tool/state", TEXT, RELIABLE, Listener())
-        await eventually(lambda: server.subscribed("/tool/state"), "the server knows")
+        await until_async(lambda: server.subscribed("/tool/state"), "the server knows")
         server.publish("/tool/state", "std_msgs/String", {"data": "idle"})
-        await eventually(lambda: foreign(station), "the node is heard")
+        await until_async(lambda: foreign(station), "the node is heard")
         server.freeze(PING_EVERY + SILENCE + 2)
-        await eventually(lambda: not foreign(station), "the silence is noticed")
+        await until_async(lambda: not foreign(station), "the silence is noticed")
 
     play(server.url, scenario)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from rosbridge.server import RosbridgeServer
-from running.stations import REPOSITORY, RunningStation, eventually, finished, free_port, process
+from running.stations import RunningStation, finished, process
 from sequence_planner.model.source import ModelError
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Sample, Transport, TransportError
@@ -22,6 +22,9 @@ from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.ros.transports.routing import ROSBRIDGE, open_routed
 from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.station import prepare_station
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 TEXT = "std_msgs/msg/String"
 OLD, NEW = "/old/state", "/new/state"
@@ -65,7 +68,7 @@ def play(url: str | None, scenario: Callable[[Transport, Transport], Awaitable[N
 
 
 async def soon(holds: Callable[[], bool]) -> None:
-    await asyncio.to_thread(eventually, holds, 10)
+    await asyncio.to_thread(until, holds, seconds=10)
 
 
 def test_each_topic_has_its_own_way(server: RosbridgeServer) -> None:
@@ -165,20 +168,20 @@ def test_devices_of_both_kinds_do_the_work_of_the_station(mixed: Path, server: R
     try:
         with process(log, "run", str(mixed), *options) as started:
             station = RunningStation(started, port, log)
-            eventually(station.up)
+            until(station.up)
             assert station.get("station")["transport"] == "cyclonedds + rosbridge"
-            eventually(lambda: None not in (station.value("robot_1.at"), station.value("robot_2.at")))
+            until(lambda: None not in (station.value("robot_1.at"), station.value("robot_2.at")))
             assert station.post("production/start", {}).status_code == 204
-            eventually(lambda: station.completed("deliver_part") >= 1)
+            until(lambda: station.completed("deliver_part") >= 1)
             assert station.get("alarms") == {}
 
             server.stop()
-            eventually(lambda: station.value("robot_2.at") is None)
+            until(lambda: station.value("robot_2.at") is None)
             assert station.value("robot_1.at") is not None
             server.start()
-            eventually(lambda: station.value("robot_2.at") is not None)
+            until(lambda: station.value("robot_2.at") is not None)
             done = station.completed("deliver_part")
-            eventually(lambda: station.completed("deliver_part") > done)
+            until(lambda: station.completed("deliver_part") > done)
 
             os.kill(station.child("emulate"), signal.SIGKILL)
             said = {"at": 5, "part_in_gripper": False, "part_on_conveyor": False}
@@ -188,7 +191,7 @@ def test_devices_of_both_kinds_do_the_work_of_the_station(mixed: Path, server: R
                 server.publish("/robot_2/state", "buffer_msgs/RobotState", said)
                 return bool(station.get("topics")["/robot_2/state"]["trouble"] == trouble)
 
-            eventually(troubled)
+            until(troubled)
             assert station.value("robot_2.at") is None
     except AssertionError as error:
         raise AssertionError(log.read_text()) from error

@@ -18,9 +18,10 @@ import httpx
 from running.back_to_work.engine import DEVICE_OF, NODE_OF, SPEED, HallHands
 from running.back_to_work.person import Person
 from running.mortal import PARTS, Mortal, mortal, standing
-from running.stations import command, environment, eventually
+from running.stations import command, environment
 from stations.disturbing import Trouble, summed
 from stations.hall import MODEL, Hall, hall
+from support.waiting import until
 
 BOLT_FAULTS = ("nutrunner silent for 3 s", "robot silent for 2 s", "robot slow 3 for 5 s", "nutrunner stuck for 3 s")
 Responses = Sequence[Mapping[str, Any]]
@@ -161,7 +162,7 @@ class EngineStation(DayStation):
         """See `DayStation.judge`. The engine of an order that was not completed is that of the next one."""
         released = sum(each["ability"] == RELEASE for found in responses for each in found["abilities"])
         assert released >= sum(found["outcome"] == "completed" for found in responses)
-        eventually(lambda: self._place.counted["engine done"] >= released)
+        until(lambda: self._place.counted["engine done"] >= released)
         assert not self._place.wrong, (self._place.wrong, self._place.ask({"verdict": True})["events"][-20:])
         counted = summed(self._place.counted)
         assert counted["engine done"] == released, counted

@@ -15,13 +15,13 @@ from typing import Any
 from mes.receiver import Receiver, receiving
 from running.day_stations import DayStation
 from running.mortal import Mortal
-from running.stations import REPOSITORY
 from sequence_planner.auth import api_keys
 from sequence_planner.auth.roles import Scope
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.mes import events
 from sequence_planner.mes.webhooks import endpoints as webhooks
 from sequence_planner.mes.webhooks.endpoints import Seal, key_file
+from support.places import REPOSITORY
 
 EXAMPLES = REPOSITORY / "docs" / "examples"
 SCOPES = frozenset({Scope.READ, Scope.ORDERS_READ, Scope.ORDERS_WRITE, Scope.AUDIT})

@@ -16,10 +16,13 @@ from typing import Any
 
 from running.back_to_work.floor import Floor, floor
 from running.back_to_work.person import Person
-from running.stations import PATIENCE, REPOSITORY, RunningStation, eventually, free_port, process
+from running.stations import RunningStation, process
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.station import prepare_station
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import PATIENCE, until
 
 TRUCK = REPOSITORY / "models" / "truck_engine_station"
 SPEED = 5
@@ -88,7 +91,7 @@ def truck_at_work() -> Iterator[tuple[RunningStation, Person, Floor]]:
         options = ("--port", str(port), "--emulator", "--emulator-speed", str(SPEED))
         with process(log, "run", str(model), *options) as running:
             station = RunningStation(running, port, log)
-            eventually(station.up, 3 * PATIENCE)
+            until(station.up, seconds=3 * PATIENCE)
             with floor(model / "messages", {}) as place:
                 person = Person(station, _NoHands())
                 person.do("POST", "production/start", {})

@@ -14,12 +14,15 @@ from pathlib import Path
 import httpx
 
 from auth.cheap import CHEAP
-from running.stations import MODEL, REPOSITORY, RunningStation, eventually, free_port, process
+from running.stations import MODEL, RunningStation, process
 from sequence_planner.auth import users
 from sequence_planner.auth.roles import Role
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import default_url
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 PEOPLE = {"Ada": Role.ADMINISTRATOR, "Bo": Role.OPERATOR}
 PASSWORD = "a long enough one"
@@ -50,8 +53,8 @@ class Hall:
         """Kill one of the processes, and wait until the launcher has started it again."""
         before = self.station.child(part)
         os.kill(before, signal.SIGKILL)
-        eventually(lambda: self._child(part) not in (None, before))
-        eventually(self.station.up)
+        until(lambda: self._child(part) not in (None, before))
+        until(self.station.up)
 
     def _child(self, part: str) -> int | None:
         with contextlib.suppress(ValueError):
@@ -77,7 +80,7 @@ def opened(folder: Path) -> Iterator[Hall]:
     with process(log, "run", str(model), "--port", str(port), "--emulator", "--emulator-speed", "5") as running:
         station = RunningStation(running, port, log)
         try:
-            eventually(station.up)
+            until(station.up)
         except AssertionError as error:
             raise AssertionError(log.read_text()) from error
         yield Hall(station, model)

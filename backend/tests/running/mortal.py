@@ -16,10 +16,13 @@ import httpx
 
 from running.judging import Kept
 from running.signing_in import signed_in
-from running.stations import MODEL, REPOSITORY, command, descendants, environment, eventually, free_port
+from running.stations import MODEL, command, descendants, environment
 from sequence_planner.core.storage_error import DATABASE
 from sequence_planner.db.database import Database
 from sequence_planner.journal.run_journal import RunRecord
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 SPEED = 10.0  # of the devices
 PATIENCE = 240.0  # on a machine that is busy with much else
@@ -139,7 +142,7 @@ class Mortal:
     def wait(self, what: Callable[[], bool], why: str) -> None:
         """Until that is true. AssertionError, with what the controller says, when it does not come true."""
         try:
-            eventually(what, PATIENCE)
+            until(what, seconds=PATIENCE)
         except AssertionError:
             raise AssertionError(f"{why}: {self.shown()}\n{self.log('controller')}\n{self.log('server')}") from None
 

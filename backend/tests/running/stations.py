@@ -6,11 +6,9 @@ import asyncio
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
-import time
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,13 +21,11 @@ from running.signing_in import signed_in
 from sequence_planner.ros.transport import Transport
 from sequence_planner.ros.transports.choice import open_transport
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.network import DOMAIN, free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
-REPOSITORY = Path(__file__).parents[3]
 MODEL = Path("models") / "bolt_tightening"
-# Of DDS: stations of other runs on this machine, and the networks of other tests, are elsewhere. Above 100 its ports
-# are those that the system hands out to anybody.
-DOMAIN = 1 + (os.getpid() + 50) % 100
-PATIENCE = 60.0
 
 
 def command(*arguments: str) -> list[str]:
@@ -51,14 +47,6 @@ def finished(*arguments: str, seconds: float = 60) -> subprocess.CompletedProces
         timeout=seconds,
         check=False,
     )
-
-
-def eventually(what: Callable[[], bool], seconds: float = PATIENCE) -> None:
-    """Wait until `what` is true."""
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end, "it did not come true in time"
-        time.sleep(0.1)
 
 
 @dataclass
@@ -128,7 +116,7 @@ class RunningStation:
             self.acknowledge()
             return sum(map(self.completed, names)) >= wanted
 
-        eventually(done)
+        until(done)
 
     def completed(self, operation: str) -> int:
         return int(self.get("operations")[operation]["completed"])
@@ -168,12 +156,6 @@ def descendants(number: int) -> list[Descendant]:
     return [Descendant(pid, title) for pid, _, title in rows if pid in found - {number}]
 
 
-def free_port() -> int:
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return int(listener.getsockname()[1])
-
-
 @contextmanager
 def process(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
     """A process of ours, ended by its id."""
@@ -194,7 +176,7 @@ def station(folder: Path, *options: str, model: Path = MODEL) -> Iterator[Runnin
     with process(log, "run", str(model), "--port", str(port), *options) as running:
         seen = RunningStation(running, port, log)
         try:
-            eventually(seen.up)
+            until(seen.up)
         except AssertionError as error:
             raise AssertionError(log.read_text()) from error
         yield seen

@@ -18,12 +18,12 @@ import httpx
 from db.servers import binaries, running_server
 from running.mortal import Mortal, mortal
 from running.pairs import Pair, pair, standby
-from running.stations import eventually
 from running.takeovers import automatic
 from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import TICKED
 from sequence_planner.journal import run_journal
 from sequence_planner.process.parent_watch import OVERTAKEN
+from support.waiting import until
 
 MILLISECONDS = 0.005  # until a controller is killed after the answer, at most
 WATCHED = 16.0  # seconds: whoever takes over by itself waits until the other has left the network, about 10 s
@@ -204,7 +204,7 @@ class _Lives:
             found[:] = [each for each in self._both.stations if standby(each)["active"] is True]
             return bool(found) and found[0].production() in ("waiting", "started")
 
-        eventually(commands, 240.0)
+        until(commands, seconds=240.0)
         return found[0]
 
     def _cut(self, station: Mortal) -> None:

@@ -12,8 +12,10 @@ from pathlib import Path
 from db.servers import binaries, running_server
 from running.mortal import Mortal
 from running.pairs import Pair, pair, standby, takes_over
-from running.stations import MODEL, REPOSITORY, eventually
+from running.stations import MODEL
 from sequence_planner.process.parent_watch import OVERTAKEN
+from support.places import REPOSITORY
+from support.waiting import until
 
 SOON = 5.0  # seconds in which the other has to command
 AGAIN = "killed and started again at once"
@@ -106,6 +108,6 @@ def _back(both: Pair, station: Mortal, what: str) -> None:
     if what == AGAIN:
         station.kill("controller")
     elif what != "killed":
-        eventually(lambda: station.ended("controller") == OVERTAKEN, 60.0)
+        until(lambda: station.ended("controller") == OVERTAKEN, seconds=60.0)
     station.start("controller")
     station.wait(lambda: standby(station)["holder"] not in (None, station.standby), "it does not stand by")

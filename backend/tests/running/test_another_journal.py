@@ -10,10 +10,12 @@ from pathlib import Path
 import pytest
 
 from core.budget import SHARE
-from running.stations import eventually, finished, free_port, process
+from running.stations import finished, process
 from running.workshops import EditedStation, edited
 from sequence_planner.db.location import SqliteFile, address, default_url
 from sequence_planner.startup.station_process import UNUSABLE
+from support.network import free_port
+from support.waiting import until
 
 # That a last word counts only beside its own journal is tested in `journal/test_last_word.py`, too.
 IN_CAMPAIGNS = pytest.mark.skipif(SHARE < 1, reason="stations that begin one after another take long: `make campaign`")
@@ -21,14 +23,14 @@ IN_CAMPAIGNS = pytest.mark.skipif(SHARE < 1, reason="stations that begin one aft
 
 def works(station: EditedStation) -> None:
     """A person lets it work."""
-    eventually(station.up, 240.0)
+    until(station.up, seconds=240.0)
     station.control()
     if undecided := station.get("undecided", "station"):
         values = {name: each["value"] for name, each in undecided.items()}
         station.asked("PUT", "restored-outputs", {"values": values, "reason": "as it was"})
     station.asked("POST", "production/start", {})
     station.asked("PUT", "mode", {"mode": "automatic"})
-    eventually(lambda: bool(station.get("tasks")))
+    until(lambda: bool(station.get("tasks")))
 
 
 def paused_later(folder: Path, model: Path) -> None:
@@ -55,7 +57,7 @@ def gone(model: Path) -> Path:
 
 def begun(station: EditedStation) -> tuple[str, bool]:
     """The mode in which it is once it is up, and whether it says that it began at rest."""
-    eventually(station.up, 240.0)
+    until(station.up, seconds=240.0)
     return str(station.get("mode", "station")), "begins-at-rest" in station.get("alarms")
 
 
@@ -70,7 +72,7 @@ def test_a_new_station_begins_without_the_last_word_of_the_one_before(tmp_path: 
     assert (refused.returncode, "run --new" in refused.stderr) == (UNUSABLE, True)
     log = tmp_path / "new.log"
     with process(log, "run", str(model), "--port", str(free_port()), "--emulator", "--new"):
-        eventually(lambda: "runs: open" in log.read_text(), 240.0)
+        until(lambda: "runs: open" in log.read_text(), seconds=240.0)
     (kept,) = file.parent.glob("*-last-word-aside-*")
     assert f"is kept as {kept}" in log.read_text()
     with edited(tmp_path, "--emulator", "--new", model=model) as station:

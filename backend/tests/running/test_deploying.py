@@ -11,10 +11,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from running.stations import PATIENCE, eventually, finished, foreign_node, free_port
+from running.stations import finished, foreign_node
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.startup.station_process import UNUSABLE
+from support.network import free_port
+from support.waiting import PATIENCE, until
 
 TITLED = (STATION, "title: A single bolt", "title: Another title")
 OTHER_TOPIC = (ROBOT, "/robot/state:", "/robot/other_state:")
@@ -43,13 +45,13 @@ def begin(station: EditedStation) -> None:
     """Start production, on which nobody has to decide anything once all devices are heard: till then it is not known
     what they would do.
     """
-    eventually(lambda: station.get("undecided", "station") == {})
+    until(lambda: station.get("undecided", "station") == {})
     station.asked("POST", "production/start", {})
 
 
 def test_a_revision_that_cannot_be_emulated_is_found_and_not_deployed(tmp_path: Path) -> None:
     with edited(tmp_path, "--emulator") as station:
-        eventually(station.up)
+        until(station.up)
         station.control()
         station.change(NEVER_GIVEN)
         (finding,) = [each for each in station.checked()["findings"] if each["severity"] == "error"]
@@ -87,7 +89,7 @@ def somebody_on(topic: str, type_name: str) -> Iterator[None]:
 def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None:
     """What only the network shows: beside a real device none is emulated."""
     with edited(tmp_path, "--emulator") as station:
-        eventually(station.up)
+        until(station.up)
         station.control()
         before = (station.model / ROBOT).read_text()
         with somebody_on("/robot/other_state", "bolt_msgs/msg/RobotState"):
@@ -97,16 +99,16 @@ def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None
         assert "the emulated devices would fight with it" in outcome["why"]
         assert (station.model / ROBOT).read_text() == before
         assert station.station()["control"] is not None
-        eventually(lambda: "could not be started, and the model before is back" in alarms(station)["deployment-undone"])
+        until(lambda: "could not be started, and the model before is back" in alarms(station)["deployment-undone"])
         entries = station.asked("GET", "audit?limit=20")
         assert "undo-deployment" in str(entries)
         assert station.asked("GET", "model")["files"][ROBOT]["state"] == "changed", "what was deployed is lost"
         assert station.get("production", "station") == "waiting"
         # Nobody is in the way any more.
         assert station.deploy(revision).status_code == 204
-        eventually(lambda: station.outcome(revision)["state"] == "runs")
+        until(lambda: station.outcome(revision)["state"] == "runs")
         begin(station)
-        eventually(lambda: "deployment-undone" not in alarms(station))
+        until(lambda: "deployment-undone" not in alarms(station))
         # Whoever puts the files of before there now, once it went well, has changed the model: nothing was undone.
         assert station.asked("GET", "model")["files"][ROBOT]["state"] == "same"
         (station.model / ROBOT).write_text(before)
@@ -116,7 +118,7 @@ def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None
 
 def test_a_model_that_was_broken_while_nothing_ran_is_repaired_on_its_page(tmp_path: Path) -> None:
     with edited(tmp_path, "--emulator") as station:
-        eventually(station.up)
+        until(station.up)
         station.asked("GET", "model")
         model = station.model
     path, whole, broken = LOOSE
@@ -132,7 +134,7 @@ def test_a_model_that_was_broken_while_nothing_ran_is_repaired_on_its_page(tmp_p
         assert (refused.status_code, refused.json()["type"]) == (409, "/problems/model-unusable")
         revision = deployed(station, (path, broken, whole), name="Repaired")
         assert station.outcome(revision)["state"] == "runs"
-        eventually(station.up)
+        until(station.up)
         assert title(station) == "A single bolt"
 
 
@@ -152,13 +154,13 @@ def test_a_model_that_cannot_be_emulated_runs_without_and_is_repaired_on_its_pag
     path, before, after = NEVER_GIVEN
     (model / path).write_text((model / path).read_text().replace(before, after))
     with edited(tmp_path, "--emulator", model=model) as station:
-        eventually(station.up)
-        eventually(lambda: "not-emulated" in alarms(station))
+        until(station.up)
+        until(lambda: "not-emulated" in alarms(station))
         assert "nowhere" in alarms(station)["not-emulated"]
         station.control()
         revision = deployed(station, (path, after, before), name="Repaired")
         assert station.outcome(revision)["state"] == "runs"
-        eventually(lambda: station.value("robot.pose") == "home")
+        until(lambda: station.value("robot.pose") == "home")
         assert "not-emulated" not in alarms(station)
 
 
@@ -169,30 +171,30 @@ def moved(station: EditedStation) -> None:
     begin(station)
     trial = {"ability": "robot.move_to(above)", "reason": "to try it"}
     # Refused until its first commands are sent, and the robot answers them.
-    eventually(lambda: station.browser.post("test-runs", json=trial, timeout=PATIENCE).is_success)
-    eventually(lambda: station.value("robot.pose") == "above")
-    eventually(lambda: station.get("errand", "station") is None)
+    until(lambda: station.browser.post("test-runs", json=trial, timeout=PATIENCE).is_success)
+    until(lambda: station.value("robot.pose") == "above")
+    until(lambda: station.get("errand", "station") is None)
 
 
 def test_emulated_devices_go_on_as_they_stand_or_begin_anew_with_the_station(tmp_path: Path) -> None:
     with edited(tmp_path, "--emulator", "--emulator-speed", "5") as station:
-        eventually(station.up)
+        until(station.up)
         moved(station)
-        session = station.get("control-lock", "station")["session"]
+        session = station.get("control", "station")["session"]
         revision = deployed(station, TITLED, name="Titled")
         assert station.outcome(revision)["state"] == "runs"
-        eventually(lambda: station.value("robot.pose") == "above")
+        until(lambda: station.value("robot.pose") == "above")
         assert title(station) == "Another title"
         assert station.value("robot.target_pose") == "above"
-        assert station.get("control-lock", "station")["session"] == session
+        assert station.get("control", "station")["session"] == session
         begin(station)
 
         again = (STATION, TITLED[2], TITLED[1])
         revision = deployed(station, again, name="As at first", simulation="reset")
         assert station.outcome(revision)["state"] == "runs"
-        eventually(lambda: station.value("robot.pose") == "home")
+        until(lambda: station.value("robot.pose") == "home")
         assert station.value("robot.target_pose") == "home"
-        assert station.get("control-lock", "station")["session"] == session
+        assert station.get("control", "station")["session"] == session
         assert station.get("unconfirmed", "station") is False
         begin(station)
 
@@ -206,17 +208,17 @@ def test_nothing_but_a_stop_is_accepted_while_a_deployment_is_under_way_and_mode
     tmp_path: Path,
 ) -> None:
     with edited(tmp_path, "--emulator") as station:
-        eventually(station.up)
+        until(station.up)
         station.control()
         station.asked("PUT", "mode", {"mode": "paused"})
-        session = station.get("control-lock", "station")["session"]
+        session = station.get("control", "station")["session"]
         revision = deployed(station, TITLED, name="Titled")
         held = station.browser.put("mode", json={"mode": "hold"}).is_success  # the controller before may be gone by now
         mode, refused, shown = "hold" if held else "paused", Counter[str](), 0
         while becomes(seen := station.station()) != "runs":
             answer = station.browser.put("mode", json={"mode": "automatic"})
             if answer.is_success:  # by the new one, which accepts a moment before the page is told that it runs
-                eventually(lambda: becomes(station.station()) == "runs", 3)
+                until(lambda: becomes(station.station()) == "runs", seconds=3)
                 break
             if becomes(station.station()) == "runs":
                 break
@@ -234,12 +236,12 @@ def test_nothing_but_a_stop_is_accepted_while_a_deployment_is_under_way_and_mode
         }
         assert shown > 0
         assert station.outcome(revision)["state"] == "runs"
-        assert station.get("control-lock", "station")["session"] == session
+        assert station.get("control", "station")["session"] == session
 
 
 def test_real_devices_cannot_be_reset(tmp_path: Path) -> None:
     with edited(tmp_path) as station:
-        eventually(station.up)
+        until(station.up)
         station.control()
         station.change(TITLED)
         station.checked()

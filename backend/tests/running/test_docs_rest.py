@@ -10,9 +10,12 @@ from pathlib import Path
 import pytest
 
 from running.signing_in import signed_in
-from running.stations import REPOSITORY, command, environment, eventually, free_port, process
+from running.stations import command, environment, process
 from running.workshops import EditedStation
 from server.test_docs_curl import typed
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 PAGE = REPOSITORY / "docs" / "rest.md"
 
@@ -35,7 +38,7 @@ def test_what_the_page_types_leads_from_the_first_administrator_to_a_stop(tmp_pa
     shutil.copytree(REPOSITORY / "models" / "bolt_tightening", model)
     arguments, lines = walk(model, port)
     with process(log, *arguments, "--port", str(port)) as running:
-        eventually(lambda: "runs: open" in log.read_text(), 150)
+        until(lambda: "runs: open" in log.read_text(), seconds=150)
         printed = typed(lines, tmp_path, 300, **environment())
         station = EditedStation(running, port, log, model)
         station.__dict__["browser"] = signed_in(model, port)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from running.stations import MODEL, eventually, finished, process
+from running.stations import MODEL, finished, process
+from support.waiting import until
 
 BEGINS = "robot silent for 5 s"
 
@@ -14,7 +15,7 @@ def test_devices_run_alone_have_faults_and_answer(tmp_path: Path) -> None:
     script.write_text(f"faults:\n  - {{at: 0.1, fault: {BEGINS}}}\n")
     options = ("--resource", "robot", "--jitter", "0.1", "--seed", "7", "--faults", str(script))
     with process(log, "emulate", str(MODEL), *options):
-        eventually(lambda: f"fault='{BEGINS}'" in log.read_text())
+        until(lambda: f"fault='{BEGINS}'" in log.read_text())
         begun = finished("fault", "robot slow 2")
         assert (begun.returncode, begun.stdout) == (0, "begins\n")
         ended = finished("fault", "clear robot")

@@ -15,8 +15,11 @@ from pathlib import Path
 import httpx
 import pytest
 
-from running.stations import MODEL, PATIENCE, REPOSITORY, command, environment, eventually, free_port, process
+from running.stations import MODEL, command, environment, process
 from server.certificates import Certified, certify
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 NAME = "station.example"
 LINK = re.compile(r"https://station\.example:(\d+)/setup#([\w-]+)")
@@ -48,7 +51,7 @@ def shown(terminal: int, wanted: re.Pattern[str]) -> str:
         text += os.read(terminal, 4096).decode()
         return wanted.search(text) is not None
 
-    eventually(there, PATIENCE)
+    until(there)
     return text
 
 
@@ -88,14 +91,14 @@ def test_the_link_is_for_the_terminal_alone_and_works_once(tmp_path: Path, monke
             assert (again.status_code, again.json()["type"]) == (403, "/problems/setup-link-invalid")
     assert token not in errors.read_text()
     with process(log, *arguments):
-        eventually(lambda: "runs: open" in log.read_text())
+        until(lambda: "runs: open" in log.read_text())
     assert "first administrator" not in log.read_text()
 
 
 def test_where_there_is_no_terminal_it_is_only_said_how_to_get_the_link(tmp_path: Path) -> None:
     log, port, url = tmp_path / "log", free_port(), f"sqlite:///{tmp_path / 'station.sqlite'}"
     with process(log, "run", str(MODEL), "--port", str(port), "--database", url):
-        eventually(lambda: "users setup-link" in log.read_text())
+        until(lambda: "users setup-link" in log.read_text())
     text = log.read_text()
     how = f"`sequence-planner users setup-link {MODEL} --url http://127.0.0.1:{port}`"
     assert f"{how} prints the link for the first administrator" in text
@@ -118,7 +121,7 @@ def test_a_demonstration_is_forgotten(short_path: Path, monkeypatch: pytest.Monk
             except httpx.HTTPError:
                 return False
 
-        eventually(is_open)
+        until(is_open)
         assert opened.get("session").json()["kind"] == "demonstration"
         assert [*short_path.glob("*/demonstration.sqlite")]
     assert [*short_path.iterdir()] == [log]

@@ -12,17 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import (
-    MODEL,
-    RunningStation,
-    eventually,
-    finished,
-    foreign_node,
-    free_port,
-    process,
-    station,
-)
+from running.stations import MODEL, RunningStation, finished, foreign_node, process, station
 from sequence_planner.ros.qos import QualityOfService
+from support.network import free_port
+from support.waiting import until
 
 AT_WORK = ("--emulator", "--start", "--emulator-speed", "5")
 
@@ -35,7 +28,7 @@ def at_work(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningStation
 
 def test_a_whole_engine_is_assembled(at_work: RunningStation) -> None:
     at_work.work_on(3)
-    eventually(lambda: at_work.completed("new_engine") >= 1)
+    until(lambda: at_work.completed("new_engine") >= 1)
     assert [alarm["text"] for alarm in at_work.get("alarms").values() if alarm["ended"] is None] == []
 
 
@@ -69,13 +62,13 @@ def test_a_message_of_another_type_is_shown_and_the_work_goes_on(at_work: Runnin
             transport.advertise("/ur10/state", "std_msgs/msg/String", QualityOfService.RELIABLE)
             transport.publish("/ur10/state", "std_msgs/msg/String", registry.encode("std_msgs/msg/String", {}))
             await asyncio.to_thread(
-                eventually, lambda: "as std_msgs/msg/String" in str(at_work.get("topics")["/ur10/state"]["trouble"])
+                until, lambda: "as std_msgs/msg/String" in str(at_work.get("topics")["/ur10/state"]["trouble"])
             )
             assert "network:robot" in at_work.get("alarms")
             await asyncio.to_thread(at_work.work_on, 1)
 
     asyncio.run(disturb())
-    eventually(lambda: at_work.get("topics")["/ur10/state"]["trouble"] is None)
+    until(lambda: at_work.get("topics")["/ur10/state"]["trouble"] is None)
 
 
 def test_a_peer_built_with_another_definition_is_shown_with_both_hashes(
@@ -90,9 +83,7 @@ def test_a_peer_built_with_another_definition_is_shown_with_both_hashes(
             type_name = "truck_engine_msgs/msg/RobotState"
             transport.advertise("/ur10/state", type_name, QualityOfService.RELIABLE)
             theirs = registry.type_hash(type_name)
-            await asyncio.to_thread(
-                eventually, lambda: f"theirs is {theirs}, ours is RIHS01_" in str(at_work.get("alarms"))
-            )
+            await asyncio.to_thread(until, lambda: f"theirs is {theirs}, ours is RIHS01_" in str(at_work.get("alarms")))
             await asyncio.to_thread(at_work.work_on, 1)
 
     asyncio.run(disturb())
@@ -117,7 +108,7 @@ def test_a_message_that_means_nothing_makes_its_variables_unknown_until_the_next
                 pytest.fail("the message was not noticed")
 
     asyncio.run(disturb())
-    eventually(lambda: at_work.value("robot.pose") is not None)
+    until(lambda: at_work.value("robot.pose") is not None)
     at_work.work_on(1)
 
 
@@ -130,16 +121,16 @@ def test_devices_that_were_killed_leave_unknown_values_and_come_back_to_work(
     at_work: RunningStation, tmp_path: Path
 ) -> None:
     os.kill(at_work.child("emulate"), signal.SIGKILL)
-    eventually(lambda: at_work.value("robot.pose") is None)
+    until(lambda: at_work.value("robot.pose") is None)
     assert at_work.get("variables", "state")["robot.pose"]["awaits"] == "/ur10/state"
     assert at_work.get("resources")["robot"]["awaited_topics"] == ["/ur10/state", "/ur10/planning_scene/state"]
     assert at_work.get("resources")["operator"]["online"]
-    eventually(lambda: "No message any more on /smart_nutrunner/state" in str(at_work.get("alarms")))
+    until(lambda: "No message any more on /smart_nutrunner/state" in str(at_work.get("alarms")))
     before = done_so_far(at_work)
     time.sleep(1)
     assert done_so_far(at_work) == before
     with process(tmp_path / "devices.log", "emulate", str(MODEL), "--speed", "5"):
-        eventually(lambda: at_work.value("robot.pose") is not None)
+        until(lambda: at_work.value("robot.pose") is not None)
         at_work.work_on(2)
         moved = finished("by-hand", "robot.pose := home")
         assert (moved.returncode, moved.stderr) == (0, "")

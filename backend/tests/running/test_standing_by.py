@@ -12,9 +12,9 @@ import httpx
 from db.servers import Server
 from running.mortal import Mortal
 from running.pairs import pair, standby, takes_over
-from running.stations import eventually
 from sequence_planner.process.parent_watch import OVERTAKEN
 from sequence_planner.standby.lease import LASTS
+from support.waiting import until
 
 
 def _taken_over(station: Mortal) -> None:
@@ -24,7 +24,7 @@ def _taken_over(station: Mortal) -> None:
 
 
 def _until(what: Callable[[], bool]) -> None:
-    eventually(what, 60.0)
+    until(what, seconds=60.0)
 
 
 def test_the_command_goes_from_one_to_the_other_and_back_and_nothing_is_lost(

@@ -10,18 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import (
-    MODEL,
-    REPOSITORY,
-    RunningStation,
-    eventually,
-    finished,
-    foreign_node,
-    free_port,
-    process,
-    station,
-)
+from running.stations import MODEL, RunningStation, finished, foreign_node, process, station
 from sequence_planner.ros.qos import QualityOfService
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import until
 
 
 def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -> None:
@@ -37,12 +30,12 @@ def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -
                 transport.subscribe(
                     topic, type_name, QualityOfService.RELIABLE, lambda batch: heard.extend(s.topic for s in batch)
                 )
-            await asyncio.to_thread(eventually, lambda: running.get("topics")["/ur10/command"]["peers"] >= 2)
+            await asyncio.to_thread(until, lambda: running.get("topics")["/ur10/command"]["peers"] >= 2)
             await asyncio.sleep(3)
             assert heard == []
             assert running.get("tasks") == {}
             assert running.post("production/start", {}).status_code == 204
-            await asyncio.to_thread(eventually, lambda: set(heard) == set(commands))
+            await asyncio.to_thread(until, lambda: set(heard) == set(commands))
 
     with station(tmp_path, "--emulator", "--emulator-speed", "5") as running:
         assert running.get("production", "station") == "waiting"
@@ -55,8 +48,8 @@ def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -
         # A controller that had to be started again knows nothing of what it did: a person starts production.
         killed = running.child("controller")
         os.kill(killed, signal.SIGKILL)
-        eventually(lambda: killed not in running.children("controller"))
-        eventually(lambda: running.production() == "waiting")
+        until(lambda: killed not in running.children("controller"))
+        until(lambda: running.production() == "waiting")
 
 
 DEMONSTRATION = ("run", str(MODEL), "--emulator", "--demonstration")
@@ -98,7 +91,7 @@ def test_specifications_that_cannot_be_met_are_shown_with_a_run_and_nothing_is_s
     log = tmp_path / "station.log"
     with process(log, "run", str(model), "--emulator", "--start", "--port", str(port)) as running:
         shown = RunningStation(running, port, log)
-        eventually(lambda: shown.analysed() is not None)
+        until(lambda: shown.analysed() is not None)
         analysis = shown.analysed()
         assert analysis is not None
         assert (analysis["supervised"], analysis["guards"]) == (False, None)
@@ -169,7 +162,7 @@ def test_a_part_alone_does_without_a_broken_rclpy_too(tmp_path: Path, monkeypatc
 def test_emulated_devices_that_do_without_a_broken_rclpy_say_so_once(broken_rclpy: str, tmp_path: Path) -> None:
     log = tmp_path / "devices.log"
     with process(log, "emulate", str(MODEL)):
-        eventually(lambda: "emulated devices are up" in log.read_text())
+        until(lambda: "emulated devices are up" in log.read_text())
     [line] = [line for line in log.read_text().splitlines() if "rclpy" in line]
     assert "cyclonedds is used instead of the rclpy at " in line
     assert broken_rclpy in line

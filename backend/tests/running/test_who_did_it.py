@@ -12,7 +12,8 @@ import pytest
 from websockets.sync.client import connect
 
 from running.hall import Hall, opened
-from running.stations import eventually, finished
+from running.stations import finished
+from support.waiting import until
 
 Record = dict[str, Any]
 
@@ -60,7 +61,7 @@ def nobody_is_in_control(browser: httpx.Client) -> bool:
     return True
 
 
-def work_with_a_watch(hall: Hall, ada: httpx.Client, until: Callable[[], bool]) -> None:
+def work_with_a_watch(hall: Hall, ada: httpx.Client, what: Callable[[], bool]) -> None:
     """Pair a watch, and acknowledge on it whatever it shows until all is done."""
     offer = ada.post("wearables/offers", json={"name": "Bo's watch", "resource": "operator"}).json()
     with hall.browser() as watch:
@@ -75,9 +76,9 @@ def work_with_a_watch(hall: Hall, ada: httpx.Client, until: Callable[[], bool]) 
                 shown = json.loads(stream.recv(timeout=5))
                 for identifier, task in shown.get("tasks", {}).items():
                     watch.post(f"tasks/{identifier}/acknowledgement", json={"revision": task["revision"]})
-                return until()
+                return what()
 
-            eventually(acknowledged)
+            until(acknowledged)
 
 
 def journal(browser: httpx.Client) -> list[Record]:
@@ -172,11 +173,11 @@ def test_the_journal_on_the_command_line_is_the_same_and_is_whole(hall: Hall, ad
 
 
 def test_who_is_signed_out_loses_control_within_two_seconds(hall: Hall, ada: httpx.Client, bo: httpx.Client) -> None:
-    eventually(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, 5)
+    until(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, seconds=5)
     assert not nobody_is_in_control(ada)
     [person] = [each["id"] for each in ada.get("users").json()["people"] if each["name"] == "Bo"]
     done(ada.delete(f"users/{person}/sessions"))
-    eventually(lambda: nobody_is_in_control(ada), 2)
+    until(lambda: nobody_is_in_control(ada), seconds=2)
     assert bo.get("station").status_code == 401
     [withdrawn] = [each for each in journal(ada) if each["entry"]["action"] == "withdraw-control"][-1:]
     assert withdrawn["entry"]["actor"]["kind"] == "system"
@@ -185,17 +186,17 @@ def test_who_is_signed_out_loses_control_within_two_seconds(hall: Hall, ada: htt
 def test_after_a_controller_that_was_killed_nobody_is_in_control(
     hall: Hall, ada: httpx.Client, bo: httpx.Client
 ) -> None:
-    eventually(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, 5)
+    until(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, seconds=5)
     hall.killed("controller")
     # The view of the one that was killed is shown a little longer, and the next one prepares the station first.
-    eventually(lambda: production(ada) == "waiting" and bo.post("production/start", json={}).status_code != 503)
+    until(lambda: production(ada) == "waiting" and bo.post("production/start", json={}).status_code != 503)
     refused = bo.post("production/start", json={})
     assert (refused.status_code, refused.json()["type"]) == (409, "/problems/control-needed")
     assert nobody_is_in_control(ada)
 
 
 def test_after_a_server_that_was_killed_people_are_still_signed_in(hall: Hall, bo: httpx.Client) -> None:
-    eventually(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, 5)
+    until(lambda: bo.put("control-lock", json={"over": None}).status_code == 204, seconds=5)
     before = session(bo)
     hall.killed("server")
     assert session(bo) == before

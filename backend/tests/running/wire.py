@@ -8,13 +8,13 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from running.stations import DOMAIN
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.language.types import Value
 from sequence_planner.ros.transport import OnBatch, Sample
 from sequence_planner.ros.transports.choice import open_transport
 from sequence_planner.simulation.devices import CommandReader
 from sequence_planner.station import ReadyStation
+from support.network import DOMAIN
 
 Command = Mapping[str, Value | None]
 

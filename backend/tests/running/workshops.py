@@ -12,7 +12,10 @@ from typing import Any
 import httpx
 
 from running.signing_in import signed_in
-from running.stations import PATIENCE, REPOSITORY, RunningStation, eventually, free_port, process
+from running.stations import RunningStation, process
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import PATIENCE, until
 
 SINGLE_BOLT = REPOSITORY / "models" / "single_bolt"
 ROBOT, STATION = "resources/robot.yaml", "station.yaml"
@@ -50,12 +53,12 @@ class EditedStation(RunningStation):
                 found[:] = [answer.json()[part]]
             return bool(found)
 
-        eventually(told)
+        until(told)
         return found[0]
 
     def control(self) -> None:
         """Take control from whoever has it."""
-        holds = self.get("control-lock", "station")
+        holds = self.get("control", "station")
         self.asked("PUT", "control-lock", {"over": None if holds is None else holds["session"]})
 
     def change(self, *replacements: tuple[str, str, str]) -> None:
@@ -75,7 +78,7 @@ class EditedStation(RunningStation):
             found[:] = [self.asked("GET", "model/check")]
             return bool(found[0]["state"] in ("done", "failed"))
 
-        eventually(done)
+        until(done)
         return found[0]
 
     def save(self, name: str) -> str:
@@ -112,7 +115,7 @@ class EditedStation(RunningStation):
                 and seen["production"] != "preparing"
             )
 
-        eventually(decided, 120)
+        until(decided, seconds=120)
         return found[0]
 
 
@@ -126,6 +129,6 @@ def edited(folder: Path, *options: str, model: Path | None = None) -> Iterator[E
     with process(log, "run", str(model), "--port", str(port), *options) as running:
         seen = EditedStation(running, port, log, model)
         seen.__dict__["browser"] = signed_in(model, port)
-        eventually(lambda: bool(seen.station()), 4 * PATIENCE)
+        until(lambda: bool(seen.station()), seconds=4 * PATIENCE)
         yield seen
     assert running.returncode == 0, log.read_text()

@@ -8,8 +8,10 @@ import pytest
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.settings import Settings, StreamLimits
+from support.network import free_port
+from support.waiting import until
 
-from .running import Controller, Loop, Server, free_port, until
+from .running import Controller, Loop, Server
 from .watching import FOREIGN, Device, station
 
 

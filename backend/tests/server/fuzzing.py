@@ -24,8 +24,10 @@ from sequence_planner.auth.sessions import find_session
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.waiting import until
 
-from .running import Loop, Server, free_port, until
+from .running import Loop, Server
 from .test_looking import Telling, network
 
 PHASES = ("examples", "coverage", "fuzzing", "stateful")

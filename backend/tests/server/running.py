@@ -8,7 +8,7 @@ import secrets
 import socket
 import threading
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -33,26 +33,12 @@ from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.server import uvicorn_config
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import Settings
+from support.waiting import PATIENCE, until
 
 from .example_view import example_view
 
 T = TypeVar("T")
 PUBLISH_INTERVAL = 0.2  # seconds
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
-def until(condition: Callable[[], bool], seconds: float = 5.0) -> None:
-    """Wait for `condition`; fails when it does not come true in time."""
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.01)
 
 
 class Loop:
@@ -64,11 +50,11 @@ class Loop:
         self.thread.start()
 
     def run(self, work: Coroutine[Any, Any, T]) -> T:
-        return asyncio.run_coroutine_threadsafe(work, self.loop).result(20)
+        return asyncio.run_coroutine_threadsafe(work, self.loop).result(PATIENCE)
 
     def close(self) -> None:
         self.loop.call_soon_threadsafe(self.loop.stop)
-        self.thread.join(5)
+        self.thread.join(PATIENCE)
         self.loop.close()
 
 
@@ -153,7 +139,7 @@ class Server:
             self._task = asyncio.create_task(self._uvicorn._serve([listener]))
 
         self.loop.run(begin())
-        until(lambda: self._uvicorn.started, 15)
+        until(lambda: self._uvicorn.started)
         self._hash_cheaply()
 
     def _hash_cheaply(self) -> None:
@@ -190,7 +176,7 @@ class Server:
         if role is not None:
             token = self.session(self.person(role))[0]
         cookies = {} if token is None else {session_cookie(self.settings): token}
-        return httpx.Client(base_url=self.address, cookies=cookies)
+        return httpx.Client(base_url=self.address, cookies=cookies, timeout=PATIENCE)
 
     def stop(self) -> None:
         async def end() -> None:
@@ -221,4 +207,5 @@ def listen(
         max_queue=max_queue,
         max_size=max_size,
         close_timeout=close_timeout,
+        open_timeout=PATIENCE,
     )

@@ -17,9 +17,11 @@ from fastapi.routing import iter_route_contexts
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.server.auth import allowed, check_declared
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.waiting import until
 
 from .bearers import Bearer, Headers, everybody
-from .running import Controller, Loop, Server, free_port, until
+from .running import Controller, Loop, Server
 
 PUBLIC, WATCH, BESIDE = "public", "watch", "beside"
 PERMITTED = "permitted"

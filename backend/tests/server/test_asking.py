@@ -10,7 +10,6 @@ from typing import ClassVar
 
 import pytest
 
-from controller.bench import until
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import SetMode
 from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, Ask
@@ -18,6 +17,7 @@ from sequence_planner.controller.ipc import MOST_ASKS, ControllerClient, Control
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
 from sequence_planner.execution.vocabulary import Mode
+from support.waiting import until_async
 
 from .example_view import example_view
 from .test_link import ACTOR, accept, connected, path, peer_of
@@ -61,7 +61,7 @@ def test_answers_come_as_the_documents_they_are_and_no_command_waits_for_one(pat
             client = ControllerClient(path)
             running = await connected(client)
             flows = [asyncio.create_task(client.ask(AboutFlows())) for _ in range(MOST_ASKS)]
-            await until(lambda: answers.waiting == MOST_ASKS)
+            await until_async(lambda: answers.waiting == MOST_ASKS)
             with pytest.raises(CommandRefused) as refused:
                 await client.ask(AboutPipelines())
             assert (refused.value.slug, refused.value.status) == ("controller-busy", 503)
@@ -99,8 +99,8 @@ def test_who_leaves_is_looked_for_no_longer(path: Path) -> None:
             line = {"kind": "ask", "id": 1, "ask": {"kind": "about-flows"}, "expires": time.monotonic() + 60}
             async with peer_of(path) as peer:
                 peer.writer.write(json.dumps(line).encode() + b"\n")
-                await until(lambda: answers.waiting == 1)
-            await until(lambda: answers.given_up == 1)
+                await until_async(lambda: answers.waiting == 1)
+            await until_async(lambda: answers.given_up == 1)
 
     asyncio.run(scenario())
 

@@ -17,8 +17,9 @@ from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.server.settings import Settings
+from support.network import free_port
 
-from .running import Loop, Server, free_port
+from .running import Loop, Server
 from .test_acting import problem
 
 AUDIT = "/api/v1/audit"

@@ -15,7 +15,6 @@ from typing import Any
 import httpx
 import pytest
 
-from cli.commands import CELL
 from sequence_planner.auth import users
 from sequence_planner.auth.roles import Role
 from sequence_planner.backup import archive
@@ -27,8 +26,11 @@ from sequence_planner.forking.starting import children
 from sequence_planner.journal import audit
 from sequence_planner.server.services import backups
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.places import CELL
+from support.waiting import until
 
-from .running import Loop, Server, free_port, until
+from .running import Loop, Server
 from .test_acting import problem
 
 BACKUPS = "/api/v1/backups"
@@ -84,7 +86,7 @@ def shown(client: httpx.Client) -> dict[str, Any]:
 
 def ended(client: httpx.Client) -> dict[str, Any]:
     """What is shown when nothing is done any more and the journal tells how it ended."""
-    until(lambda: (now := shown(client))["busy"] is None and now["last"]["outcome"] != "requested", SECONDS)
+    until(lambda: (now := shown(client))["busy"] is None and now["last"]["outcome"] != "requested", seconds=SECONDS)
     return shown(client)
 
 
@@ -183,7 +185,7 @@ def test_one_is_made_without_anybody_asking_and_its_commands_restore_it_and_keep
     server = Server(loop, settings)
     server.start()
     with ada_at(server) as ada:
-        until(lambda: len(shown(ada)["backups"]) == 1, SECONDS)
+        until(lambda: len(shown(ada)["backups"]) == 1, seconds=SECONDS)
         (made,) = ended(ada)["backups"]
         assert (made["content"]["how"], made["content"]["by"]) == ("schedule", SYSTEM.name)
         server.person(name="Later")

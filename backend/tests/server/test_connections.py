@@ -12,8 +12,9 @@ import pytest
 from sequence_planner.server.http import connections, middleware
 from sequence_planner.server.http.connections import HEAD_SECONDS, LARGEST_HEAD
 from sequence_planner.server.http.middleware import MOST_UNKNOWN
+from support.waiting import patience, until
 
-from .running import Controller, Server, listen, until
+from .running import Controller, Server, listen
 
 SOON = 0.4  # seconds
 
@@ -54,7 +55,7 @@ def test_a_stream_is_nobody_who_lets_it_wait(server: Server) -> None:
     with listen(server) as stream:
         end = time.monotonic() + 3 * SOON
         while time.monotonic() < end:
-            assert stream.recv(2)
+            assert stream.recv(patience(2))
 
 
 @pytest.mark.usefixtures("_impatient")
@@ -160,7 +161,7 @@ def test_a_stream_of_somebody_signed_in_stays_when_strangers_come(server: Server
     with listen(server) as stream:
         idle = many(server, MOST_UNKNOWN // 3 + 50, "127.0.0.1", "127.0.0.2", "127.0.0.3")
         for _ in range(5):
-            assert stream.recv(5)
+            assert stream.recv(patience(5))
         for each in idle:
             each.close()
 
@@ -188,4 +189,4 @@ def test_one_session_may_not_have_them_all(
             assert kept[-1].recv(65536).startswith(b"HTTP/1.1 200")
         assert not is_closed(kept[-1])
         until(lambda: is_closed(kept[0]) and is_closed(kept[1]))
-        assert stream.recv(5)
+        assert stream.recv(patience(5))

@@ -13,9 +13,11 @@ from sequence_planner.auth import first_start
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.waiting import until
 
 from .example_view import example_view
-from .running import Controller, Loop, Server, free_port, until
+from .running import Controller, Loop, Server
 from .test_acting import problem
 
 PASSWORD = "seven green bolts"
@@ -73,7 +75,7 @@ def test_real_devices_end_a_demonstration(shown: Server, controller: Controller)
 def test_a_silent_controller_opens_no_demonstration(shown: Server, controller: Controller) -> None:
     controller.publishing = False
     with shown.client() as browser:
-        until(lambda: opened(browser).status_code == 403, 4)
+        until(lambda: opened(browser).status_code == 403, seconds=4)
 
 
 @pytest.mark.parametrize("header", ["Forwarded", "X-Forwarded-For", "X-Real-IP"])

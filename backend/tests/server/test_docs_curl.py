@@ -15,11 +15,12 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.execution import ClearOverride, SetMode, SetOverride, TakeControl
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.server.settings import Settings
+from support.places import REPOSITORY
+from support.waiting import until
 
 from .example_view import example_view
-from .running import Controller, Server, until
+from .running import Controller, Server
 
-REPOSITORY = Path(__file__).parents[3]
 TASK = example_view().tasks["7"].model_copy(update={"revision": 1})
 
 pytestmark = pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl here")

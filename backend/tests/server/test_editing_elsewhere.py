@@ -14,7 +14,6 @@ from typing import Any
 import httpx
 import pytest
 
-from editor.models import BOLTS
 from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.execution import SetMode
 from sequence_planner.editor import draft, merging, revisions
@@ -22,10 +21,12 @@ from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.forking.starting import children
 from sequence_planner.model.yaml import reader
 from sequence_planner.server.settings import Settings
+from support.places import BOLT_TIGHTENING
+from support.waiting import PATIENCE, until
 
-from .running import Controller, Loop, Server, until
+from .running import Controller, Loop, Server
 from .test_acting import problem
-from .test_model import MODEL, PATIENCE, TITLE, change, checked, made, read, save
+from .test_model import MODEL, TITLE, change, checked, made, read, save
 
 MANY = "resources/many.yaml"
 VARIABLES = "estimated:\n" + "".join(f"  v{number}: {{type: bool, initial: false}}\n" for number in range(20_000))
@@ -36,7 +37,7 @@ BOMB = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
 
 @pytest.fixture
 def server(controller: Controller, loop: Loop, settings: Settings, tmp_path: Path) -> Iterator[Server]:
-    model = shutil.copytree(BOLTS, tmp_path / "model")
+    model = shutil.copytree(BOLT_TIGHTENING, tmp_path / "model")
     server = Server(loop, Settings(**{**vars(settings), "model": model}))
     server.start()
     until(lambda: httpx.get(f"{server.address}/healthz").json().get("controller") == "heard")

@@ -21,10 +21,11 @@ from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.server import metrics
 from sequence_planner.server.http.credentials import watch_cookie
+from support.waiting import patience, until
 
 from .bearers import key, watch
 from .example_view import example_view
-from .running import Controller, Server, until
+from .running import Controller, Server
 from .test_acting import problem
 
 CLOSED_WITHIN = 2.0  # seconds
@@ -37,7 +38,7 @@ def control_of(signed_in: SignedIn) -> ControlView:
 
 def code_of(stream: ClientConnection) -> int:
     """The code with which a stream is closed, in time."""
-    deadline = time.monotonic() + CLOSED_WITHIN
+    deadline = time.monotonic() + patience(CLOSED_WITHIN)
     with pytest.raises(ConnectionClosed) as closed:
         while True:
             stream.recv(max(0.0, deadline - time.monotonic()))
@@ -50,7 +51,7 @@ def test_the_streams_of_a_session_that_has_ended_are_closed(server: Server) -> N
         token, signed_in = server.session(server.person())
         address = server.stream.replace("/stream", path)
         with connect(address, additional_headers=server.cookie(token)) as stream:
-            stream.recv(2)
+            stream.recv(patience(2))
             with server.identity.database.writing() as connection:
                 sessions.end_session(connection, signed_in.session, SYSTEM, time.time())
             assert code_of(stream) == 4401
@@ -93,12 +94,12 @@ def test_control_is_taken_from_a_session_that_has_ended_and_from_no_other(
     _, signed_in = server.session(server.person())
     controller.show(example_view(control=control_of(signed_in)))
     with pytest.raises(AssertionError):
-        until(lambda: bool(controller.commands), 1.5)
+        until(lambda: bool(controller.commands), seconds=1.5)
     begun = time.monotonic()
     with server.identity.database.writing() as connection:
         sessions.end_session(connection, signed_in.session, SYSTEM, time.time())
     until(lambda: bool(controller.commands))
-    assert time.monotonic() - begun < 2
+    assert time.monotonic() - begun < patience(2)
     assert controller.commands[0] == WithdrawControl(actor=SYSTEM, session=signed_in.session)
 
 
@@ -166,7 +167,7 @@ def test_while_the_database_is_away_who_was_there_goes_on_and_nobody_else_comes_
             assert browser.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
         begun = time.monotonic()
         while time.monotonic() - begun < 2.5:
-            stream.recv(1)
+            stream.recv(patience(1))
         found = problem(other.get("/api/v1/state"), 503, "storage-unavailable")
         assert str(away.parent) not in found["detail"]
         for refused in (
@@ -250,7 +251,7 @@ def test_whoever_decides_on_restarts_is_told_whether_one_helps(
         monkeypatch.setattr(metrics, name, 0.5)
 
     def answers(status: int, seconds: float = 20.0) -> None:
-        until(lambda: client.get("/healthz").status_code == status, seconds)
+        until(lambda: client.get("/healthz").status_code == status, seconds=seconds)
 
     answers(200)
     with contextlib.ExitStack() as stuck:

@@ -9,6 +9,8 @@ import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from support.waiting import patience
+
 from .running import Controller, Server, listen
 from .test_acting import problem
 
@@ -89,7 +91,7 @@ def test_our_own_page_may_act(server: Server, client: httpx.Client, controller: 
         headers = {"Origin": f"http://{name}:{server.settings.port}", "Sec-Fetch-Site": "same-origin"}
         assert client.put("/api/v1/mode", json=MODE, headers=headers).status_code == 204
         with listen(server, headers=headers) as stream:
-            assert '"snapshot"' in str(stream.recv(2))
+            assert '"snapshot"' in str(stream.recv(patience(2)))
     assert len(controller.commands) == 2
 
 

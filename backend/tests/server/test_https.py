@@ -16,9 +16,10 @@ from websockets.sync.client import ClientConnection, connect
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.settings import Settings
+from support.waiting import PATIENCE, patience, until
 
 from .certificates import Certified, certify
-from .running import Controller, Loop, Server, until
+from .running import Controller, Loop, Server
 from .test_acting import problem
 
 NAME = "station.example"
@@ -42,7 +43,7 @@ class Secured:
     def browser(self, headers: dict[str, str] | None = None) -> httpx.Client:
         """No name server knows the name: the browser is told where it is, and asks for it by the name."""
         transport = _Resolved(self.server.settings.port, self.trusting)
-        return httpx.Client(base_url=f"https://{self.host}", transport=transport, headers=headers)
+        return httpx.Client(base_url=f"https://{self.host}", transport=transport, headers=headers, timeout=PATIENCE)
 
     def stream(self, headers: dict[str, str]) -> ClientConnection:
         return connect(
@@ -50,6 +51,7 @@ class Secured:
             sock=socket.create_connection(("127.0.0.1", self.server.settings.port)),
             ssl=self.trusting,
             additional_headers=headers,
+            open_timeout=PATIENCE,
         )
 
     def signed_in(self, role: Role = Role.OPERATOR) -> dict[str, str]:
@@ -114,7 +116,7 @@ def test_who_signed_in_acts_and_listens_by_name(secured: Secured, controller: Co
         assert browser.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
     assert len(controller.commands) == 1
     with secured.stream(secured.signed_in() | origin) as stream:
-        assert '"snapshot"' in str(stream.recv(2))
+        assert '"snapshot"' in str(stream.recv(patience(2)))
 
 
 def test_a_client_that_closes_and_does_not_hang_up_does_not_keep_the_server_from_ending(secured: Secured) -> None:
@@ -136,7 +138,7 @@ def test_a_client_that_closes_and_does_not_hang_up_does_not_keep_the_server_from
 
 def before_it_hangs_up(client: ssl.SSLSocket) -> None:
     """Read until the server has closed its side, so that it waits for the client's."""
-    client.settimeout(5)
+    client.settimeout(PATIENCE)
     while client.recv(4096):
         pass
 

@@ -10,8 +10,9 @@ from sqlalchemy import select
 from websockets.sync.client import connect
 
 from sequence_planner.db.metadata import METADATA
+from support.waiting import patience, until
 
-from .running import Server, until
+from .running import Server
 from .test_acting import problem
 from .test_people import closing_code, records
 
@@ -80,7 +81,7 @@ def test_a_key_expires_after_its_days(server: Server, administrator: httpx.Clien
 def test_a_key_that_is_revoked_opens_nothing_any_more(server: Server, administrator: httpx.Client) -> None:
     secret, key = make(administrator)
     with connect(server.stream, additional_headers=bearing(secret)) as stream:
-        stream.recv(2)
+        stream.recv(patience(2))
         assert administrator.delete(f"{KEYS}/{key['id']}").status_code == 204
         problem(ask(server, secret), 401, "signed-out")
         assert closing_code(stream) == 4401
@@ -155,7 +156,7 @@ def test_a_key_gets_another_secret_and_the_one_before_ends_by_itself(
 def test_a_stream_of_the_secret_before_ends_with_it(server: Server, administrator: httpx.Client) -> None:
     before, key = make(administrator)
     with connect(server.stream, additional_headers=bearing(before)) as stream:
-        stream.recv(2)
+        stream.recv(patience(2))
         assert rotate(administrator, key["id"], overlap=0, days=10).status_code == 201
         assert closing_code(stream) == 4401
     problem(ask(server, before), 401, "signed-out")

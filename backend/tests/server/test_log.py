@@ -15,8 +15,8 @@ import httpx
 
 from sequence_planner.auth.first_start import new_link_token
 from sequence_planner.db.database import Database
-
-from .running import free_port, until
+from support.network import free_port
+from support.waiting import until
 
 PROGRAM = "from sequence_planner.core.logging import configure_logs\nconfigure_logs()\n"
 SERVE = """
@@ -64,7 +64,7 @@ def _used(address: str, link: str) -> tuple[dict[str, str], list[str]]:
             return httpx.get(f"{address}/healthz").status_code == 503
         return False
 
-    until(is_there, 30)
+    until(is_there, seconds=30)
     with httpx.Client(base_url=f"{address}/api/v1", timeout=20) as browser:
         began = {"token": link, "name": "Ada", "password": PASSWORD}
         answers = [browser.post("/setup", json=began)]

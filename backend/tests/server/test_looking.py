@@ -27,9 +27,10 @@ from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import EdgeFlowView, FlowsView, PipelineFlowView
 from sequence_planner.ros.transport import NetworkEndpoint
 from sequence_planner.server.settings import Settings
+from support.waiting import patience, until
 
 from .example_answers import example_answer
-from .running import Controller, Loop, Server, listen, until
+from .running import Controller, Loop, Server, listen
 from .test_acting import problem
 from .test_stream import hear, hear_kind, slow_client
 
@@ -133,7 +134,7 @@ def test_a_slow_client_of_the_graph_gets_the_newest_or_is_dropped_and_slows_nobo
             controller.tell(network(*many, REPORTS) if number % 2 else shown)
             while ("/devices" in hear_kind(quick, "network")["network"]["nodes"]) != bool(number % 2):
                 pass
-            assert time.monotonic() - begun < 2
+            assert time.monotonic() - begun < patience(2)
 
 
 def test_the_pipelines_are_told_to_who_asks(client: httpx.Client, controller: Telling) -> None:
@@ -198,7 +199,7 @@ def test_too_many_clients_of_the_graph_are_told_to_come_later(server: Server) ->
         for _ in range(server.settings.stream.clients):
             streams.enter_context(listen(server, path(server, "ros")))
         with listen(server, path(server, "ros")) as late, pytest.raises(ConnectionClosed):
-            late.recv(2)
+            late.recv(patience(2))
 
 
 def test_an_override_is_a_command_with_its_actor(client: httpx.Client, controller: Telling) -> None:

@@ -25,10 +25,11 @@ from sequence_planner.execution.vocabulary import Production
 from sequence_planner.process.restarts import write_restarts
 from sequence_planner.server import metrics
 from sequence_planner.server.settings import Settings
+from support.waiting import until
 
 from .bearers import key
 from .example_answers import example_answer, example_figures
-from .running import Controller, Loop, Server, listen, until
+from .running import Controller, Loop, Server, listen
 from .test_acting import problem
 
 
@@ -66,7 +67,7 @@ def becomes(server: Server, *failing: str) -> None:
         answer = ready(server)
         return set(answer.json().get("reasons", {})) == set(failing) and answer.status_code == (503 if failing else 200)
 
-    until(so, 10)
+    until(so, seconds=10)
 
 
 def scrape(server: Server) -> dict[str, Metric]:

@@ -12,22 +12,23 @@ import httpx
 import pytest
 from websockets.sync.client import ClientConnection
 
-from editor.models import BOLTS
 from sequence_planner.auth.roles import Role
 from sequence_planner.model.files import read_files
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.places import BOLT_TIGHTENING
+from support.waiting import PATIENCE, until
 
-from .running import Controller, Loop, Server, free_port, listen, until
+from .running import Controller, Loop, Server, listen
 from .test_acting import problem
 
 MODEL = "/api/v1/model"
 TITLE = {"kind": "set", "file": "station.yaml", "path": ["title"], "was": "Bolt tightening station", "value": "Bolts"}
-PATIENCE = 60.0
 
 
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
-    return shutil.copytree(BOLTS, tmp_path / "model")
+    return shutil.copytree(BOLT_TIGHTENING, tmp_path / "model")
 
 
 @pytest.fixture
@@ -81,7 +82,7 @@ def checked(client: httpx.Client) -> dict[str, Any]:
         found.append(read(client, "/check"))
         return bool(found[-1]["state"] == "done")
 
-    until(done, PATIENCE)
+    until(done)
     return found[-1]
 
 

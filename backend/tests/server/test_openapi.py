@@ -9,7 +9,6 @@ import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import httpx
@@ -20,10 +19,11 @@ from fastapi.routing import iter_route_contexts
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.openapi import document
 from sequence_planner.server.openapi_document import describe
+from support.places import REPOSITORY
 
 from .running import Server
 
-COMMITTED = Path(__file__).parents[3] / "frontend" / "openapi.json"
+COMMITTED = REPOSITORY / "frontend" / "openapi.json"
 
 
 @pytest.fixture

@@ -14,9 +14,10 @@ from sequence_planner.controller.views.station import JobStepState, JobStepView,
 from sequence_planner.execution.vocabulary import JobState, Mode
 from sequence_planner.mes.scheduling.problem import KnownTimes
 from sequence_planner.server.api import job_orders
+from support.waiting import until
 
 from .example_answers import WORK_MASTERS
-from .running import Server, until
+from .running import Server
 from .test_job_orders import ORDERS, controller, mes, store, tell
 from .test_looking import Telling
 
@@ -64,14 +65,14 @@ def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
         answer = mes.get(PLACE).raise_for_status().json()
         return [] if answer["fallback"] else [each["id"] for each in answer["job_orders"]]
 
-    until(lambda: found()[:3] == ["early", "middle", "late"], 30)
+    until(lambda: found()[:3] == ["early", "middle", "late"], seconds=30)
     answer = mes.get(PLACE).json()
     assert answer["optimal"]
     assert answer["tardiness"] == answer["bound"] == 0
     times = [each["operations"][0] for each in answer["job_orders"]]
     assert all(one["end"] <= other["start"] + 0.01 for one, other in pairwise(times))
     store(mes, "urgent", id="urgent", due=now + 1, priority=9, start=True)
-    until(lambda: len(found()) == 5, 30)
+    until(lambda: len(found()) == 5, seconds=30)
     assert mes.get(PLACE).json()["job_orders"][0]["late"] > 0
     assert [each["id"] for each in mes.get(PLACE, params={"limit": 2}).json()["job_orders"]] == ["urgent", "early"]
     shown: dict[str, str | int] = {"state": "AllowedToStart", "sort": "work", "limit": 2}
@@ -94,13 +95,13 @@ def test_what_cannot_be_put_into_an_order_leaves_the_order_there_was(
 ) -> None:
     for name in ("left", "right"):
         store(mes, name, id=name, work_master=name, due=None, start=True)
-    until(lambda: mes.get(PLACE).json()["time"] is not None, 30)
+    until(lambda: mes.get(PLACE).json()["time"] is not None, seconds=30)
     monkeypatch.setattr(KnownTimes, "seconds", lambda *_: 1e9)
     store(mes, "endless", id="endless", work_master="left", due=None, start=True)
     steps = {"left": JobStepState.ACTIVE, "right": JobStepState.ELIGIBLE, "endless": JobStepState.ELIGIBLE}
     jobs = {name: job(name, state, 1.0 if name == "left" else None) for name, state in steps.items()}
     controller.show(controller.view.model_copy(update={"jobs": jobs}))
-    until(lambda: waits_told(controller) == [("right", "left")], 20)
+    until(lambda: waits_told(controller) == [("right", "left")], seconds=20)
 
 
 def test_the_station_is_told_which_operation_waits_for_which(
@@ -109,16 +110,16 @@ def test_the_station_is_told_which_operation_waits_for_which(
     controller.show(controller.view.model_copy(update={"jobs": {}, "mode": Mode.AUTOMATIC, "by_order": True}))
     for name in ("left", "right"):
         store(mes, name, id=name, work_master=name, due=None, start=True)
-    until(lambda: {each.job for each in controller.commands if isinstance(each, TakeJob)} >= {"left", "right"}, 20)
+    until(lambda: {each.job for each in controller.commands if isinstance(each, TakeJob)} >= {"left", "right"})
     jobs = {
         "left": job("left", JobStepState.ACTIVE, time.time()),
         "right": job("right", JobStepState.ELIGIBLE, None),
     }
     controller.show(controller.view.model_copy(update={"jobs": jobs}))
 
-    until(lambda: waits_told(controller) == [("right", "left")], 30)
+    until(lambda: waits_told(controller) == [("right", "left")], seconds=30)
     monkeypatch.setattr(job_orders, "HELD_UP", 0.0)  # as after a while in which it was not begun
     controller.show(
         controller.view.model_copy(update={"jobs": jobs | {"left": job("left", JobStepState.ELIGIBLE, None)}})
     )
-    until(lambda: waits_told(controller) == [], 20)
+    until(lambda: waits_told(controller) == [], seconds=20)

@@ -22,9 +22,10 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.server.settings import Settings
+from support.waiting import patience, until
 
 from .certificates import certify
-from .running import Controller, Loop, Server, until
+from .running import Controller, Loop, Server
 from .test_acting import problem
 from .watching import FOREIGN, OWN, WATCHES, Device, active, station
 
@@ -94,7 +95,7 @@ def test_a_watch_is_paired_sees_its_task_and_acknowledges_it(place: Place, contr
         headers = {"Cookie": f"{cookie.name}={cookie.value}", "Origin": place.origin}
         stream = f"wss://{place.address}:{place.server.settings.port}{WATCHES}/stream"
         with connect(stream, ssl=place.trusting, additional_headers=headers) as seen:
-            assert json.loads(seen.recv(5))["tasks"].keys() == {OWN}
+            assert json.loads(seen.recv(patience(5)))["tasks"].keys() == {OWN}
         assert wrist.acknowledge(OWN).status_code == 204
     (command,) = controller.commands
     assert isinstance(command, AcknowledgeTask)

@@ -18,6 +18,7 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Record
+from support.waiting import patience
 
 from .running import Server, listen
 from .test_acting import problem
@@ -49,7 +50,7 @@ def change(
 
 def closing_code(stream: ClientConnection, within: float = 2.0) -> int:
     """Why the server closes `stream`, in so many seconds."""
-    deadline = time.monotonic() + within
+    deadline = time.monotonic() + patience(within)
     with pytest.raises(ConnectionClosed) as closed:
         while True:
             stream.recv(max(0.0, deadline - time.monotonic()))
@@ -245,7 +246,7 @@ def test_somebody_is_signed_out_everywhere(server: Server, administrator: httpx.
     tokens = [server.session(person)[0] for _ in range(3)]
     assert listed(administrator)["Olle"]["sessions"] == 3
     with listen(server, headers=server.cookie(tokens[0])) as stream:
-        stream.recv(2)
+        stream.recv(patience(2))
         assert administrator.delete(f"{PEOPLE}/{person.id}/sessions").status_code == 204
         assert closing_code(stream) == 4401
     for token in tokens:

@@ -14,8 +14,9 @@ from websockets.sync.client import connect
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.http import middleware
 from sequence_planner.server.settings import Settings
+from support.waiting import patience, until
 
-from .running import Controller, Loop, Server, until
+from .running import Controller, Loop, Server
 from .test_acting import problem
 
 NAME = "station.example"
@@ -66,7 +67,7 @@ def test_through_the_proxy_who_signed_in_acts_and_listens(proxied: Server, contr
     del headers["Host"]
     sock = socket.create_connection(("127.0.0.1", proxied.settings.port), source_address=(PROXY, 0))
     with connect(f"ws://{NAME}/api/v1/stream", sock=sock, additional_headers=headers) as stream:
-        assert '"snapshot"' in str(stream.recv(2))
+        assert '"snapshot"' in str(stream.recv(patience(2)))
 
 
 def test_nobody_but_the_proxy_is_served(proxied: Server) -> None:

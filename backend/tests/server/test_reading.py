@@ -6,8 +6,9 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
+from support.waiting import until
 
-from .running import Controller, Server, until
+from .running import Controller, Server
 from .test_acting import problem
 
 PARTS = ["resources", "operations", "abilities", "plan", "tasks", "topics", "overrides", "alarms"]
@@ -44,7 +45,7 @@ def test_nothing_is_told_before_the_controller_was_heard(lonely_server: Server, 
 
 def test_old_values_are_not_told_and_return_with_the_controller(client: httpx.Client, controller: Controller) -> None:
     controller.publishing = False
-    until(lambda: client.get("/api/v1/state").status_code == 503, 2.5)
+    until(lambda: client.get("/api/v1/state").status_code == 503, seconds=2.5)
     lost = problem(client.get("/healthz"), 503, "not-alive")
     assert (lost["controller"], lost["reasons"].keys()) == ("lost", {"controller"})
     controller.publishing = True
@@ -53,7 +54,7 @@ def test_old_values_are_not_told_and_return_with_the_controller(client: httpx.Cl
 
 def test_a_new_controller_is_found_again(client: httpx.Client, controller: Controller) -> None:
     controller.stop()
-    until(lambda: client.get("/api/v1/state").status_code == 503, 3)
+    until(lambda: client.get("/api/v1/state").status_code == 503, seconds=3)
     controller.link = type(controller.link)(controller.link.path, controller.handle)
     controller.start()
     until(lambda: client.get("/api/v1/state").status_code == 200)

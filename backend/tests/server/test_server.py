@@ -21,8 +21,8 @@ from sequence_planner.core.actor import SYSTEM, ActorKind
 from sequence_planner.db.database import Database
 from sequence_planner.server.binding import bind, check_endpoint
 from sequence_planner.server.settings import Endpoint, SettingsError
-
-from .running import free_port, until
+from support.network import free_port
+from support.waiting import patience, until
 
 PROGRAM = """
 import sys
@@ -66,13 +66,13 @@ def test_it_serves_until_it_is_told_to_stop(tmp_path: Path) -> None:
             return False
 
     with started(tmp_path, "localhost", port) as process:
-        until(answers, 15)
+        until(answers, seconds=15)
         with connect(f"ws://127.0.0.1:{port}/api/v1/stream", additional_headers=viewer(tmp_path, port)) as stream:
-            assert "lost" in str(stream.recv(2))
+            assert "lost" in str(stream.recv(patience(2)))
             begun = time.monotonic()
             process.send_signal(signal.SIGTERM)
             process.wait(10)
-        assert time.monotonic() - begun < 5
+        assert time.monotonic() - begun < patience(5)
         assert process.stderr is not None
         assert process.stderr.read() == ""
 

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from core.budget import examples
 from sequence_planner.server.binding import bind, check_demonstration, check_endpoint, server_context
 from sequence_planner.server.settings import Endpoint, SettingsError, split_name
+from support.network import free_port
 
 from .certificates import certify
-from .running import free_port
 
 NAME = "station.example"
 

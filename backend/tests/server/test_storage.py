@@ -10,7 +10,6 @@ from typing import Any
 import httpx
 import pytest
 
-from cli.commands import CELL
 from journal.happened import happened
 from sequence_planner.auth.roles import Role
 from sequence_planner.journal import audit
@@ -18,8 +17,11 @@ from sequence_planner.mes import events
 from sequence_planner.mes.events import EventKind
 from sequence_planner.retention.settings import Retention
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.places import CELL
+from support.waiting import until
 
-from .running import Server, free_port, until
+from .running import Server
 from .test_acting import problem
 from .test_backups import ada_at
 
@@ -68,7 +70,7 @@ def archive(client: httpx.Client) -> dict[str, Any]:
     """Have what is old archived; what is shown then."""
     answer = client.post(f"{STORAGE}/archive", json={})
     assert (answer.status_code, answer.json()) == (202, {"by": "Ada"})
-    until(lambda: shown(client)["busy"] is None, SECONDS)
+    until(lambda: shown(client)["busy"] is None, seconds=SECONDS)
     return shown(client)
 
 

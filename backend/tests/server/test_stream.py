@@ -14,16 +14,17 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
 from sequence_planner.execution.vocabulary import Mode
+from support.waiting import patience, until
 
 from .example_view import example_view
-from .running import Controller, Server, listen, until
+from .running import Controller, Server, listen
 from .test_difference import apply
 
 Message = dict[str, Any]
 
 
 def hear(stream: ClientConnection, seconds: float = 3.0) -> Message:
-    message: Message = json.loads(stream.recv(seconds))
+    message: Message = json.loads(stream.recv(patience(seconds)))
     return message
 
 
@@ -92,7 +93,7 @@ def test_a_silent_controller_is_told_within_its_two_seconds_and_returns_with_a_s
     controller.publishing = False
     begun = time.monotonic()
     assert hear_kind(stream, "link")["controller"] == "lost"
-    assert 1.5 < time.monotonic() - begun < 2.5
+    assert 1.5 < time.monotonic() - begun < patience(2.5)
     with pytest.raises(TimeoutError):
         stream.recv(0.5)
     controller.publishing = True
@@ -177,7 +178,7 @@ def test_a_slow_client_is_given_a_snapshot_then_dropped_and_slows_nobody(
             controller.show(controller.view.model_copy(update={"plan": plan, "tick": number + 2}))
             while hear(quick, 1.0)["changed"].get("tick", 0) < number + 2:
                 pass
-        assert time.monotonic() - begun < 12
+        assert time.monotonic() - begun < patience(12)
         until(lambda: time.monotonic() - begun > 4)
         seen = []
         with pytest.raises(ConnectionClosed) as closed:
@@ -216,7 +217,7 @@ def test_nobody_takes_the_places_of_all_others(server: Server) -> None:
         for _ in range(server.settings.stream.of_one):
             hear(stack.enter_context(listen(server, headers=greedy)))
         with pytest.raises(ConnectionClosed) as closed:
-            stack.enter_context(listen(server, headers=greedy)).recv(2)
+            stack.enter_context(listen(server, headers=greedy)).recv(patience(2))
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 1013
         hear(stack.enter_context(listen(server)))
@@ -228,7 +229,7 @@ def test_too_many_clients_are_told_to_come_later(server: Server) -> None:
         for _ in range(server.settings.stream.clients):
             streams.enter_context(listen(server))
         with listen(server) as late, pytest.raises(ConnectionClosed) as closed:
-            late.recv(2)
+            late.recv(patience(2))
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 1013
     with listen(server) as stream:

@@ -17,9 +17,11 @@ from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES
 from sequence_planner.mes.webhooks.targets import Targets, network
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.waiting import until
 
 from .bearers import key
-from .running import Server, free_port, until
+from .running import Server
 from .test_acting import problem
 from .test_keys import bearing
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 import random
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -18,9 +17,10 @@ from sequence_planner.pipelines.runtime import RunningPipelines
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.messages import CannotSpeakError
 from sequence_planner.station import prepare_station
+from support.places import BOLT_TIGHTENING, CELL
 
-CELL = prepare_station(Path(__file__).parents[1] / "stations" / "cell")
-TRUCK = prepare_station(Path(__file__).parents[3] / "models" / "bolt_tightening")
+READY = prepare_station(CELL)
+TRUCK = prepare_station(BOLT_TIGHTENING)
 HOME, OUT = (0.0, 0.0), (1.0, 0.5)
 STEP = 0.02
 
@@ -29,7 +29,7 @@ class Bench:
     """Emulated devices with their clock, spoken to by messages alone."""
 
     def __init__(self, speed: float = 1.0, seed: int = 0, station: str = "cell") -> None:
-        self.station = {"cell": CELL, "truck": TRUCK}[station]
+        self.station = {"cell": READY, "truck": TRUCK}[station]
         self.devices = EmulatedDevices(self.station.automaton, self.station.pipelines, speed, seed)
         self.pipelines = RunningPipelines(self.station.pipelines)
         self.now = 100.0

@@ -11,9 +11,10 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.simulation.fault_script import Scripted, read_script
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind, FaultReader
 from sequence_planner.station import ReadyStation, prepare_station
+from support.places import BOLT_TIGHTENING, CELL
 
-CELL = prepare_station(Path(__file__).parents[1] / "stations" / "cell")
-BOLTS = prepare_station(Path(__file__).parents[3] / "models" / "bolt_tightening")
+READY = prepare_station(CELL)
+BOLTS = prepare_station(BOLT_TIGHTENING)
 
 
 def reader(station: ReadyStation) -> FaultReader:
@@ -79,7 +80,7 @@ def test_a_script_is_read_in_the_order_of_time(tmp_path: Path) -> None:
     script = tmp_path / "faults.yaml"
     script.write_text("faults:\n  - {at: 20.5, fault: clear}\n  - {at: 10, fault: arm silent for 5 s}\n")
     silent = Fault(FaultKind.SILENT, "arm", seconds=5.0)
-    assert read_script(script, reader(CELL)) == (Scripted(10, silent), Scripted(20.5, Clear()))
+    assert read_script(script, reader(READY)) == (Scripted(10, silent), Scripted(20.5, Clear()))
 
 
 def test_all_that_is_wrong_in_a_script_is_said_with_its_place(tmp_path: Path) -> None:
@@ -93,7 +94,7 @@ def test_all_that_is_wrong_in_a_script_is_said_with_its_place(tmp_path: Path) ->
         "  - {at: 1, fault: 5}\n"
     )
     with pytest.raises(ModelError) as refused:
-        read_script(script, reader(CELL))
+        read_script(script, reader(READY))
     places = [(finding.place.line, finding.place.column) for finding in refused.value.findings]
     assert places == [(2, 25), (3, 10), (4, 5), (5, 10), (6, 20)]
     assert "did you mean `silent`" in str(refused.value)
@@ -104,6 +105,6 @@ def test_what_is_no_script_says_how_to_write_one(tmp_path: Path, text: str) -> N
     script = tmp_path / "faults.yaml"
     script.write_text(text)
     with pytest.raises(ModelError, match=r"faults\.yaml:1:\d+: |faults\.yaml:2:1: "):
-        read_script(script, reader(CELL))
+        read_script(script, reader(READY))
     with pytest.raises(ModelError, match="cannot be read"):
-        read_script(tmp_path / "nowhere.yaml", reader(CELL))
+        read_script(tmp_path / "nowhere.yaml", reader(READY))

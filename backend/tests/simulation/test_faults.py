@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -18,9 +17,10 @@ from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind, FaultReader, FaultyDevices
 from sequence_planner.station import ReadyStation, prepare_station
+from support.places import CELL, MODELS
 
-CELL = prepare_station(Path(__file__).parents[1] / "stations" / "cell")
-MODELS = sorted(each.parent for each in (Path(__file__).parents[3] / "models").glob("*/station.yaml"))
+READY = prepare_station(CELL)
+SHIPPED = sorted(each.parent for each in MODELS.glob("*/station.yaml"))
 STATE = "/arm/state"
 STEP = 0.02
 # In what is said, not in what the device does.
@@ -31,7 +31,7 @@ SAID = (FaultKind.SILENT, FaultKind.STUCK, FaultKind.WRONG, FaultKind.OFFLINE, F
 class Bench:
     """Devices with faults, their clock, and what is heard of them; `None` is what could not be read."""
 
-    station: ReadyStation = CELL
+    station: ReadyStation = READY
     seed: int = 0
     now: float = 100.0
     heard: list[tuple[str, dict[str, object] | None]] = field(default_factory=list)
@@ -169,7 +169,7 @@ def test_a_share_of_messages_is_lost_as_the_seed_says() -> None:
     assert len({heard(seed) for seed in range(4)}) > 1
 
 
-@pytest.mark.parametrize("station", [CELL, *map(prepare_station, MODELS)], ids=lambda station: station.automaton.name)
+@pytest.mark.parametrize("station", [READY, *map(prepare_station, SHIPPED)], ids=lambda station: station.automaton.name)
 def test_garbage_is_no_message_whatever_there_is_to_say(station: ReadyStation) -> None:
     bench = Bench(station)
     resources = {pipeline.topic.resource for pipeline in station.pipelines.incoming.values()}
@@ -250,7 +250,7 @@ def test_after_all_faults_a_device_goes_where_it_is_told(drawn: Story) -> None:
 def test_without_garbage_every_message_can_be_read_and_says_values_of_the_domains(drawn: Story) -> None:
     bench = Bench(seed=drawn.seed)
     told(bench, drawn, with_faults=True)
-    running = RunningPipelines(CELL.pipelines)
+    running = RunningPipelines(READY.pipelines)
     for number, (topic, message) in enumerate(bench.heard):
         assert message is not None
         running.take(topic, message, float(number))

@@ -27,15 +27,14 @@ from sequence_planner.journal.last_accepted import LastEnding, Life
 from sequence_planner.standby.lease import LeaseKeeper
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
-
-STATION = Path(__file__).parents[3] / "models" / "single_bolt"
+from support.places import SINGLE_BOLT
 
 
 class Taking:
     """A station that has taken over: a real execution and its record; its devices and its network are told."""
 
     def __init__(self, database: Database) -> None:
-        automaton = prepare_station(STATION).automaton
+        automaton = prepare_station(SINGLE_BOLT).automaton
         self.run = Executor(automaton, synthesise(automaton))
         self.recording = CommandAudit(database, lambda why: None)
         self.rivals = {"topic": "the station that died is still seen"}
@@ -105,7 +104,7 @@ def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_b
         standing = SimpleNamespace(name="press-b", holder="press-a", active=False, trouble=None)
         epoch = None if stands_by else 2
         keeper: Any = SimpleNamespace(held=not stands_by, epoch=epoch, standing=standing, taken_from=None)
-        running: Any = SimpleNamespace(model=STATION, socket=tmp_path / "socket", emulated=False, start=False)
+        running: Any = SimpleNamespace(model=SINGLE_BOLT, socket=tmp_path / "socket", emulated=False, start=False)
         none: Any = None
         recording = CommandAudit(database, lambda why: None)
         life = service._Life(running, Preparation(), recording, database, keeper, none, none, Mode.AUTOMATIC)

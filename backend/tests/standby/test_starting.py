@@ -16,18 +16,20 @@ from db.servers import Server
 from running.mortal import Mortal
 from running.pairs import standby
 from running.signing_in import signed_in
-from running.stations import eventually, free_port, process
+from running.stations import process
 from running.test_deploying import TITLED, deployed
 from running.workshops import SINGLE_BOLT, EditedStation
 from sequence_planner.core.storage_error import DATABASE
 from sequence_planner.db.database import Database
+from support.network import free_port
+from support.waiting import until
 
 LONG = 240.0  # seconds, on a machine that is busy with much else
 
 
 def part_of(station: EditedStation, name: str, other_than: int = 0) -> int:
     """The process id of a part of a station that `run` has started, once it is another one."""
-    eventually(lambda: bool(children := station.children(name)) and other_than not in children)
+    until(lambda: bool(children := station.children(name)) and other_than not in children)
     return station.children(name)[0]
 
 
@@ -61,7 +63,7 @@ def test_a_deployment_during_whose_start_another_station_takes_over_is_kept(
         with process(log, *run) as running:
             station = EditedStation(running, port, log, model)
             station.__dict__["browser"] = signed_in(model, port, url)
-            eventually(station.up, LONG)
+            until(station.up, seconds=LONG)
             other.start("server")
             other.start("controller")
             try:
@@ -88,19 +90,19 @@ def kept_while_it_stands_by(station: EditedStation, other: Mortal) -> None:
         os.kill(controller, signal.SIGCONT)
         # It is overtaken, and the next one stands by while it starts.
         part_of(station, "controller", controller)
-        eventually(lambda: (station.station().get("standby") or {}).get("holder") == "press-b", LONG)
+        until(lambda: (station.station().get("standby") or {}).get("holder") == "press-b", seconds=LONG)
         assert station.get("deployment", "station")["state"] == "starting"
         assert station.get("production", "station") == "preparing"
     finally:
         os.kill(devices, signal.SIGCONT)
-    eventually(lambda: (station.station().get("deployment") or {}).get("state") == "runs", LONG)
+    until(lambda: (station.station().get("deployment") or {}).get("state") == "runs", seconds=LONG)
     assert station.get("standby", "station")["active"] is False
     refused = station.browser.post("production/start", json={})
     assert (refused.status_code, refused.json()["type"]) == (503, "/problems/on-standby")
     # Later it commands again, with the model that was deployed.
     other.kill("controller")
-    eventually(lambda: (station.station().get("standby") or {}).get("active") is True, LONG)
-    eventually(station.up, LONG)
+    until(lambda: (station.station().get("standby") or {}).get("active") is True, seconds=LONG)
+    until(station.up, seconds=LONG)
     assert station.get("deployment", "station")["revision"] == revision
     assert station.get("station")["title"] == "Another title"
     assert "is brought back" not in station.log.read_text()

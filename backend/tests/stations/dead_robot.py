@@ -14,10 +14,11 @@ from pathlib import Path
 
 import httpx
 
-from running.stations import RunningStation, eventually
+from running.stations import RunningStation
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.disturbing import summed
 from stations.hall import Hall, controlled, hall
+from support.waiting import until
 
 SPEED = 3.0
 LONG_ENOUGH = 120.0  # seconds
@@ -55,7 +56,7 @@ class Operator:
     def robot_dies(self, pairs: Sequence[str]) -> str:
         """At one of these it stands still and its computer is gone; the operator presses Hold. The pair."""
         while True:
-            eventually(lambda: self.is_at_one_of(pairs), LONG_ENOUGH)
+            until(lambda: self.is_at_one_of(pairs), seconds=LONG_ENOUGH)
             self.place.ask({"world": {"jammed": ["arm"]}})
             assert self.do("mode", {"mode": "hold"}) == httpx.codes.NO_CONTENT
             if self.is_at_one_of(pairs):
@@ -72,7 +73,7 @@ class Operator:
 
     def goes_on(self) -> None:
         """As soon as the station allows that."""
-        eventually(lambda: self.do("mode", {"mode": "automatic"}) == httpx.codes.NO_CONTENT)
+        until(lambda: self.do("mode", {"mode": "automatic"}) == httpx.codes.NO_CONTENT)
 
     def put_robot(self, *, in_service: bool) -> None:
         """Take it out of service, or put it back."""
@@ -83,7 +84,7 @@ class Operator:
         """Its computer is started again, it stands at home, and its key is turned back."""
         self.place.ask({"world": {"jammed": []}})
         self.place.start("ur10")
-        eventually(lambda: self.station.value("robot.pose") == "HomeJOINTPose")
+        until(lambda: self.station.value("robot.pose") == "HomeJOINTPose")
         assert self.station.value("robot.target_pose") == "HomeJOINTPose"
         self.place.ask({"world": {"takes_over": False}})
 
@@ -100,7 +101,7 @@ def worked_around(seed: str) -> Counter[str]:
         operator = Operator(place, station)
         pair = operator.robot_dies(PAIRS[first:])
         operator.put_robot(in_service=False)
-        eventually(operator.is_told_to_take_over)
+        until(operator.is_told_to_take_over)
         place.ask({"world": {"takes_over": True}})
         operator.goes_on()
 
@@ -108,12 +109,12 @@ def worked_around(seed: str) -> Counter[str]:
             operator.watches()
             return operator.are_tight(PAIRS)
 
-        eventually(all_are_tight, LONG_ENOUGH)
+        until(all_are_tight, seconds=LONG_ENOUGH)
         assert operator.asked == ["free", "guide"]
         operator.robot_is_repaired()
         operator.put_robot(in_service=True)
-        eventually(lambda: station.completed("release_engine") == 1, LONG_ENOUGH)
-        eventually(lambda: place.counted["engine done"] == 1)
+        until(lambda: station.completed("release_engine") == 1, seconds=LONG_ENOUGH)
+        until(lambda: place.counted["engine done"] == 1)
         assert not place.wrong, place.wrong
         counted, number = place.counted, PAIRS.index(pair)
         by_hand = [each for each in PAIRS if counted[f"bolt tightened: {each} by hand"]]

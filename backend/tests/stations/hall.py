@@ -20,8 +20,11 @@ from typing import Any
 
 import httpx
 
-from running.stations import PATIENCE, REPOSITORY, RunningStation, environment, eventually, free_port
+from running.stations import RunningStation, environment
 from sequence_planner.simulation.truck_station.signals import COMPUTERS
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import PATIENCE, until
 
 MODEL = Path("models") / "truck_engine_station"
 
@@ -119,7 +122,7 @@ def hall(folder: Path, speed: float = 1.0, seed: int = 0) -> Iterator[Hall]:
     with ExitStack() as stack:
         stack.callback(ended, world)
         stack.callback(place.end)
-        eventually(place.up)
+        until(place.up)
         for node in COMPUTERS:
             place.start(node)
         yield place
@@ -133,7 +136,7 @@ def controlled(folder: Path) -> Iterator[RunningStation]:
     process = started(log, "sequence_planner.cli", "run", str(model), "--port", str(port))
     try:
         seen = RunningStation(process, port, log)
-        eventually(seen.up, 4 * PATIENCE)
+        until(seen.up, seconds=4 * PATIENCE)
 
         def at_work() -> bool:
             try:
@@ -142,7 +145,7 @@ def controlled(folder: Path) -> Iterator[RunningStation]:
             except httpx.HTTPError:
                 return False  # a busy machine answers too late
 
-        eventually(at_work)
+        until(at_work)
         yield seen
     finally:
         ended(process)

@@ -17,8 +17,8 @@ from sequence_planner.simulation.truck_station.drivers import Driver
 from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE, PREFIX
 from sequence_planner.simulation.truck_station.signals import put, read
 from sequence_planner.simulation.truck_station.world import World
+from support.places import TRUCK_ENGINE_STATION
 
-MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
 SAYS = {f"{PREFIX}/{kind.says[0]}": name for name, kind in NODE_TYPES.items()}
 HEARS = {
     f"{PREFIX}/{kind.hears[0]}": (name, f"{PACKAGE}/{kind.hears[1]}")
@@ -94,7 +94,7 @@ class SimulatedHall:
 class HallRig(Rig):
     """The controller's execution at the hall; what it wants it says again and again."""
 
-    def __init__(self, seed: int = 0, folder: Path = MODEL) -> None:
+    def __init__(self, seed: int = 0, folder: Path = TRUCK_ENGINE_STATION) -> None:
         super().__init__(folder=folder, seed=seed, acknowledges=never)
         self.desk = TaskHandler(self.station.automaton, self.station.pipelines.feeds)
         self.hall = SimulatedHall(self.station.registry, seed, self.now)

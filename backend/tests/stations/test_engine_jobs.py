@@ -16,14 +16,15 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from sequence_planner.station import prepare_station
-from stations.simulated import MODEL, HallRig
+from stations.simulated import HallRig
+from support.places import TRUCK_ENGINE_STATION
 
 LONG = pytest.mark.skipif(SHARE < 1, reason="engines take long: `make campaign` makes them")
 TOOLS = {"take_lf_tool", "take_nutrunner", "take_filter_tool"}
 
 
 def test_a_job_is_all_the_work_on_an_engine_and_what_the_robot_holds_is_none() -> None:
-    automaton = prepare_station(MODEL).automaton
+    automaton = prepare_station(TRUCK_ENGINE_STATION).automaton
     engine = automaton.work_masters["engine"]
     assert automaton.operations.keys() - engine.operations.keys() == TOOLS
     assert engine.operations["release_engine"] == {"tighten_oil_filter", "return_kit"}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -34,8 +33,8 @@ from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE,
 from sequence_planner.simulation.truck_station.poses import PAIRS, POSES
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
+from support.places import TRUCK_ENGINE_STATION
 
-MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
 LONGEST_SYNTHESIS, LONGEST_PLAN = 10.0, 1.0  # seconds of CPU time, on a busy machine
 
 LONGEST_FAR, LONGEST_WHOLE = 4.0, 8.0  # twice what is wanted
@@ -100,7 +99,7 @@ SITUATIONS: dict[str, dict[str, Value]] = {
 @cache
 def ready() -> tuple[ReadyStation, Supervisor, Planner, float]:
     """The station with its supervisor and a planner, and the seconds of CPU time that the safe states took."""
-    station = prepare_station(MODEL)
+    station = prepare_station(TRUCK_ENGINE_STATION)
     began = time.process_time()
     supervisor = synthesise(station.automaton)
     seconds = time.process_time() - began

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -27,15 +26,15 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NetworkEndpoint, Sample, TransportError
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.station import ReadyStation, prepare_station
+from support.places import TRUCK_ENGINE_STATION
 
-STATION = Path(__file__).parents[4] / "models" / "truck_engine_station"
 EVERYTHING_IS_SAFE = Supervisor(StateSet((), ()), {})
 STEP = 0.1
 
 
 @cache
 def truck() -> tuple[ReadyStation, Planner]:
-    station = prepare_station(STATION)
+    station = prepare_station(TRUCK_ENGINE_STATION)
     return station, Planner(station.automaton, EVERYTHING_IS_SAFE)
 
 

@@ -6,7 +6,6 @@ import random
 from collections import Counter
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from planning.advice.single_faults import Moment, asked, drawn, main_job
 from sequence_planner.automaton.automaton import Automaton, Kind
@@ -23,8 +22,8 @@ from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import MODELS
 
-MODELS = Path(__file__).parents[4] / "models"
 STATIONS = sorted(path.parent.name for path in MODELS.glob("*/station.yaml"))
 ONLY_IF = "Only if you have checked: "
 

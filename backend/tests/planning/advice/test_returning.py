@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.core.immutable import replace
@@ -14,15 +12,14 @@ from sequence_planner.planning.recovery.proposals import OfferKind
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.places import TRUCK_ENGINE_STATION
 
 from .carrying_out import Stopped, carried_out
-
-MODEL = Path(__file__).parents[4] / "models" / "truck_engine_station"
 
 
 def test_a_robot_in_whose_place_somebody_works_comes_back_for_what_only_it_can_do() -> None:
     """It was pushed home meanwhile, where it had been told to be, and did not say so."""
-    station = prepare_station(MODEL).automaton
+    station = prepare_station(TRUCK_ENGINE_STATION).automaton
     supervisor = synthesise(station)
     own = [name for name in station.names(Kind.MEASURED) if station.variables[name].resource == "robot"]
     bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
@@ -62,7 +59,7 @@ def test_a_robot_in_whose_place_somebody_works_comes_back_for_what_only_it_can_d
 
 def test_where_no_operation_is_active_because_values_are_unknown_their_resource_comes_back() -> None:
     """A tight pair was loosened and the planning scene is away: whether it can be tightened is not known."""
-    station = prepare_station(MODEL).automaton
+    station = prepare_station(TRUCK_ENGINE_STATION).automaton
     supervisor = synthesise(station)
     bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
     state: dict[str, Value | None] = {
@@ -101,7 +98,7 @@ def test_where_no_operation_is_active_because_values_are_unknown_their_resource_
 
 def test_what_is_wrong_is_repaired_before_somebody_takes_over() -> None:
     """The tool is to be left at its place: nobody hears of the planning scene, or the tool is not let go of."""
-    station = prepare_station(MODEL).automaton
+    station = prepare_station(TRUCK_ENGINE_STATION).automaton
     advisor = Advisor(station, synthesise(station))
     bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
     poses = ("robot.pose", "robot.previous_pose", "robot.target_pose")

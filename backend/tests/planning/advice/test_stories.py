@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from queue import SimpleQueue
 
 import pytest
@@ -32,10 +31,10 @@ from sequence_planner.process.budget import Budget
 from sequence_planner.process.worker import Companion, Word, WorkerAnswered, WorkerQuestion
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
+from support.places import BOLT_TIGHTENING
 
 from .carrying_out import Stopped, carried_out
 
-MODEL = Path(__file__).parents[4] / "models" / "bolt_tightening"
 TIGHTEN = "tighten_bolt_pair(bolt_pair_1)"
 UNDER_WAY: dict[str, Value | None] = {
     "robot.pose": "unknown",
@@ -51,7 +50,7 @@ NO_TOOL = Circumstances(barred=frozenset({"nutrunner.run_nut"}))
 
 @pytest.fixture(scope="module")
 def station() -> Automaton:
-    return prepare_station(MODEL).automaton
+    return prepare_station(BOLT_TIGHTENING).automaton
 
 
 @pytest.fixture(scope="module")

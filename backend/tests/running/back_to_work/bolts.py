@@ -12,7 +12,10 @@ from pathlib import Path
 from ruamel.yaml import YAML
 
 from running.back_to_work.floor import Floor, Hear, floor
-from running.stations import MODEL, PATIENCE, REPOSITORY, RunningStation, eventually, free_port, process
+from running.stations import MODEL, RunningStation, process
+from support.network import free_port
+from support.places import REPOSITORY
+from support.waiting import PATIENCE, until
 
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 SPEED = 5
@@ -147,7 +150,7 @@ def bolt_station(folder: Path) -> Iterator[tuple[RunningStation, BoltHands]]:
     with process(log, "run", str(model), "--port", str(port), "--emulator", "--emulator-speed", str(SPEED)) as running:
         station = RunningStation(running, port, log)
         try:
-            eventually(station.up, 3 * PATIENCE)
+            until(station.up, seconds=3 * PATIENCE)
         except AssertionError as error:
             raise AssertionError(f"{error}\n{log.read_text()[-3000:]}") from None
         with floor(model / "messages", bolts.topics) as place:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from running.stations import PATIENCE, eventually, foreign_node
+from running.stations import foreign_node
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.ros.types.messages import MessageRegistry
@@ -20,6 +20,7 @@ from sequence_planner.simulation.manual_interface import (
     TEXT_TYPE,
     answer_start,
 )
+from support.waiting import PATIENCE, until
 
 Hear = Callable[[Mapping[str, object]], None]
 
@@ -66,7 +67,7 @@ class Floor:
         def answers() -> list[str]:
             return [said for said in self._said[seen:] if said.startswith(answer_start(line))]
 
-        eventually(lambda: bool(answers()))
+        until(lambda: bool(answers()))
         assert "refused" not in answers()[0], answers()[0]
 
 

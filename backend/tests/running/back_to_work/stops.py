@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from running.back_to_work.person import Person
-from running.stations import PATIENCE, RunningStation, eventually
+from running.stations import RunningStation
+from support.waiting import PATIENCE, until
 
 RESTART, CORRECTION, PHYSICAL, RESET = "restart", "correction", "physical", "reset"
 KINDS = (RESTART, CORRECTION, PHYSICAL, RESET)
@@ -105,5 +106,5 @@ class Stops(ABC):
         """The controller dies, and is started again by its launcher."""
         self.work_a_little()
         os.kill(self.station.child("controller"), signal.SIGKILL)
-        eventually(lambda: not self.station.up())
-        eventually(self.station.up, 3 * PATIENCE)
+        until(lambda: not self.station.up())
+        until(self.station.up, seconds=3 * PATIENCE)
