@@ -7,19 +7,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from sequence_planner.editor.symbols.texts import entry, items, pairs, text_at
+from sequence_planner.editor.symbols.texts import entry, items, named_in, pairs, text_at
 from sequence_planner.language.records.field_paths import NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.stages.base import NameUse
+from sequence_planner.model.stages.rename import RenameDocument
 from sequence_planner.pipelines.graph import GOAL_STATE
 from sequence_planner.pipelines.inference import MOST_VALUES
 from sequence_planner.pipelines.message_types import message_fields
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
-
-# The keys of a stage that makes one thing of another, and of one that gives several.
-SINGLE = ("discretise", "undiscretise", "map", "match", "member")
 
 
 class Pipeline(NamedTuple):
@@ -103,12 +102,10 @@ def _mapped(pipeline: Pipeline) -> Iterator[tuple[str, FieldType | None]]:
     used = set(pipeline.ignored)
     renamed: list[tuple[str, str]] = []
     for stage in items(pipeline.stages):
-        renamed += [(str(field), str(name)) for field, name in pairs(entry(stage, "rename"))]
-        used |= {str(name) for kind in ("constant", "expression") for name, _ in pairs(entry(stage, kind))}
-        used |= {str(entry(stage, kind, key)) for kind in SINGLE for key in ("field", "variable")}
-        used |= {str(name) for key in ("fields", "variables") for name in items(entry(stage, "table", key))}
-        used.add(str(entry(stage, "remember", "variable")))
-        used |= {str(name) for name, _ in pairs(entry(stage, "python", "gives"))}
+        if moved := pairs(entry(stage, RenameDocument.kind)):
+            renamed += [(str(field), str(name)) for field, name in moved]
+        else:
+            used |= named_in([stage], pipeline.incoming, NameUse.CONSUMED, NameUse.COMBINED, NameUse.GIVEN)
     used |= {field for field, _ in renamed}
     for field, variable in renamed:
         if pipeline.fields is None:

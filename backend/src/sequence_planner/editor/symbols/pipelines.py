@@ -10,11 +10,8 @@ from sequence_planner.editor.symbols.collectors import (
     Names,
     Naming,
     RecordName,
-    Stages,
-    given_by,
-    kinds_of,
 )
-from sequence_planner.editor.symbols.fields import SINGLE, Pipeline, pipelines
+from sequence_planner.editor.symbols.fields import Pipeline, pipelines
 from sequence_planner.editor.symbols.index import (
     Binding,
     DeclaredVariable,
@@ -26,12 +23,15 @@ from sequence_planner.editor.symbols.index import (
     value_of,
     variable_of,
 )
+from sequence_planner.editor.symbols.stages import Stages, kinds_of
 from sequence_planner.editor.symbols.texts import (
     ModelContent,
     entry,
     file_of,
+    given_by,
     items,
     message_of,
+    named_in,
     pairs,
     text_at,
 )
@@ -39,6 +39,7 @@ from sequence_planner.language.records.field_paths import NoFieldError, find_fie
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import IntegerRange, Place
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.stages.base import NameUse
 from sequence_planner.model.yaml.editor import insert, remove, replace
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE
@@ -51,7 +52,7 @@ def bind(stages: Stages, pipeline: Pipeline, file: str) -> None:
     """Note the variables that are bound to fields of a message by their names, at the end of a pipeline."""
     names = stages.names
     declared = names.naming.declared
-    read = _read_by(pipeline.stages)
+    read = named_in(pipeline.stages, pipeline.incoming, NameUse.CONSUMED, NameUse.RENAMED)
     for section in ("measured",) if pipeline.incoming else ("measured", "output", "estimated"):
         for name, variable in declared.own(names.resource, section):
             part = variable_of(names.resource, name)
@@ -90,8 +91,7 @@ def _is_bound(name: str, variable: DeclaredVariable, stages: Stages, pipeline: P
     if name in pipeline.ignored or variable.parameters:
         return False
     if pipeline.incoming:
-        renamed = {str(field) for stage in items(pipeline.stages) for field, _ in pairs(entry(stage, "rename"))}
-        is_made = name in given_by(pipeline.stages) or name in renamed
+        is_made = name in given_by(pipeline.stages) or name in named_in(pipeline.stages, True, NameUse.RENAMED)
     else:
         is_made = name in stages.names.fields
     if is_made:
@@ -113,22 +113,10 @@ def _is_made_elsewhere(name: str, stages: Stages, pipeline: Pipeline) -> bool:
         stages_there = entry(topic, "pipeline")
         if stages_there is pipeline.stages or (entry(topic, "direction") == "in") is not pipeline.incoming:
             continue
-        if name in given_by(stages_there) or (not pipeline.incoming and name in _variables_of(stages_there)):
+        used = () if pipeline.incoming else named_in(stages_there, False, NameUse.CONSUMED, NameUse.RENAMED)
+        if name in given_by(stages_there) or name in used:
             return True
     return False
-
-
-def _variables_of(stages: object) -> set[str]:
-    """The variables that stages of an outgoing pipeline make something else of."""
-    found = {str(entry(stage, kind, "variable")) for stage in items(stages) for kind in ("undiscretise", "map")}
-    return found | {str(name) for stage in items(stages) for _, name in pairs(entry(stage, "rename"))}
-
-
-def _read_by(stages: object) -> set[str]:
-    """The fields of an incoming message that stages make something else of, and the variables of an outgoing one."""
-    found = {str(entry(stage, kind, "field")) for stage in items(stages) for kind in SINGLE}
-    found |= {str(field) for stage in items(stages) for field, _ in pairs(entry(stage, "rename"))}
-    return found | _variables_of(stages)
 
 
 # The types of messages that a station defines, and those that their fields name.

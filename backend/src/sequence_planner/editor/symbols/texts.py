@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.stages.base import Marked, NameMark, NameUse
+from sequence_planner.model.stages.registry import KINDS
 from sequence_planner.model.yaml.reader import EntryPath, read_text
 
 STATION = "station.yaml"
@@ -117,3 +119,29 @@ def texts(content: object, path: EntryPath) -> Iterator[tuple[EntryPath, SourceT
     elif isinstance(content, list):
         for index, value in enumerate(content):
             yield from texts(value, (*path, index))
+
+
+# The stages of a pipeline, and what their declarations say of each name and value in them.
+
+
+def marked_in(stages: object) -> Iterator[tuple[int, str, list[Marked]]]:
+    """Stages as written, each with its index, its kind, and what is marked in it. What is no stage is left out."""
+    for index, stage in enumerate(items(stages)):
+        for kind, content in pairs(stage):
+            if (declaration := KINDS.get(kind)) is not None:
+                yield index, str(kind), declaration.marked(content)
+
+
+def named_in(stages: object, is_incoming: bool, *uses: NameUse) -> set[str]:
+    """The names of which stages make one of these uses."""
+    return {
+        str(text)
+        for _, _, marked in marked_in(stages)
+        for text, _, mark in marked
+        if isinstance(mark, NameMark) and mark.use(is_incoming) in uses
+    }
+
+
+def given_by(stages: object) -> frozenset[str]:
+    """All names that stages give to what they make, in an incoming pipeline."""
+    return frozenset(name.partition("[")[0] for name in named_in(stages, True, NameUse.GIVEN))
