@@ -7,7 +7,6 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
-from typing import cast
 
 from pydantic import BaseModel
 
@@ -19,6 +18,7 @@ from sequence_planner.controller.views.pipelines import FlowsView
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.server.settings import StreamLimits
 from sequence_planner.server.stream.messages import (
+    MAPS,
     ControllerState,
     Delta,
     FlowsSnapshot,
@@ -35,8 +35,6 @@ from sequence_planner.server.stream.messages import (
 #
 # The law that makes the stream right: whoever holds `old` and applies `difference(old, new)` holds `new`, to the
 # letter. Values are compared with their types, because Python calls `True` and `1` equal and a page does not.
-
-MAPS = tuple(StationRemoval.__annotations__)
 
 
 def difference(old: StationView, new: StationView) -> tuple[StationChange, StationRemoval]:
@@ -56,8 +54,7 @@ def difference(old: StationView, new: StationView) -> tuple[StationChange, Stati
             changed[name] = entries
         if gone := [key for key in before if key not in after]:
             removed[name] = gone
-    # Both were built from the fields of StationView, whose names and types StationChange repeats.
-    return cast(StationChange, changed), cast(StationRemoval, removed)
+    return changed, removed
 
 
 def changed_entries(old: Mapping[str, BaseModel], new: Mapping[str, BaseModel]) -> dict[str, BaseModel]:

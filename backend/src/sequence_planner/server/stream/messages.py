@@ -2,46 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias, get_origin, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, Field, RootModel
 from typing_extensions import TypedDict
 
-from sequence_planner.analysis.report import AnalysisDocument
-from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.controller.views.pipelines import FlowsView
 from sequence_planner.controller.views.station import (
-    AbilityView,
-    AlarmView,
-    ApprovalView,
-    DeploymentView,
-    ErrandView,
-    ForceView,
-    JobView,
-    LastCorrectionView,
-    LastErrandView,
-    OperationView,
-    OverrideView,
-    PackML,
-    PlanView,
-    QuestionView,
-    ResourceView,
-    ServiceView,
-    StandbyView,
-    StationIdentity,
-    StationStanding,
     StationView,
-    TaskView,
-    TopicView,
-    UndecidedOutputView,
-    VariableView,
-    WayBackView,
-    WhoCanView,
 )
 from sequence_planner.editor.schemas.draft import WorkshopView
-from sequence_planner.execution.vocabulary import Mode, Production
 
 # What is said on the WebSocket `/api/v1/stream`. The page's TypeScript types are generated from these models.
 #
@@ -50,63 +23,18 @@ from sequence_planner.execution.vocabulary import Mode, Production
 # delta after it carries the next one.
 
 
-class StationChange(TypedDict, total=False):
-    """Members of `StationView` that changed. Of a map, only the entries that are new or changed."""
+_FIELDS = {name: kind for name, kind in get_type_hints(StationView).items() if name in StationView.model_fields}
+MAPS = tuple(name for name, kind in _FIELDS.items() if get_origin(kind) is dict)
+"""The members of `StationView` of which single entries are told."""
 
-    station: StationIdentity
-    tick: int
-    time: float
-    revision: int
-    mode: Mode
-    packml: PackML
-    standing: StationStanding
-    silent: list[str]
-    failing: list[str]
-    stepping: bool
-    production: Production
-    unconfirmed: bool
-    undecided: dict[str, UndecidedOutputView]  # whole: it is no map of which entries are sent
-    control: ControlView | None
-    resources: dict[str, ResourceView]
-    variables: dict[str, VariableView]
-    abilities: dict[str, AbilityView]
-    operations: dict[str, OperationView]
-    by_order: bool
-    jobs: dict[str, JobView]
-    plan: PlanView
-    errand: ErrandView | None
-    last_errand: LastErrandView | None
-    forces: dict[str, ForceView]  # whole, too
-    out_of_service: list[ServiceView]
-    questions: list[QuestionView]
-    last_correction: LastCorrectionView | None
-    approvals: dict[str, ApprovalView]  # whole, too
-    who_can: WhoCanView | None
-    tasks: dict[str, TaskView]
-    topics: dict[str, TopicView]
-    overrides: dict[str, OverrideView]
-    alarms: dict[str, AlarmView]
-    way_back: WayBackView | None
-    analysis: AnalysisDocument | None
-    standby: StandbyView | None
-    deployment: DeploymentView | None
-
-
-class StationRemoval(TypedDict, total=False):
-    """Keys that are no longer in the maps of `StationView`."""
-
-    resources: list[str]
-    variables: list[str]
-    abilities: list[str]
-    operations: list[str]
-    jobs: list[str]
-    tasks: list[str]
-    topics: list[str]
-    overrides: list[str]
-    forces: list[str]
-    undecided: list[str]
-    approvals: list[str]
-    alarms: list[str]
+if TYPE_CHECKING:  # whose members are found out below
+    StationChange: TypeAlias = Mapping[str, object]
+    StationRemoval: TypeAlias = Mapping[str, list[str]]
+else:
+    StationChange = TypedDict("StationChange", _FIELDS, total=False)
+    StationChange.__doc__ = "Members of `StationView` that changed. Of a map, only the entries that are new or changed."
+    StationRemoval = TypedDict("StationRemoval", dict.fromkeys(MAPS, list[str]), total=False)
+    StationRemoval.__doc__ = "Keys that are no longer in the maps of `StationView`."
 
 
 class ControllerState(StrEnum):
