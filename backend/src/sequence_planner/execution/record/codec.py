@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 import types
 from collections.abc import Callable, Mapping
 from enum import Enum
@@ -14,7 +13,31 @@ from pydantic import JsonValue
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import Immutable, replace
-from sequence_planner.execution.events import Event, Ticked
+from sequence_planner.execution.events import (
+    Answered,
+    Asked,
+    ByOrderChanged,
+    CalledOff,
+    Confirmed,
+    Corrected,
+    ErrandStopped,
+    ErrandTaken,
+    Event,
+    Explained,
+    Forced,
+    ForceReleased,
+    JobCommanded,
+    JobForgotten,
+    JobsSequenced,
+    JobTaken,
+    ModeChanged,
+    ProductionStarted,
+    ServiceChanged,
+    SteppingChanged,
+    StepTaken,
+    Ticked,
+    Unanswered,
+)
 from sequence_planner.language.parser import parse_formula
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.resolver import NameScope, resolve_formula
@@ -230,19 +253,45 @@ def _guarded(form: type[Enum], document: object) -> Enum:
 
 # What happens to an execution as records of the journal, and back.
 #
-# The `kind` of a record is the name of the happening's class, as in `mode-changed`; its content is a JSON document of
-# the happening's fields. A tick is written as what is different from the tick before: `TickBook` knows that one.
+# The `kind` of a record says of which class the event is, by a word that stays; its content is a JSON document of the
+# event's fields. A tick is written as what is different from the tick before: `TickBook` knows that one.
 # Predicates are written as the model's language prints them, and are resolved again in the names of the station.
 
 Document = dict[str, Any]  # of JSON
 
 
+KINDS: Final[Mapping[str, type]] = {
+    "ticked": Ticked,
+    "asked": Asked,
+    "answered": Answered,
+    "unanswered": Unanswered,
+    "explained": Explained,
+    "production-started": ProductionStarted,
+    "mode-changed": ModeChanged,
+    "called-off": CalledOff,
+    "stepping-changed": SteppingChanged,
+    "step-taken": StepTaken,
+    "service-changed": ServiceChanged,
+    "corrected": Corrected,
+    "confirmed": Confirmed,
+    "forced": Forced,
+    "force-released": ForceReleased,
+    "errand-taken": ErrandTaken,
+    "errand-stopped": ErrandStopped,
+    "by-order-changed": ByOrderChanged,
+    "job-taken": JobTaken,
+    "jobs-sequenced": JobsSequenced,
+    "job-commanded": JobCommanded,
+    "job-forgotten": JobForgotten,
+}
+_KIND_OF: Final = {happening: kind for kind, happening in KINDS.items()}
+
+
 def kind_of(happening: type) -> str:
-    """The kind of the records of a class of happenings: `ModeChanged` is `mode-changed`."""
-    return re.sub(r"(?<!^)(?=[A-Z])", "-", happening.__name__).lower()
+    """The kind of the records of a class of events."""
+    return _KIND_OF[happening]
 
 
-KINDS: Final[Mapping[str, type]] = {kind_of(each): each for each in get_args(Event)}
 TICKED: Final = kind_of(Ticked)
 BEGUN: Final = "begun"
 SNAPSHOT: Final = "snapshot"
