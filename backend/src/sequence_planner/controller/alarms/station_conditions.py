@@ -197,14 +197,14 @@ class StationAlarms:
         for task, (name, problem) in self.problems.items():
             ability = self._execution.automaton.abilities[name]
             what = None if problem.what is None else message(f"problem.{problem.what}")
-            said: Argument = message("problem.both", what=what, why=problem.why) if what and problem.why else ""
+            said: Argument = message("problem-both", what=what, why=problem.why) if what and problem.why else ""
             said = said or what or problem.why
             yield PROBLEM.cause(
                 task,
                 {
                     "by": problem.by,
                     "ability": message("quoted", title=ability.title),
-                    "what": message("problem.said", said=said) if said else "",
+                    "what": message("problem-said", said=said) if said else "",
                     "waiting": self._consequences.waiting(self._consequences.held_up({ability.resource})),
                 },
                 resources=[ability.resource],
