@@ -6,36 +6,27 @@ from dataclasses import replace
 
 import pytest
 
+from controller.alarming.causes import cause
 from controller.bench_of_jobs import Bench
 from controller.carrying_out import carry_out
 from controller.rig import Rig, never
 from core.actors import EVA
+from sequence_planner.controller.alarms.alarm import Alarm
+from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.commands.jobs import SetByOrder, TakeJob
 from sequence_planner.controller.commands.tasks import ReportProblem
 from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.controller.views.jobs import Around, job_views
-from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
+from sequence_planner.controller.views.station import AlarmView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.simulation.devices import EmulatedDevices
 
 
-def alarm(text: str, priority: Priority, ended: float | None = None) -> AlarmView:
-    return AlarmView(
-        priority=priority,
-        state=AlarmState.UNACKNOWLEDGED,
-        text=text,
-        consequence="",
-        action="",
-        since=1.0,
-        ended=ended,
-        by=None,
-        until=None,
-        why=None,
-        count=1,
-        parts=[],
-    )
+def alarm(text: str, priority: Priority, ended: float | None = None, kind: str = "a") -> AlarmView:
+    life = Alarm(cause(kind, priority=priority, text=text), 1.0)
+    return life.view().model_copy(update={"ended": ended})
 
 
 def waits(on: Bench, around: Around | None = None, job: str = "a") -> list[str]:
@@ -105,7 +96,7 @@ def test_alarms_are_said_where_nothing_moves(on: Bench) -> None:
         "command": alarm("Commands are not sent", Priority.HIGH),
         "old": alarm("Is over", Priority.HIGH, ended=2.0),
         "forced:y": alarm("Y is forced", Priority.LOW),
-        "no-plan": alarm("No plan", Priority.MEDIUM),
+        "no-plan": alarm("No plan", Priority.MEDIUM, kind="no-plan"),
     }
     around = Around(on.now.monotonic, alarms=alarms)
     said = ["an alarm to be dealt with: Commands are not sent", "an alarm to be dealt with: X is silent"]

@@ -10,7 +10,8 @@ from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.controller.recovery.safe_state import CHOOSE, SafeStateDifference, SafeStateMonitor
+from sequence_planner.controller.alarms.message import message
+from sequence_planner.controller.recovery.safe_state import SafeStateDifference, SafeStateMonitor
 from sequence_planner.controller.views.builder import way_back
 from sequence_planner.controller.views.station import AlarmState, DifferenceView, SpecificationView, WayBackView
 from sequence_planner.execution.executor import Executor
@@ -21,6 +22,8 @@ from sequence_planner.synthesis.supervisor import synthesise
 
 PLACES = EnumerationType(("back", "between", "out"))
 UNSAFE = "unsafe-state"
+
+CHOOSE = str(message("way.choose"))
 
 
 @cache
@@ -76,7 +79,7 @@ class Seen:
     @property
     def text(self) -> str:
         assert self.outside.situation is not None
-        return self.outside.describe(self.outside.situation)
+        return str(self.outside.describe(self.outside.situation))
 
 
 def test_in_a_safe_state_there_is_nothing_to_say_or_to_ask() -> None:
@@ -91,7 +94,7 @@ def test_what_is_violated_and_the_nearest_safe_state_are_named_at_once() -> None
     assert seen.outside.situation.violated == ("caught",)
     assert seen.outside.situation.differences == (SafeStateDifference("gate_open", now=True, safe=False),)
     assert "It violates “caught” (caught). Nearest safe state: not gate_open (now true)." in seen.text
-    assert seen.outside.way() == "A way back is being looked for."
+    assert str(seen.outside.way()) == "A way back is being looked for."
 
 
 def test_what_the_devices_could_violate_is_named_once_it_is_known() -> None:
@@ -105,7 +108,7 @@ def test_what_the_devices_could_violate_is_named_once_it_is_known() -> None:
 def test_a_way_back_may_start_restart_abilities() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True)
     assert seen.ask()
-    assert seen.outside.way() == CHOOSE
+    assert str(seen.outside.way()) == CHOOSE
     found = way_back(seen.execution.automaton, seen.outside, {})
     assert found is not None
     assert [step.ability for step in found.steps] == ["lift"]
@@ -123,13 +126,13 @@ def test_a_way_that_violates_something_says_so() -> None:
 def test_where_nothing_needs_to_be_started_it_is_said_what_is_awaited() -> None:
     seen = Seen(gate_open=True, closed=True)
     assert seen.ask()
-    assert seen.outside.way() == "Nothing needs to be started: it comes back by itself when not closed."
+    assert str(seen.outside.way()) == "Nothing needs to be started: it comes back by itself when not closed."
 
 
 def test_where_no_way_is_found_it_is_said_how_far_was_searched() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True, slide=None)
     assert seen.ask()
-    assert seen.outside.way() == (
+    assert str(seen.outside.way()) == (
         f"No way back by starts alone was found within 40 ticks, with slide unknown. {CHOOSE}"
     )
 
@@ -175,7 +178,7 @@ def test_a_question_that_failed_is_asked_again_only_where_that_may_help() -> Non
     assert seen.outside.request(deadline=20) == request
     seen.outside.unanswered(request, "it does not replay", again=False)
     assert seen.outside.request(deadline=20) is None
-    assert seen.outside.way() == "No way back could be computed: it does not replay"
+    assert str(seen.outside.way()) == "No way back could be computed: it does not replay"
 
 
 def test_a_device_moved_by_hand_raises_an_alarm_that_says_what_is_wrong_and_which_way_leads_back() -> None:

@@ -66,7 +66,7 @@ def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     tick(execution, "between", 1.0)
     assert not [cause for cause in alarms.causes(None, 5.0) if cause.key.startswith("still:")]
     (told,) = [cause for cause in alarms.causes(None, 6.1) if cause.key.startswith("still:")]
-    assert "does not do what it should: it still says at == between" in told.text
+    assert "is stalled: it still reports at == between" in str(told.text)
 
 
 def test_what_is_not_heard_or_was_told_nothing_yet_is_not_waited_for() -> None:

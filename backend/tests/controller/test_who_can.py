@@ -119,7 +119,7 @@ def test_what_it_says_comes_true_and_the_alarm_says_the_same() -> None:
     assert rig.live(300, until=look)
     assert len([name for name in rig.completed if name.startswith(TIGHTEN)]) == len(PAIRS) - 2
     assert said.isdisjoint(rig.completed)
-    text = Consequences(rig.execution, who_can).without({"robot"})
+    text = str(Consequences(rig.execution, who_can).without({"robot"}))
     assert "Nobody can do “Take the tool for the oil filter” without it." in text
 
 

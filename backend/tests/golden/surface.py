@@ -25,6 +25,7 @@ from sequence_planner.automaton.automaton import State
 from sequence_planner.cli.lazy import LazyCommand
 from sequence_planner.cli.main import app
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
+from sequence_planner.controller.alarms.kinds import KINDS as ALARMS
 from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
 from sequence_planner.execution.record.codec import _MISSING, BEGUN, KINDS, SNAPSHOT, _fields
 from sequence_planner.execution.record.recorder import EXECUTION, ORDER, PLAN
@@ -53,7 +54,7 @@ def journal_kinds() -> str:
 
 def alarm_keys() -> str:
     """The keys of all alarms that a controller raises; `*` is what is different for each of a kind."""
-    return _lines({key for tree in _trees("Cause(") for key in _keys(tree)})
+    return _lines({":".join((name, *"*" * kind.subjects)) for name, kind in ALARMS.items()})
 
 
 def log_events() -> str:
@@ -163,26 +164,9 @@ def _trees(needle: str) -> Iterator[ast.Module]:
     return (ast.parse(text) for text in _sources().values() if needle in text)
 
 
-def _keys(tree: ast.Module) -> Iterator[str]:
-    """The keys of the causes of alarms in a module: what `Cause` is given first, and what is handed on as that."""
-    functions = {each.name: each for each in ast.walk(tree) if isinstance(each, ast.FunctionDef)}
-    constants = _constants()
-    for function in functions.values():
-        for call in _calls(function, "Cause"):
-            key = call.args[0]
-            if isinstance(key, ast.Name) and key.id in {each.arg for each in function.args.args}:
-                yield from _given(tree, function)
-            elif isinstance(key, ast.Call) and isinstance(key.func, ast.Name):
-                returned = functions[key.func.id].body[-1]
-                assert isinstance(returned, ast.Return) and returned.value is not None, ast.unparse(key)
-                yield _text(returned.value, constants)
-            else:
-                yield _text(key, constants)
-
-
 def _given(tree: ast.Module, function: ast.FunctionDef) -> Iterator[str]:
     """What a function of a module is given first where it is called there."""
-    return (_text(call.args[0], _constants()) for call in _calls(tree, function.name))
+    return (_text(call.args[0], {}) for call in _calls(tree, function.name))
 
 
 def _calls(tree: ast.AST, ends: str) -> Iterator[ast.Call]:
@@ -190,25 +174,6 @@ def _calls(tree: ast.AST, ends: str) -> Iterator[ast.Call]:
     for each in ast.walk(tree):
         if isinstance(each, ast.Call) and each.args and ast.unparse(each.func).endswith(ends):
             yield each
-
-
-@cache
-def _constants() -> Mapping[str, str]:
-    """Texts that have names in the modules of alarms."""
-    found: dict[str, str] = {}
-    for tree in _trees("Cause("):
-        modules = [tree, *(ast.parse(_sources()[path]) for path in _imported(tree))]
-        for each in (statement for module in modules for statement in module.body):
-            match each:
-                case ast.Assign(targets=[ast.Name(id=name)], value=ast.Constant(value=str(text))):
-                    found[name] = text
-    return found
-
-
-def _imported(tree: ast.Module) -> Iterator[Path]:
-    names = (each.module for each in tree.body if isinstance(each, ast.ImportFrom) and each.module)
-    files = (SOURCE.parent / f"{name.replace('.', '/')}.py" for name in names)
-    return (file for file in files if file in _sources())
 
 
 def _text(node: ast.expr, constants: Mapping[str, str]) -> str:

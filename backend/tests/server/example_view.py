@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from sequence_planner.controller.alarms.kinds import AlarmGroup, Priority
+from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.commands.approvals import CorrectionAct
 from sequence_planner.controller.views.station import (
     AbilityView,
+    AlarmMessages,
     AlarmState,
     AlarmView,
     ApprovalState,
@@ -20,7 +23,6 @@ from sequence_planner.controller.views.station import (
     PackML,
     PlanStepView,
     PlanView,
-    Priority,
     ResourceView,
     StationIdentity,
     StationStanding,
@@ -226,6 +228,12 @@ def example_view(**changes: object) -> StationView:
         control=None,
         alarms={
             "slow": AlarmView(
+                kind="slow",
+                subject="",
+                group=AlarmGroup.DEVICE,
+                messages=AlarmMessages(as_it_was("The robot is slow"), None, None, ()),
+                resources=["robot"],
+                topics=[],
                 priority=Priority.LOW,
                 state=AlarmState.UNACKNOWLEDGED,
                 text="The robot is slow",

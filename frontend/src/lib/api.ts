@@ -2977,6 +2977,23 @@ export interface components {
             reason?: string | null;
         };
         /**
+         * AlarmGroup
+         * @description What a kind of alarm is about.
+         * @enum {string}
+         */
+        AlarmGroup: "device" | "communication" | "plan" | "recovery" | "people" | "system" | "model";
+        /**
+         * AlarmMessages
+         * @description The texts of an alarm as messages of the catalogue, for a page in another language.
+         */
+        AlarmMessages: {
+            action: components["schemas"]["Message"] | null;
+            consequence: components["schemas"]["Message"] | null;
+            /** Parts */
+            parts: components["schemas"]["Message"][];
+            text: components["schemas"]["Message"];
+        };
+        /**
          * AlarmState
          * @description Where an alarm stands in its life (ISA-18.2, figure 4.2).
          * @enum {string}
@@ -2986,9 +3003,10 @@ export interface components {
          * AlarmView
          * @description Something that wants a person's attention. `ended` is when its cause has gone, null while it lasts.
          *
-         *     One that was acknowledged goes with its cause. `by` is who acknowledged or shelved it or took it out of service,
-         *     `until` when it is shelved no more, `why` the reason that was given. `count` is how often it came since it was
-         *     last acknowledged; `part_of` lists what else the same cause has brought about.
+         *     It is of a `kind` and about its `subject`; `resources` and `topics` are where to look. One that was acknowledged
+         *     goes with its cause. `by` is who acknowledged or shelved it or took it out of service, `until` when it is shelved no
+         *     more, `why` the reason that was given. `count` is how often it came since it was last acknowledged; `parts` lists
+         *     what else the same cause has brought about. The texts are in English, `messages` are the same for other languages.
          */
         AlarmView: {
             /** Action */
@@ -3001,14 +3019,24 @@ export interface components {
             count: number;
             /** Ended */
             ended: number | null;
+            group: components["schemas"]["AlarmGroup"];
+            /** Kind */
+            kind: string;
+            messages: components["schemas"]["AlarmMessages"];
             /** Parts */
             parts: string[];
             priority: components["schemas"]["Priority"];
+            /** Resources */
+            resources: string[];
             /** Since */
             since: number;
             state: components["schemas"]["AlarmState"];
+            /** Subject */
+            subject: string;
             /** Text */
             text: string;
+            /** Topics */
+            topics: string[];
             /** Until */
             until: number | null;
             /** Why */
@@ -3125,6 +3153,7 @@ export interface components {
             /** Why */
             why: string;
         };
+        Argument: components["schemas"]["Item"] | components["schemas"]["Item"][];
         /**
          * AttachmentAnswer
          * @description What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
@@ -4832,6 +4861,7 @@ export interface components {
             /** Wanted */
             wanted: (boolean | number | string)[];
         };
+        Item: string | number | components["schemas"]["Message"] | components["schemas"]["Wording"];
         /**
          * JobEvent
          * @description An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch, `time_at` in ISO 8601.
@@ -5090,6 +5120,18 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * Message
+         * @description The text `id` of the catalogue, with `arguments` in its places. As a string it is in English.
+         */
+        Message: {
+            /** Arguments */
+            arguments?: {
+                [key: string]: components["schemas"]["Argument"];
+            };
+            /** Id */
+            id: string;
         };
         /**
          * MismatchView
@@ -8420,6 +8462,16 @@ export interface components {
             summary: string;
             /** Title */
             title: string;
+        };
+        /**
+         * Wording
+         * @description A text in the words of who has written the model, by language.
+         */
+        Wording: {
+            /** Words */
+            words: {
+                [key: string]: string;
+            };
         };
         /**
          * WorkMasterView

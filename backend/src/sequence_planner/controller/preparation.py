@@ -15,6 +15,9 @@ from sequence_planner.analysis.report import AnalysisDocument, document_of, erro
 from sequence_planner.analysis.worker import analysing
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.alarms.alarm import Alarm
+from sequence_planner.controller.alarms.kinds import MODEL_UNUSABLE, NO_SUPERVISOR
+from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.controller import Controller
@@ -22,13 +25,10 @@ from sequence_planner.controller.deployment_folder import DeploymentFolder, Depl
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.controller.views.station import (
-    AlarmState,
-    AlarmView,
     DeploymentState,
     DeploymentView,
     PackML,
     PlanView,
-    Priority,
     StandbyView,
     StationIdentity,
     StationStanding,
@@ -367,28 +367,20 @@ def preparing_view(
     """
     alarms = {}
     if trouble is not None:
-        text = "The specifications cannot be met, so nothing is started"
-        action = "See why under Check, change the draft of the model, and deploy it."
-        if too_large:
-            text = f"It is not known what is safe, so nothing is started: {trouble}"
-            action = "Let fewer variables bear on the specifications and on `rest` in the draft, and deploy it."
         if unusable:
-            text = f"The model cannot be used, so nothing is started: {trouble}"
-            action = "Change the draft of the model, or take an older revision back into it, and deploy it."
-        alarms["model-unusable" if unusable else "no-supervisor"] = AlarmView(
-            priority=Priority.HIGH,
-            state=AlarmState.UNACKNOWLEDGED,
-            text=text,
-            consequence="The station does not run.",
-            action=action,
-            since=began,
-            ended=None,
-            by=None,
-            until=None,
-            why=None,
-            count=1,
-            parts=[],
-        )
+            cause = MODEL_UNUSABLE.cause("", {"trouble": trouble})
+        elif too_large:
+            cause = NO_SUPERVISOR.cause(
+                "",
+                {
+                    "what": message("no-supervisor.too-large", trouble=trouble),
+                    "action": message("no-supervisor.smaller"),
+                },
+            )
+        else:
+            what, action = message("no-supervisor.unmet"), message("no-supervisor.see")
+            cause = NO_SUPERVISOR.cause("", {"what": what, "action": action})
+        alarms[cause.key] = Alarm(cause, began).view()
     plan = PlanView(
         status=PlanStatus.IDLE,
         reason=_why_no_plan(trouble, unusable=unusable),

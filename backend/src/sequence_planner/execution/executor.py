@@ -55,7 +55,7 @@ from sequence_planner.execution.state import (
     OutOfService,
     writing,
 )
-from sequence_planner.execution.timeouts import after_another_try, cancelled, overdue, to_call_off
+from sequence_planner.execution.timeouts import Late, after_another_try, cancelled, overdue, to_call_off
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.language.evaluator import holds
 from sequence_planner.language.types import Value
@@ -396,7 +396,7 @@ class ExecutorBase:
             self._break_off(ability, now)
             self._end_errand(f"{title} {what}", now)
 
-    def _trial_overdue(self, now: Timestamp) -> str | None:
+    def _trial_overdue(self, now: Timestamp) -> Late | None:
         """Say what has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
         tried = None if self.errand is None else self.errand.ability
         late = (

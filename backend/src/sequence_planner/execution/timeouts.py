@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Ability, Automaton, State
 from sequence_planner.automaton.tick import Writes, conflicts_of, writes
@@ -38,21 +39,33 @@ def cancelled(automaton: Automaton, state: State, names: Iterable[str]) -> tuple
 # Abilities that take longer than they may: whether a run is overdue, and what is then done about it.
 
 
-def overdue(step: PlannedStart, ability: Ability, monotonic: float) -> str | None:
-    """Say what has not come in time of a run under way, as in `has not begun within 2 s`; None while it is in time."""
+@dataclass(frozen=True)
+class Late:
+    """That a run has not `begun`, or has not finished, within so many seconds."""
+
+    begun: bool
+    within: float
+
+    def __str__(self) -> str:
+        """Say it, as in `has not begun within 2 s`."""
+        return f"has not {'finished' if self.begun else 'begun'} within {self.within:g} s"
+
+
+def overdue(step: PlannedStart, ability: Ability, monotonic: float) -> Late | None:
+    """Say what has not come in time of a run under way; None while it is in time."""
     if step.started is None or step.ended is not None:
         return None
     seconds = monotonic - step.started.monotonic
     react, finish = ability.timeouts.react, ability.timeouts.finish
     if finish is not None and seconds > finish:
-        return f"has not finished within {finish:g} s"
+        return Late(begun=True, within=finish)
     if react is not None and seconds > react and not step.reacted:
-        return f"has not begun within {react:g} s"
+        return Late(begun=False, within=react)
     return None
 
 
 def in_the_past(late: str) -> str:
-    """The same of a run that is over, as in `did not begin within 2 s`."""
+    """What was said of a run once it is over, as in `did not begin within 2 s`."""
     return late.replace("has not begun", "did not begin").replace("has not finished", "did not finish")
 
 
@@ -62,7 +75,7 @@ def to_call_off(automaton: Automaton, order: PlanCursor, now: Timestamp) -> dict
     for step in order.running:
         ability = automaton.abilities[step.ability]
         if ability.timeouts.replan and (what := overdue(step, ability, now.monotonic)) is not None:
-            late[step.ability] = what
+            late[step.ability] = str(what)
     return late
 
 

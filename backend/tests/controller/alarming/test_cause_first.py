@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from controller.alarming.scene import Told, alarms_of
 from controller.faulty import FaultyRig
+from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.views.builder import failing
-from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority, QuestionView
+from sequence_planner.controller.views.station import AlarmState, AlarmView, QuestionView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind
@@ -52,7 +53,7 @@ def test_a_robot_that_is_stuck_is_one_alarm_of_the_robot() -> None:
     lasting = {key: alarm for key, alarm in rig.shown.items() if alarm.ended is None}
     assert lasting.keys() == {ROBOT_IS_STILL}
     alarm = lasting[ROBOT_IS_STILL]
-    assert alarm.text == "Robot UR10 does not do what it should: it still says robot.moving and robot.pose == unknown"
+    assert alarm.text == "Robot UR10 is stalled: it still reports robot.moving and robot.pose == unknown"
     assert "“Tighten bolt pair 3”" in alarm.consequence
     assert "Robot UR10: Move to bolt pair 3 has not finished within 30 s" in alarm.parts
     assert alarm.priority is Priority.HIGH, "it led outside the safe states"
@@ -98,7 +99,7 @@ def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
     rig.faulty.clear(Clear())
     rig.run(3)
     (alarm,) = rig.shown.values()
-    assert alarm.text.startswith("Robot UR10 did not do what it should")
+    assert alarm.text.startswith("Robot UR10 was stalled")
     assert alarm.text.endswith("This is over, but not all that followed")
     assert any("outside its safe states" in part for part in alarm.parts)
 
@@ -109,7 +110,7 @@ def test_once_it_is_over_it_reads_so() -> None:
     rig.faulty.clear(Clear())
     rig.run(30)
     (alarm,) = (alarm for alarm in rig.shown.values() if alarm.state is AlarmState.RETURNED)
-    assert alarm.text.startswith("Robot UR10 did not do what it should")
+    assert alarm.text.startswith("Robot UR10 was stalled")
     assert any(part == "Robot UR10: Move to bolt pair 3 did not finish within 30 s" for part in alarm.parts)
     assert not any(" has not " in part for part in alarm.parts)
 

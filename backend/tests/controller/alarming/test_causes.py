@@ -7,12 +7,13 @@ import dataclasses
 from controller.alarming.scene import acknowledge, alarms
 from controller.carrying_out import carry_out
 from controller.rig import Rig, never
+from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.tasks import ProblemKind
 from sequence_planner.controller.features.tasks import TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import AlarmState, Priority, QuestionView
+from sequence_planner.controller.views.station import AlarmState, QuestionView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
@@ -135,7 +136,7 @@ def test_what_did_not_come_back_is_an_alarm_until_production_is_started() -> Non
     left_out = ("speed was 3, and ranges over 0..2 now", "operation polish was completed, and is none")
     shown = alarms(rig, RestoredState(left_out=left_out))
     told = shown.current(None, Timestamp(1000, 10))["not-restored"]
-    assert told.text.endswith("is known now: speed was 3, and ranges over 0..2 now, and 1 more")
+    assert told.text.endswith("could not be fully restored: speed was 3, and ranges over 0..2 now, and 1 more")
     assert tuple(told.parts) == left_out
     rig.start_production()
     assert there(shown, Timestamp(1001, 11)) == set()

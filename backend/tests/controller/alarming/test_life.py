@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import pytest
 from hypothesis import settings
@@ -18,26 +18,21 @@ from hypothesis.stateful import (
     rule,
 )
 
-from sequence_planner.controller.alarms.alarm import Alarm, Cause
+from controller.alarming.causes import cause as plain_cause
+from sequence_planner.controller.alarms.alarm import Alarm
+from sequence_planner.controller.alarms.kinds import Cause, Priority
 from sequence_planner.controller.alarms.manager import OFTEN, QUIET, AlarmRegistry
+from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
+from sequence_planner.controller.views.station import AlarmState, AlarmView
 from sequence_planner.core.clock import Timestamp
 
 FAR = 1000.0  # seconds after which nothing counts as coming and going
 
 
 def cause(key: str, priority: Priority = Priority.MEDIUM) -> Cause:
-    return Cause(
-        key,
-        priority,
-        f"{key} is wrong",
-        "nothing",
-        "look",
-        parts=("x is",),
-        past=f"{key} was wrong",
-        past_parts=("x was",),
-    )
+    plain = plain_cause(key, priority=priority)
+    return replace(plain, parts=(as_it_was("x is"),), past_parts=(as_it_was("x was"),))
 
 
 @dataclass

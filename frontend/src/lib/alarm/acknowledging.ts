@@ -1,5 +1,6 @@
 /** To acknowledge several alarms, each as it was shown. */
 import type { Refusal } from '#lib/rest/refusal.ts';
+import { wordsOf } from './wording.ts';
 import { isNew, type Alarms, type Keyed } from './priority.ts';
 
 /** One that was not acknowledged, and why. */
@@ -21,7 +22,7 @@ export async function acknowledgeEach(
 	for (const [key, alarm] of shown) {
 		const refusal = await send(key, alarm);
 		if (refusal === null || refusal.kind === 'alarm-gone') continue;
-		left.push({ key, text: alarm.text, refusal });
+		left.push({ key, text: wordsOf(alarm).text, refusal });
 		if (refusal.status !== 409) break;
 	}
 	return left;

@@ -1,4 +1,6 @@
 /** A record of the run in words: what happened, on what, by whom and why. */
+import { wordsOf } from '#lib/alarm/wording.ts';
+import type { Alarm } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';
 import type { Names } from './names.ts';
@@ -96,7 +98,7 @@ export function told(record: Tellable, names: Names): Told {
 		case 'job-forgotten':
 			return { ...nothing, what: words.jobForgotten, on: textOf(what['job']) };
 		case 'alarm':
-			return { ...nothing, what: words.alarm(textOf(what['event'])), on: textOf(what['text']), outcome: textOf(what['priority']) };
+			return { ...nothing, what: words.alarm(textOf(what['event'])), on: wordsOf(what as unknown as Alarm).text, outcome: textOf(what['priority']) };
 		case 'alarms-aside':
 			return { ...nothing, what: words.aside };
 		case 'beliefs':

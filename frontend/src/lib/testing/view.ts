@@ -42,12 +42,20 @@ export function task(created: number): Task {
 }
 
 export function alarm(rest: Partial<Alarm> = {}): Alarm {
+	const text = rest.text ?? 'The robot is silent';
+	const told = { id: 'as-it-was', arguments: { text } };
 	return {
+		kind: 'silent',
+		subject: 'robot',
+		group: 'device',
 		priority: 'medium',
 		state: 'unacknowledged',
-		text: 'The robot is silent',
+		text,
 		consequence: 'Nothing is started with it',
 		action: 'Look at it',
+		messages: { text: told, consequence: null, action: null, parts: [] },
+		resources: ['robot'],
+		topics: [],
 		since: 990,
 		ended: null,
 		by: null,

@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from pydantic import BaseModel, ConfigDict, JsonValue, TypeAdapter, ValidationError
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.controller.alarms.kinds import (
+    KINDS,
+    LEFT_OUT,
+    NO_PLAN,
+    UNDECIDED,
+    UNSAFE_STATE,
+    AlarmGroup,
+    AlarmKind,
+    Cause,
+    Priority,
+)
+from sequence_planner.controller.alarms.message import Argument, Item, Message, as_it_was, message, quoted
 from sequence_planner.controller.recovery.who_can import WhoCan
-from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
+from sequence_planner.controller.views.station import AlarmMessages, AlarmState, AlarmView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
@@ -18,32 +30,9 @@ from sequence_planner.language.syntax import variables
 from sequence_planner.planning.heuristic.relaxation import reachable
 from sequence_planner.planning.problem import Circumstances
 
-# Why there is an alarm, and how urgent that is.
+# How urgent an alarm is.
 
 _URGENCY = (Priority.LOW, Priority.MEDIUM, Priority.HIGH)
-
-
-@dataclass(frozen=True)
-class Cause:
-    """`key` stays the same as long as it is the same alarm; `parts` are what it consists of, where that is several.
-
-    It is no alarm of its own but a part of another as long as one of those is there that it `follows` from. `past` is
-    its `text` once it is over, `past_parts` are its parts then, `of` the resources whose devices fail with it, and
-    `about` the variables of which it is doubted what is believed. A device that `waits` has nothing to do itself.
-    """
-
-    key: str
-    priority: Priority
-    text: str  # what is wrong
-    consequence: str  # what comes of it
-    action: str  # what to do
-    follows: tuple[str, ...] = ()
-    parts: tuple[str, ...] = ()
-    past: str = field(kw_only=True)
-    past_parts: tuple[str, ...] = field(default=(), kw_only=True)
-    of: frozenset[str] = field(default=frozenset(), kw_only=True)
-    about: frozenset[str] = field(default=frozenset(), kw_only=True)
-    waits: bool = field(default=False, kw_only=True)
 
 
 def urgency(priority: Priority) -> int:
@@ -58,8 +47,6 @@ def most_urgent(*priorities: Priority) -> Priority:
 
 # What comes of an alarm's cause: which of the active operations wait because of it, as far as that can be told.
 
-_NAMED = 3  # so many are named, and the others counted
-
 
 class Consequences:
     """Sentences about `execution` as it is now."""
@@ -70,25 +57,26 @@ class Consequences:
         self._about: tuple[object, ...] = ()
         self._held_up: dict[frozenset[str], frozenset[str]] = {}  # by idle resources, of one plan
 
-    def standstill(self) -> str:
+    def standstill(self) -> Message:
         """Of what keeps everything from starting."""
-        return f"Nothing is started. {self.waiting(self._execution.active)}"
+        return message("wait.standstill", waiting=self.waiting(self._execution.active))
 
-    def waiting(self, operations: Collection[str], until: str = "") -> str:
+    def waiting(self, operations: Collection[str], until_it_does: bool = False) -> Message:
         """That those of the operations that are active wait, or why none does just now."""
         execution = self._execution
+        until: Argument = message("wait.until-it-does") if until_it_does else ""
         if execution.production is not Production.STARTED:
-            return "Production is not started, so nothing waits for it."
+            return message("wait.not-started")
         if execution.errand is not None:
-            return f"“{execution.errand.title}” waits{until}."
+            return message("wait.errand", title=message("quoted", title=execution.errand.title), until=until)
         if execution.mode is not Mode.AUTOMATIC:
-            return f"Nothing waits for it as long as the mode is {execution.mode}."
+            return message("wait.mode", mode=message(f"mode.{execution.mode}"))
         names = sorted(execution.active.intersection(operations))
         if not names:
-            return "No active operation waits for it."
-        return f"{listed(self._quoted(names))} {'waits' if len(names) == 1 else 'wait'}{until}."
+            return message("wait.none")
+        return message("wait.operations", operations=self._quoted(names), until=until)
 
-    def without(self, resources: Collection[str]) -> str:
+    def without(self, resources: Collection[str]) -> Message:
         """Of resources that cannot be used: what the plan without them leaves out."""
         execution = self._execution
         begun = execution.production is Production.STARTED
@@ -96,28 +84,28 @@ class Consequences:
             return self.waiting(())
         if not execution.active:
             return self._open(resources) or self.waiting(())
-        plan, them = execution.plan, "it" if len(resources) == 1 else "them"
+        plan, count = execution.plan, len(resources)
         if plan.status is PlanStatus.NONE:
-            return f"There is no plan without {them}. {self._nobody(resources, them)}"
+            return message("wait.no-plan", count=count, rest=self._nobody(resources))
         if plan.status is not PlanStatus.FOLLOWED or plan.answer is None:
-            return f"A plan without {them} is being looked for. {self._nobody(resources, them)}"
+            return message("wait.looking", count=count, rest=self._nobody(resources))
         waiting = self.held_up(resources) | execution.active.intersection(plan.answer.left_out)
-        return self.waiting(waiting) if waiting else f"The work goes on without {them}."
+        return self.waiting(waiting) if waiting else message("wait.goes-on", count=count)
 
-    def _nobody(self, resources: Collection[str], them: str) -> str:
+    def _nobody(self, resources: Collection[str]) -> Message:
         """That nobody can do some operations without these, as far as that is known without a plan; others wait."""
         active, lacking = self._execution.active, {} if self._who_can is None else self._who_can.lacking
         beyond = [name for name in sorted(active) if lacking.get(name, frozenset()).intersection(resources)]
         if not beyond:
             return self.waiting(active)
-        nobody = f"Nobody can do {listed(self._quoted(beyond))} without {them}."
+        nobody = message("wait.nobody", operations=self._quoted(beyond), count=len(resources))
         rest = active.difference(beyond)
-        return f"{nobody} {self.waiting(rest)}" if rest else nobody
+        return message("sentences", first=nobody, second=self.waiting(rest)) if rest else nobody
 
-    def _quoted(self, names: Iterable[str]) -> list[str]:
-        return [f"“{self._execution.automaton.operations[name].title}”" for name in names]
+    def _quoted(self, names: Iterable[str]) -> list[Item]:
+        return quoted([self._execution.automaton.operations[name].title for name in names])
 
-    def _open(self, resources: Collection[str]) -> str:
+    def _open(self, resources: Collection[str]) -> Message | None:
         """That it is not known whether operations can begin, since values of these resources are not."""
         execution, automaton = self._execution, self._execution.automaton
         unknown = {
@@ -127,13 +115,13 @@ class Consequences:
         }
         idle = execution.conduct.idle_operations(automaton)
         titles = [
-            f"“{operation.title}”"
+            operation.title
             for name, operation in automaton.operations.items()
             if name not in idle
             and evaluate(operation.precondition, execution.state) is None
             and unknown.intersection(_read(automaton, variables(operation.precondition)))
         ]
-        return f"Whether {listed(titles)} can begin is not known." if titles else ""
+        return message("wait.open", operations=quoted(titles)) if titles else None
 
     def held_up(self, resources: Collection[str]) -> frozenset[str]:
         """The active operations that cannot be completed while these resources do nothing.
@@ -166,14 +154,13 @@ class Consequences:
         relaxed = reachable(execution.automaton, execution.state, circumstances)
         return frozenset(name for name in names if not relaxed.may(execution.automaton.operations[name].goal))
 
-    def of_values(self, names: Collection[str]) -> str:
+    def of_values(self, names: Collection[str]) -> Message:
         """Of values that are wrong or not known: which operations are decided by them."""
         execution = self._execution
         deciding = read_by(execution.automaton, names)
         if not execution.active & deciding:
-            return "No active operation is decided by it, but plans may be wrong."
-        titles = [execution.automaton.operations[name].title for name in sorted(execution.active & deciding)]
-        return f"Plans may be wrong, and so may be whether {listed([f'“{title}”' for title in titles])} is reached."
+            return message("wait.undecided")
+        return message("wait.decided", operations=self._quoted(sorted(execution.active & deciding)))
 
 
 def read_by(automaton: Automaton, names: Collection[str]) -> frozenset[str]:
@@ -199,22 +186,12 @@ def _read(automaton: Automaton, names: Iterable[str]) -> set[str]:
     return found
 
 
-def listed(titles: Iterable[str]) -> str:
-    """As in `a, b and c`, or with how many others there are."""
-    every = list(titles)
-    if len(every) > _NAMED + 1:
-        every = [*every[:_NAMED], f"{len(every) - _NAMED} more"]
-    return " and ".join([", ".join(every[:-1]), every[-1]] if len(every) > 1 else every)
-
-
 # What follows from what: a device that fails keeps others from finishing, and leads to states nobody wants.
 #
 # Which alarm is a part of which is said by the alarms' own causes where they know; this adds what only the model tells:
 # what an effect waits for, what a specification speaks of, and which operations need a resource.
 
-UNSAFE = "unsafe-state"
-LATE = "overdue:"
-_PLANS = ("no-plan", "left-out", "undecided")
+_PLANS = (NO_PLAN, LEFT_OUT, UNDECIDED)
 
 
 class ConsequenceGraph:
@@ -229,18 +206,18 @@ class ConsequenceGraph:
         """The causes, each with all that it follows from."""
         every = list(causes)
         failures = [cause for cause in every if cause.of]
-        unsafe = any(cause.key == UNSAFE for cause in every)
+        unsafe = any(cause.kind is UNSAFE_STATE for cause in every)
         return [self._traced(cause, failures, unsafe) for cause in every] if failures or unsafe else every
 
     def _traced(self, cause: Cause, failures: Iterable[Cause], unsafe: bool) -> Cause:
         others = [failure for failure in failures if failure.key != cause.key]
-        if cause.key == UNSAFE:
+        if cause.kind is UNSAFE_STATE:
             about = self._resources(self._touched())
             found = [each.key for each in others if each.of & about]
         elif cause.about:
-            found = [UNSAFE] if unsafe and not cause.about.isdisjoint(self._touched()) else []
-        elif cause.key in _PLANS:
-            found = [each.key for each in others] + ([UNSAFE] if unsafe else [])
+            found = [UNSAFE_STATE.key()] if unsafe and not cause.about.isdisjoint(self._touched()) else []
+        elif cause.kind in _PLANS:
+            found = [each.key for each in others] + ([UNSAFE_STATE.key()] if unsafe else [])
         elif cause.waits:
             awaited = frozenset[str]().union(*(self._awaits.get(name, frozenset()) for name in cause.of))
             found = [each.key for each in others if each.of & awaited]
@@ -349,19 +326,27 @@ class Alarm:
     def view(self) -> AlarmView:
         """As it is shown. Of one that is over nothing comes any more, and nothing is to be done about it."""
         aside, cause, over = self.aside, self.cause, self.ended is not None
+        text, parts = (cause.past, cause.past_parts) if over else (cause.text, cause.parts)
+        consequence, action = (None, None) if over else (cause.consequence, cause.action)
         return AlarmView(
+            kind=cause.kind.name,
+            subject=cause.subject,
+            group=cause.kind.group,
             priority=cause.priority,
             state=self.state,
-            text=cause.past if over else cause.text,
-            consequence="" if over else cause.consequence,
-            action="" if over else cause.action,
+            text=str(text),
+            consequence="" if consequence is None else str(consequence),
+            action="" if action is None else str(action),
+            parts=[str(part) for part in parts],
+            messages=AlarmMessages(text, consequence, action, parts),
+            resources=list(cause.resources),
+            topics=list(cause.topics),
             since=self.since,
             ended=self.ended,
             by=self.by if aside is None else aside.by,
             until=None if aside is None or aside.until is None else aside.until.epoch,
             why=None if aside is None else aside.why,
             count=self.count,
-            parts=list(cause.past_parts if over else cause.parts),
         )
 
 
@@ -380,10 +365,12 @@ class PutAside(BaseModel):
 
     model_config = ConfigDict(frozen=True)
     priority: Priority
-    text: str
-    past: str = ""  # of a program that did not write it
-    consequence: str
-    action: str
+    text: str | Message  # a string where it is of a program that wrote no other
+    past: str | Message = ""
+    consequence: str | Message
+    action: str | Message
+    kind: str = ""
+    subject: str = ""
     by: str
     why: str
     until: float | None
@@ -398,6 +385,8 @@ class PutAside(BaseModel):
             past=cause.past,
             consequence=cause.consequence,
             action=cause.action,
+            kind=cause.kind.name,
+            subject=cause.subject,
             by=aside.by,
             why=aside.why,
             until=until,
@@ -405,7 +394,11 @@ class PutAside(BaseModel):
 
     def cause(self, key: str) -> Cause:
         """Return the cause, as what was said of it."""
-        return Cause(key, self.priority, self.text, self.consequence, self.action, past=self.past or self.text)
+        kind, subject = (self.kind, self.subject) if self.kind else key.partition(":")[::2]
+        said = (self.text, self.consequence, self.action, self.past or self.text)
+        text, consequence, action, past = (as_it_was(each) for each in said)
+        known = KINDS.get(kind, AlarmKind(kind, self.priority, AlarmGroup.SYSTEM))
+        return Cause(key, known, subject, self.priority, text, consequence, action, past)
 
     def aside(self, now: Timestamp) -> Suppression:
         """That it is put aside."""

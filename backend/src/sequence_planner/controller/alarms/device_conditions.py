@@ -5,21 +5,29 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Iterator, Mapping
 
-from sequence_planner.controller.alarms.alarm import Cause, Consequences, listed
+from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.kinds import (
+    COMMAND,
+    MANY_SILENT,
+    MESSAGE,
+    NETWORK,
+    NEVER_HEARD,
+    RIVAL,
+    SILENT,
+    AlarmKind,
+    Cause,
+)
+from sequence_planner.controller.alarms.message import Argument, Message, as_it_was, message
 from sequence_planner.controller.io.inputs import InputError, InputErrors, Inputs, InputTopic
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.recovery.who_can import WhoCan
-from sequence_planner.controller.views.station import Priority
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 
 GRACE = 30.0  # seconds after the start for devices to be heard first
 STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
-MANY = "many-silent"
-UNHEARD = "never-heard"
 _MOST = 3  # so many devices, and half of all, fall silent at once only for one reason; or both of two
-_DEFAULTS = "The device gets the default instead. Correct the pipeline."
 
 
 class DeviceAlarms:
@@ -65,38 +73,31 @@ class DeviceAlarms:
         self.untold = early - silent.keys()
         lost = [each for each, feeds in silent.items() if any(feed.last is not None for feed in feeds.values())]
         unheard = [each for each in silent if each not in lost]
-        told: dict[str, str] = {}  # by resource, the alarm of many that it is a part of
-        if _are_many(lost, silent, used):
-            told |= dict.fromkeys(lost, MANY)
-            yield self._together(
-                MANY,
-                Priority.HIGH,
-                lost,
-                "No contact with",
-                "There was no contact with",
-                "Check what they share: power, network, and the ROS_DOMAIN_ID of their nodes.",
-            )
-        if _are_many(unheard, silent, used):
-            told |= dict.fromkeys(unheard, UNHEARD)
-            yield self._together(
-                UNHEARD,
-                Priority.MEDIUM,
-                unheard,
-                "Nothing has been heard since the controller began of",
-                "For some time after the controller began nothing was heard of",
-                "Start them, or check their power, network and ROS_DOMAIN_ID.",
-            )
+        told: set[str] = set()  # as parts of an alarm of many
+        for kind, resources in ((MANY_SILENT, lost), (NEVER_HEARD, unheard)):
+            if _are_many(resources, silent, used):
+                told.update(resources)
+                yield self._together(kind, {name: silent[name] for name in resources}, len(used))
         for resource, feeds in silent.items():
             # As a part of another alarm it is told by its text alone; what comes of it takes some time to find out.
             consequence = "" if resource in told else self._consequences.without({resource})
-            yield self._silence(resource, feeds, consequence, MANY if resource in lost else UNHEARD)
+            yield self._silence(resource, feeds, consequence, MANY_SILENT if resource in lost else NEVER_HEARD)
 
-    def _together(
-        self, key: str, priority: Priority, resources: Collection[str], text: str, past: str, action: str
-    ) -> Cause:
-        titles = listed(self._execution.automaton.resources[name] for name in resources)
-        consequence = self._consequences.without(resources)
-        return Cause(key, priority, f"{text} {titles}", consequence, action, past=f"{past} {titles}")
+    def _together(self, kind: AlarmKind, silent: Mapping[str, Mapping[str, InputTopic]], used: int) -> Cause:
+        titles = [self._execution.automaton.resources[name] for name in silent]
+        some: dict[str, Argument] = {"resources": titles, "count": len(silent), "of": used}
+        every = len(silent) == used
+        return kind.cause(
+            "",
+            {
+                "which": message("many-silent.all" if every else "many-silent.some", **some),
+                "which_past": message("many-silent.all-past" if every else "many-silent.some-past", **some),
+                "resources": titles,
+                "consequence": self._consequences.without(silent),
+            },
+            resources=silent,
+            topics=[topic for feeds in silent.values() for topic in feeds],
+        )
 
     def _is_early(self, feed: InputTopic, monotonic: float) -> bool:
         """Return whether a silence need not be one yet: as a station begins much is begun beside it.
@@ -109,52 +110,59 @@ class DeviceAlarms:
             return True
         return not feed.abandoned and monotonic - feed.last < (feed.pipeline.deadline or 0.0) + STUMBLES
 
-    def _silence(self, resource: str, feeds: Mapping[str, InputTopic], consequence: str, follows: str) -> Cause:
+    def _silence(
+        self, resource: str, feeds: Mapping[str, InputTopic], consequence: Argument, follows: AlarmKind
+    ) -> Cause:
         past = [_silence_of(name, feed, name in self._feeds.topics, over=True) for name, feed in feeds.items()]
         texts = [_silence_of(name, feed, name in self._feeds.topics) for name, feed in feeds.items()]
-        explained = [_mismatch_key(resource)] if feeds.keys() <= self._network.troubles.keys() else []
-        title = self._execution.automaton.resources[resource]
-        alike, alike_past = (f"Nothing {was} heard on {len(feeds)} topics of {title}" for was in ("is", "was"))
-        return Cause(
-            silent_key(resource),
-            Priority.MEDIUM,
-            f"{texts[0]}: the values of {title} are unknown" if len(texts) == 1 else f"{alike}: its values are unknown",
-            consequence,
-            f"Check that the node of {title} runs and is reachable.",
-            follows=(follows, *explained),
-            parts=() if len(texts) == 1 else tuple(texts),
-            past=past[0] if len(past) == 1 else alike_past,
+        explained = [NETWORK.key(resource)] if feeds.keys() <= self._network.troubles.keys() else []
+        title, one = self._execution.automaton.resources[resource], len(texts) == 1
+        return SILENT.cause(
+            resource,
+            {
+                "silence": texts[0] if one else message("silent.many", count=len(feeds), resource=title),
+                "silence_past": past[0] if one else message("silent.many-past", count=len(feeds), resource=title),
+                "resource": title,
+                "consequence": consequence,
+            },
+            follows=(follows.key(), *explained),
+            parts=texts,
+            past_parts=past,
+            resources=[resource],
+            topics=feeds,
             of=frozenset({resource}),
-            past_parts=() if len(past) == 1 else tuple(past),
         )
 
     def _mismatches(self) -> Iterator[Cause]:
         """Of each resource one: what was built from other definitions is so on every topic."""
-        troubles: dict[str, list[str]] = {}
+        troubles: dict[str, dict[str, str]] = {}
         for topic, trouble in self._network.troubles.items():
-            troubles.setdefault(self._network.resource_of(topic), []).append(trouble)
-        for resource, texts in troubles.items():
-            yield Cause(
-                _mismatch_key(resource),
-                Priority.MEDIUM,
-                texts[0] if len(texts) == 1 else f"{len(texts)} links to {resource} are not understood: {texts[0]}",
-                "Nothing passes between that node and the station there.",
-                "Check which nodes run, how they were built, and with which RMW_IMPLEMENTATION they were started.",
-                parts=() if len(texts) == 1 else tuple(texts),
-                past=f"Something on the topics of {resource} was not understood",
+            troubles.setdefault(self._network.resource_of(topic), {})[topic] = trouble
+        for resource, by_topic in troubles.items():
+            texts = list(by_topic.values())
+            many = message("network.many", count=len(texts), resource=resource, first=texts[0])
+            yield NETWORK.cause(
+                resource,
+                {"what": texts[0] if len(texts) == 1 else many, "resource": resource},
+                parts=map(as_it_was, texts),
+                resources=[resource],
+                topics=by_topic,
             )
 
     def _rivals(self) -> Iterator[Cause]:
-        texts = list(self._network.rivals.values())
-        if texts:
-            yield Cause(
-                "rival",
-                Priority.HIGH,
-                texts[0] if len(texts) == 1 else f"Somebody else commands on {len(texts)} topics: {texts[0]}",
-                self._consequences.standstill(),
-                "Stop the other one, or this station.",
-                parts=() if len(texts) == 1 else tuple(texts),
-                past=f"Somebody else commanded on {', '.join(self._network.rivals)}",
+        rivals = self._network.rivals
+        if rivals:
+            texts = list(rivals.values())
+            yield RIVAL.cause(
+                "",
+                {
+                    "what": texts[0] if len(texts) == 1 else message("rival.many", count=len(texts), first=texts[0]),
+                    "topics": ", ".join(rivals),
+                    "consequence": self._consequences.standstill(),
+                },
+                parts=map(as_it_was, texts),
+                resources=dict.fromkeys(self._resource_of(topic) for topic in rivals),
+                topics=rivals,
             )
 
     def _owed(self) -> Iterator[Cause]:
@@ -162,21 +170,27 @@ class DeviceAlarms:
         owed = self._commander.owed
         if not owed:
             return
-        resources = {topic: self._commander.topics[topic].pipeline.topic.resource for topic in owed}
-        texts = [f"{resources[topic]} has not been sent its command on {topic}: {why}" for topic, why in owed.items()]
-        past = [f"{resources[topic]} was not sent its command on {topic} in time" for topic in owed]
-        of_one = len(set(resources.values())) == 1
-        yield Cause(
-            "command",
-            Priority.HIGH,
-            texts[0] if len(texts) == 1 else f"{len(texts)} commands have not been sent: {texts[0]}",
-            self._consequences.standstill(),
-            "It is tried again. Check the network.",
-            follows=(MANY, UNHEARD, *map(silent_key, sorted(set(resources.values())) if of_one else ())),
-            parts=() if len(texts) == 1 else tuple(texts),
-            past=past[0] if len(past) == 1 else f"{len(past)} commands were not sent in time",
-            past_parts=() if len(past) == 1 else tuple(past),
+        resources = {topic: self._resource_of(topic) for topic in owed}
+        texts = [message("command.one", resource=resources[topic], topic=topic, why=why) for topic, why in owed.items()]
+        past = [message("command.one-past", resource=resources[topic], topic=topic) for topic in owed]
+        one, of_one = len(texts) == 1, len(set(resources.values())) == 1
+        silences = map(SILENT.key, sorted(set(resources.values())) if of_one else ())
+        yield COMMAND.cause(
+            "",
+            {
+                "what": texts[0] if one else message("command.many", count=len(texts), first=texts[0]),
+                "what_past": past[0] if one else message("command.many-past", count=len(past)),
+                "consequence": self._consequences.standstill(),
+            },
+            follows=(MANY_SILENT.key(), NEVER_HEARD.key(), *silences),
+            parts=texts,
+            past_parts=past,
+            resources=dict.fromkeys(resources.values()),
+            topics=owed,
         )
+
+    def _resource_of(self, topic: str) -> str:
+        return self._commander.topics[topic].pipeline.topic.resource
 
     def _made_no_sense(self, place: str, cause: str, report: InputError, moment: Timestamp) -> Cause:
         """Of something that was said; of a silent topic or service it is said with its silence."""
@@ -184,22 +198,38 @@ class DeviceAlarms:
         silent = feed is not None and not feed.fresh(moment.monotonic)
         values = [name for name, sources in self._feeds.sources.items() if place in sources]
         unknown = sorted(name for name in values if self._execution.state[name] is None)
-        return Cause(
-            _report_key(place, cause),
-            Priority.MEDIUM,
-            _counted(place, report, moment),
-            f"Unknown because of it: {listed(unknown)}." if unknown else "It was passed over.",
-            "Check the node that sends it.",
-            follows=(silent_key(self._feeds.resource_of(place)),) if silent else (),
-            past=f"Made no sense: {_counted(place, report, moment)}",
+        what, resource = _counted(place, report, moment), self._feeds.resource_of(place)
+        return MESSAGE.cause(
+            f"{place}:{cause}",
+            {
+                "what": what,
+                "what_past": message("message.received-past", what=what),
+                "consequence": message("message.unknown", variables=unknown)
+                if unknown
+                else message("message.passed-over"),
+                "action": message("message.check"),
+            },
+            follows=(SILENT.key(resource),) if silent else (),
+            resources=[resource],
+            topics=[place],
         )
 
     def _defaults(self, reports: InputErrors, moment: Timestamp) -> Iterator[Cause]:
         for place, cause, report in reports.current(moment.monotonic):
-            text = _counted(place, report, moment)
-            comes_of_it = "The device does not do what the station believes to have commanded."
-            past = f"The device got the default: {text}"
-            yield Cause(_report_key(place, cause), Priority.MEDIUM, text, comes_of_it, _DEFAULTS, past=past)
+            what = _counted(place, report, moment)
+            yield MESSAGE.cause(
+                f"{place}:{cause}",
+                {
+                    "what": what,
+                    "what_past": message("message.default-past", what=what),
+                    "consequence": message("message.default"),
+                    "action": message("message.correct"),
+                },
+                resources=[self._commander.topics[place].pipeline.topic.resource]
+                if place in self._commander.topics
+                else [],
+                topics=[place],
+            )
 
 
 def _are_many(resources: Collection[str], silent: Collection[str], used: Collection[str]) -> bool:
@@ -207,31 +237,18 @@ def _are_many(resources: Collection[str], silent: Collection[str], used: Collect
     return len(resources) > 1 and (len(silent) == len(used) or len(resources) >= max(_MOST, len(used) / 2))
 
 
-def silent_key(resource: str) -> str:
-    """The key of the alarm that a resource is silent."""
-    return f"silent:{resource}"
-
-
-def _mismatch_key(resource: str) -> str:
-    return f"network:{resource}"
-
-
-def _report_key(place: str, cause: str) -> str:
-    return f"message:{place}:{cause}"
-
-
-def _silence_of(name: str, feed: InputTopic, is_topic: bool, over: bool = False) -> str:
+def _silence_of(name: str, feed: InputTopic, is_topic: bool, over: bool = False) -> Message:
     what = "message" if is_topic else "answer"
     if over:
-        return f"For some time no {what} came on {name}"
-    silence = f"No {what} yet" if feed.last is None else f"No {what} any more"
-    why = f" ({feed.why})" if feed.abandoned and feed.why else ""
-    return f"{silence} on {name}{why}"
+        return message(f"silent.no-{what}-past", topic=name)
+    why = message("silent.why", why=feed.why) if feed.abandoned and feed.why else ""
+    return message(f"silent.no-{what}-yet" if feed.last is None else f"silent.no-{what}", topic=name, why=why)
 
 
-def _counted(place: str, report: InputError, moment: Timestamp) -> str:
-    text = f"{place}: {report.text}"
-    if report.count == 1:
-        return text
-    first, last = (time.strftime("%H:%M:%S", time.localtime(moment.epoch_of(t))) for t in (report.first, report.last))
-    return f"{text} ({report.count} times, first at {first}, last at {last})"
+def _counted(place: str, report: InputError, moment: Timestamp) -> Message:
+    times: Argument = ""
+    if report.count > 1:
+        span = (time.strftime("%H:%M:%S", time.localtime(moment.epoch_of(t))) for t in (report.first, report.last))
+        first, last = span
+        times = message("message.times", count=report.count, first=first, last=last)
+    return message("message.said", topic=place, report=report.text, times=times)

@@ -11,7 +11,6 @@ from pydantic import JsonValue
 from sequence_planner.controller.alarms.alarm import (
     KIND,
     Alarm,
-    Cause,
     ConsequenceGraph,
     Suppression,
     aside_to_keep,
@@ -19,6 +18,8 @@ from sequence_planner.controller.alarms.alarm import (
     urgency,
 )
 from sequence_planner.controller.alarms.device_conditions import DeviceAlarms
+from sequence_planner.controller.alarms.kinds import Cause, Priority
+from sequence_planner.controller.alarms.message import Message, message
 from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
 from sequence_planner.controller.alarms.station_conditions import StationAlarms
 from sequence_planner.controller.commands.alarms import (
@@ -37,7 +38,7 @@ from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.who_can import Run, WhoCan, at_once
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import AlarmView, Priority
+from sequence_planner.controller.views.station import AlarmView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
@@ -148,9 +149,13 @@ def _with(cause: Cause, parts: Iterable[Cause]) -> Cause:
     return replace(
         cause,
         priority=most_urgent(cause.priority, *(part.priority for part in every)),
-        parts=tuple(dict.fromkeys((*cause.parts, *texts))),
-        past_parts=tuple(dict.fromkeys((*cause.past_parts, *past))),
+        parts=_once((*cause.parts, *texts)),
+        past_parts=_once((*cause.past_parts, *past)),
     )
+
+
+def _once(messages: Iterable[Message]) -> tuple[Message, ...]:
+    return tuple({str(each): each for each in messages}.values())
 
 
 def _over(cause: Cause, left: Iterable[Cause]) -> Cause:
@@ -159,7 +164,7 @@ def _over(cause: Cause, left: Iterable[Cause]) -> Cause:
     return replace(
         cause,
         priority=worst.priority,
-        text=f"{cause.past}. This is over, but not all that followed",
+        text=message("over", past=cause.past),
         consequence=worst.consequence,
         action=worst.action,
         parts=(),

@@ -5,24 +5,39 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from sequence_planner.automaton.automaton import Ability
-from sequence_planner.controller.alarms.alarm import LATE, Cause, Consequences, listed
-from sequence_planner.controller.alarms.device_conditions import MANY, UNHEARD, silent_key
+from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.kinds import (
+    ERRAND_WAITS,
+    GIVEN_UP,
+    LEFT_OUT,
+    LOCAL,
+    MANY_SILENT,
+    NEVER_HEARD,
+    NO_PLAN,
+    OVERDUE,
+    PLANNER,
+    SILENT,
+    STILL,
+    TRIED,
+    UNDECIDED,
+    Cause,
+)
+from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.explain import idle_since, waits_for
 from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.who_can import WhoCan
-from sequence_planner.controller.views.station import Priority
 from sequence_planner.controller.views.wording import end_text, value_text
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.plan_tracker import violation
+from sequence_planner.execution.plan_tracker import why_none
 from sequence_planner.execution.state import OutOfService
 from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
-from sequence_planner.language.syntax import variables
-from sequence_planner.planning.problem import PlanAnswer
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import TRUE, variables
+from sequence_planner.planning.problem import PlanAnswer, Verdict
 
-_STILL = "still:"
 START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
 END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
 
@@ -50,14 +65,8 @@ class PlanAlarms:
         yield from self._called_off()
         yield from self._waiting_errand(monotonic)
         if planner_trouble is not None:
-            yield Cause(
-                "planner",
-                Priority.MEDIUM,
-                planner_trouble,
-                past=f"The planner did not work: {planner_trouble}",
-                consequence=f"No new plan is made. {self._consequences.waiting(self._execution.active)}",
-                action="Tell the maintainers of this station's model.",
-            )
+            waiting = self._consequences.waiting(self._execution.active)
+            yield PLANNER.cause("", {"trouble": planner_trouble, "waiting": waiting})
         elif self._execution.production is Production.STARTED:  # that there is no plan has no other cause
             yield from self._violated()
             if self._execution.conduct.silent.isdisjoint(untold):
@@ -73,18 +82,27 @@ class PlanAlarms:
                 continue
             resource = automaton.resources[ability.resource]
             others = self._failures(self._still.keeping(ability, monotonic))
-            receives = f"Check that {resource} receives its commands and is ready."
-            yield Cause(
-                f"{LATE}{ability.name}",
-                Priority.MEDIUM,
-                f"{resource}: {ability.title} {late}",
-                self._consequences.waiting(self._consequences.held_up({ability.resource}), " until it does"),
-                receives if "begun" in late else f"Look after {resource}.",
-                follows=(*self._silences(ability), f"{_STILL}{ability.resource}", *others),
-                past=f"{resource}: {ability.title} {in_the_past(late)}",
+            what = "late.finished" if late.begun else "late.begun"
+            yield OVERDUE.cause(
+                ability.name,
+                {
+                    "resource": resource,
+                    "ability": ability.title,
+                    "late": message(what, seconds=late.within),
+                    "late_past": message(f"{what}-past", seconds=late.within),
+                    "consequence": self._until_it_does(ability.resource),
+                    "action": message("late.check", resources=[resource])
+                    if late.begun
+                    else message("late.check-receives", resource=resource),
+                },
+                follows=(*self._silences(ability), STILL.key(ability.resource), *others),
+                resources=[ability.resource],
                 of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
             )
+
+    def _until_it_does(self, resource: str) -> Message:
+        return self._consequences.waiting(self._consequences.held_up({resource}), until_it_does=True)
 
     def _standing_still(self, monotonic: float) -> Iterator[Cause]:
         """Resources that do not do what they should, though nothing of them is overdue."""
@@ -97,41 +115,46 @@ class PlanAlarms:
         for name, unchanged in sorted(still.items()):
             if name not in self._told_still:
                 continue
-            resource = automaton.resources[name]
-            says = self._says(unchanged)
-            yield Cause(
-                f"{_STILL}{name}",
-                Priority.MEDIUM,
-                f"{resource} does not do what it should: it still says {says}",
-                self._consequences.waiting(self._consequences.held_up({name}), " until it does"),
-                f"Look after {resource}.",
-                past=f"{resource} did not do what it should: it still said {says}",
-                of=frozenset({name}),
-            )
+            yield self._still_cause(name, "still.stalled", unchanged, [name], of=frozenset({name}))
         for name, (unchanged, because) in sorted(self._still.explained(monotonic).items()):
-            resource, says = automaton.resources[name], self._says(unchanged)
-            yield Cause(
-                f"{_STILL}{name}",
-                Priority.MEDIUM,
-                f"{resource} says {says}, which does not go together with it",
-                self._consequences.waiting(self._consequences.held_up({name}), " until it does"),
-                f"Look after {listed(sorted(automaton.resources[each] for each in because))}.",
-                follows=self._failures(because),
-                past=f"{resource} said {says}, which did not go together with it",
-            )
+            yield self._still_cause(name, "still.explained", unchanged, because, follows=self._failures(because))
 
-    def _says(self, names: Collection[str]) -> str:
+    def _still_cause(
+        self,
+        name: str,
+        what: str,
+        unchanged: Collection[str],
+        because: Collection[str],
+        of: frozenset[str] = frozenset(),
+        follows: tuple[str, ...] = (),
+    ) -> Cause:
+        resources = self._execution.automaton.resources
+        values = self._says(unchanged)
+        return STILL.cause(
+            name,
+            {
+                "what": message(what, resource=resources[name], values=values),
+                "what_past": message(f"{what}-past", resource=resources[name], values=values),
+                "consequence": self._until_it_does(name),
+                "action": message("late.check", resources=sorted(resources[each] for each in because)),
+            },
+            follows=follows,
+            resources=[name],
+            of=of,
+        )
+
+    def _says(self, names: Collection[str]) -> Argument:
         """Return what is said of these variables."""
         automaton, state = self._execution.automaton, self._execution.state
         told = (each for each in sorted(names) if not is_along(automaton, each, names))
         known = {each: value for each in told if (value := state[each]) is not None}
-        return listed(value_text(automaton, each, value) for each, value in known.items()) or "nothing"
+        return [value_text(automaton, each, value) for each, value in known.items()] or message("still.nothing")
 
     def _failures(self, resources: Collection[str]) -> tuple[str, ...]:
         """The alarms by which it is told that devices of these resources do nothing."""
         abilities, running = self._execution.automaton.abilities, self._execution.plan.order.running
         late = [step.ability for step in running if abilities[step.ability].resource in resources]
-        return (*(f"{_STILL}{name}" for name in sorted(resources)), *(f"{LATE}{name}" for name in late))
+        return (*map(STILL.key, sorted(resources)), *map(OVERDUE.key, late))
 
     def _given_up(self) -> Iterator[Cause]:
         """Of each resource one: what it could not do, and is not asked for any more."""
@@ -141,34 +164,49 @@ class PlanAlarms:
                 given_up.setdefault(self._execution.automaton.abilities[name].resource, []).append(each)
         for resource, gone in given_up.items():
             abilities = self._execution.automaton.abilities
-            texts = [f"{abilities[each.name].title} {each.why}" for each in gone]
-            past = [f"{abilities[each.name].title} {in_the_past(each.why)}" for each in gone]
-            titles = listed(abilities[each.name].title for each in gone)
-            yield Cause(
-                f"given-up:{resource}",
-                Priority.MEDIUM,
-                f"{texts[0]}: it is given up" if len(texts) == 1 else f"{len(texts)} abilities are given up: {titles}",
-                self._consequences.without({resource}),
-                f"Look after {self._execution.automaton.resources[resource]}, then put {titles} back in service.",
+            titles = [abilities[each.name].title for each in gone]
+            texts = [
+                message("given-up.failure", ability=title, why=each.why)
+                for title, each in zip(titles, gone, strict=True)
+            ]
+            past = [
+                message("given-up.failure", ability=title, why=in_the_past(each.why))
+                for title, each in zip(titles, gone, strict=True)
+            ]
+            one = len(gone) == 1
+            yield GIVEN_UP.cause(
+                resource,
+                {
+                    "what": message("given-up.one", failure=texts[0])
+                    if one
+                    else message("given-up.many", count=len(gone), abilities=titles),
+                    "what_past": message("given-up.one-past", failure=past[0])
+                    if one
+                    else message("given-up.many-past", count=len(gone), abilities=titles),
+                    "consequence": self._consequences.without({resource}),
+                    "resource": self._execution.automaton.resources[resource],
+                    "abilities": titles,
+                },
                 follows=tuple(dict.fromkeys(key for each in gone for key in self._silences(abilities[each.name]))),
-                parts=() if len(texts) == 1 else tuple(texts),
-                past=f"{past[0]}: it was given up" if len(past) == 1 else f"{len(past)} were given up: {titles}",
-                past_parts=() if len(past) == 1 else tuple(past),
+                parts=texts,
+                past_parts=past,
+                resources=[resource],
                 of=frozenset({resource}),
             )
 
     def _called_off(self) -> Iterator[Cause]:
         for name, times in self._execution.conduct.tried.items():
             ability = self._execution.automaton.abilities[name]
-            text = f"{ability.title} was not in time and was called off{f', {times} times' if times > 1 else ''}"
-            yield Cause(
-                f"tried:{name}",
-                Priority.LOW,
-                text,
-                f"It is planned anew, and given up after {ability.timeouts.retries + 1} times.",
-                f"Look after {self._execution.automaton.resources[ability.resource]}.",
+            yield TRIED.cause(
+                name,
+                {
+                    "ability": ability.title,
+                    "times": message("tried.times", count=times) if times > 1 else "",
+                    "most": ability.timeouts.retries + 1,
+                    "resource": self._execution.automaton.resources[ability.resource],
+                },
                 follows=self._silences(ability),
-                past=text,
+                resources=[ability.resource],
             )
 
     def _waiting_errand(self, monotonic: float) -> Iterator[Cause]:
@@ -181,33 +219,28 @@ class PlanAlarms:
             return
         if ahead:
             title = execution.automaton.abilities[ahead[0].ability].title
-            waits = listed(waits_for(execution, ahead[0].ability, self._feeds.heard_on)) or "nothing that is known"
-            text = f"{title} has not started for {START_WITHIN:g} s: it waits for {waits}"
+            waits = waits_for(execution, ahead[0].ability, self._feeds.heard_on)
+            conditions: Argument = waits or message("errand-waits.nothing-known")
+            what = message("errand-waits.start", ability=title, seconds=START_WITHIN, conditions=conditions)
         else:
             condition = end_text(errand.goal, errand.into_safe)
-            inside = ["the station to be back in its safe states"] if errand.into_safe else []
-            waits = listed([*inside, *([condition] if condition else [])])
-            text = f"What was taken has not come to its end for {END_WITHIN:g} s: it waits for {waits}"
-        yield Cause(
-            "errand-waits",
-            Priority.MEDIUM,
-            text,
-            f"\u201c{errand.title}\u201d, which {errand.by} has taken, does not go on, and operations wait.",
-            "See to what it waits for, or stop it and look at the ways back again.",
-            past=f"“{errand.title}” did not go on for some time",
-        )
+            inside = [message("errand-waits.safe")] if errand.into_safe else []
+            what = message(
+                "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]
+            )
+        yield ERRAND_WAITS.cause("", {"what": what, "title": message("quoted", title=errand.title), "by": errand.by})
 
     def _violated(self) -> Iterator[Cause]:
         for name, since in self._execution.pursued.violated.items():
-            active = name in self._execution.active
-            text = f"The local specification {violation(self._execution.automaton, name)}"
-            yield Cause(
-                f"local:{name}:{since.epoch}",
-                Priority.MEDIUM,
-                text,
-                "It is not planned for any more." if active else "Its goal was reached all the same.",
-                "Bring its goal about by hand." if active else "Check what was made meanwhile.",
-                past=text,
+            active, operation = name in self._execution.active, self._execution.automaton.operations[name]
+            yield LOCAL.cause(
+                f"{name}:{since.epoch}",
+                {
+                    "formula": print_expression(operation.local or TRUE),
+                    "operation": operation.title,
+                    "consequence": message("local.not-planned") if active else message("local.reached"),
+                    "action": message("local.by-hand") if active else message("local.check"),
+                },
             )
 
     def _missing(self) -> Iterator[Cause]:
@@ -217,36 +250,40 @@ class PlanAlarms:
             return
         if plan.status is PlanStatus.NONE and (follows or not execution.blind):
             waiting = self._consequences.waiting(execution.active)
-            past = "There was no plan"
-            yield Cause("no-plan", Priority.MEDIUM, plan.reason, waiting, self._needed(), follows, past=past)
+            yield NO_PLAN.cause(
+                "", {"why": self._why_none(), "waiting": waiting, "action": self._needed()}, follows=follows
+            )
         elif plan.status is not PlanStatus.NONE and plan.answer is not None:
             yield from self._left_out(plan.answer, follows)
 
-    def _needed(self) -> str:
+    def _why_none(self) -> Message:
+        plan = self._execution.plan
+        if plan.answer is None or plan.reason not in (why_none(plan.answer, blind) for blind in (False, True)):
+            return message("no-plan.other", reason=plan.reason)
+        if plan.reason == why_none(plan.answer, blind=True):
+            return message("no-plan.unknown", reason=plan.reason)
+        if plan.answer.verdict is Verdict.NONE_AT_ALL:
+            return message("no-plan.none", reason=plan.reason)
+        return message("no-plan.found", reason=plan.reason)
+
+    def _needed(self) -> Message:
         """Say what to do where there is no plan: what is out of service may be all that is missing."""
         automaton, service = self._execution.automaton, self._execution.conduct.service
         resources = [automaton.resources[name] for of, name in service if of is ServiceKind.RESOURCE]
         abilities = [automaton.abilities[name].title for of, name in service if of is ServiceKind.ABILITY]
-        needs = "see what the active operations need."
-        out = listed([*sorted(resources), *sorted(abilities)])
-        return f"Put {out} back in service, or {needs}" if out else f"{needs[0].upper()}{needs[1:]}"
+        out = [*sorted(resources), *sorted(abilities)]
+        return message("no-plan.put-back", titles=out) if out else message("no-plan.look")
 
     def _left_out(self, answer: PlanAnswer, follows: tuple[str, ...]) -> Iterator[Cause]:
         """The active operations that the plan does not reach: because it cannot, and because nobody knows."""
         operations, active = self._execution.automaton.operations, self._execution.active
         undecided = [name for name in answer.undecided if name in active]
         excluded = [name for name in answer.left_out if name in active and name not in answer.undecided]
-        waits = self._consequences.waiting
-        if excluded:
-            titles = ", ".join(operations[name].title for name in excluded)
-            action = "It is proven that no plan reaches these goals together with the others, as things are."
-            text, past = f"Left out of the plan: {titles}", f"Was left out of the plan: {titles}"
-            yield Cause("left-out", Priority.LOW, text, waits(excluded), action, follows, past=past)
-        if undecided:
-            titles = ", ".join(operations[name].title for name in undecided)
-            action = "No plan that reaches these goals too was found in time, and none is ruled out; it is tried again."
-            text, past = f"Not in the plan yet: {titles}", f"Was not in the plan: {titles}"
-            yield Cause("undecided", Priority.LOW, text, waits(undecided), action, follows, past=past)
+        for kind, names in ((LEFT_OUT, excluded), (UNDECIDED, undecided)):
+            if names:
+                titles = ", ".join(operations[name].title for name in names)
+                waiting = self._consequences.waiting(names)
+                yield kind.cause("", {"operations": titles, "waiting": waiting}, follows=follows)
 
     def _silences(self, ability: Ability | None) -> tuple[str, ...]:
         """The silences from which it can follow that an ability is late, or without one that there is no plan."""
@@ -254,7 +291,7 @@ class PlanAlarms:
         if ability is not None:
             awaited = frozenset[str]().union(*(self._tellers.get(name, ()) for name in _deciding(ability)))
             silent = silent & (awaited | {ability.resource})
-        return (MANY, UNHEARD, *(silent_key(name) for name in sorted(silent))) if silent else ()
+        return (MANY_SILENT.key(), NEVER_HEARD.key(), *map(SILENT.key, sorted(silent))) if silent else ()
 
 
 def _deciding(ability: Ability) -> set[str]:

@@ -4,32 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from sequence_planner.controller.alarms.alarm import UNSAFE, Cause, Consequences, listed
-from sequence_planner.controller.commands.tasks import ProblemKind
+from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.kinds import (
+    BEGINS_AT_REST,
+    BY_HAND,
+    CONFLICT,
+    CONTRADICTION,
+    CONTROLLER,
+    DEPLOYMENT_UNDONE,
+    ERRAND,
+    FORCED,
+    KEPT_BESIDE,
+    NOT_EMULATED,
+    NOT_RESTORED,
+    PROBLEM,
+    RESTLESS,
+    UNDECIDED_OUTPUTS,
+    UNJOURNALLED,
+    UNRECORDED,
+    UNSAFE_STATE,
+    Cause,
+)
+from sequence_planner.controller.alarms.message import Argument, Message, as_it_was, message
 from sequence_planner.controller.features.tasks import TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import DeploymentView, Priority, QuestionView
+from sequence_planner.controller.views.station import DeploymentView, QuestionView
 from sequence_planner.controller.views.wording import value_text
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.printer import print_value
-
-_UNJOURNALLED = "unjournalled"
-_AT_REST = {
-    Mode.AUTOMATIC: "in automatic mode",
-    Mode.PAUSED: "paused",
-    Mode.HOLD: "on hold",
-    Mode.RESTART: "in restart mode",
-}
-_PROBLEMS = {
-    ProblemKind.MISSING: "a part is missing",
-    ProblemKind.DAMAGED: "something is damaged",
-    ProblemKind.TOOL: "the tool does not work",
-    ProblemKind.OTHER: "something else",
-}
 
 
 class StationAlarms:
@@ -80,75 +86,44 @@ class StationAlarms:
 
     def _controller(self) -> Iterator[Cause]:
         for what, how in self.failures.items():
-            yield Cause(
-                f"controller:{what}",
-                Priority.HIGH,
-                f"The controller fails at {what}: {how}",
-                "It goes on trying. What it fails at is not done.",
-                "Bring the station to rest, and give the controller's log to its maintainers.",
-                past=f"The controller failed at {what}: {how}",
-            )
+            yield CONTROLLER.cause(what, {"what": what, "how": how})
         if self.restless:
-            yield Cause(
-                "restless",
-                Priority.MEDIUM,
-                f"{', '.join(self.restless)} finish again and again although nothing new is measured",
-                "Their finish actions are taken many times over.",
-                "Correct the model: after a finish its guard must no longer hold, or its actions change nothing.",
-                past=f"{', '.join(self.restless)} finished again and again although nothing new was measured",
-            )
+            yield RESTLESS.cause("", {"abilities": ", ".join(self.restless)})
 
     def _records(self) -> Iterator[Cause]:
         if self.unjournalled is not None:
-            yield Cause(
-                _UNJOURNALLED,
-                Priority.HIGH,
-                f"What happens cannot be recorded: {self.unjournalled}",
-                self._consequences.standstill(),
-                "It is tried again. Make room for the station's database, or bring it back.",
-                past=f"What happened could not be recorded: {self.unjournalled}",
-            )
+            yield UNJOURNALLED.cause("", {"why": self.unjournalled, "waiting": self._consequences.standstill()})
         if self.unrecorded is not None:
-            yield Cause(
-                "unrecorded",
-                Priority.HIGH,
-                f"Commands cannot be recorded: {self.unrecorded}",
-                "They are refused, but for pausing and holding.",
-                "Make room for the station's database, or bring it back.",
-                follows=(_UNJOURNALLED,),
-                past=f"Commands could not be recorded: {self.unrecorded}",
-            )
-
+            yield UNRECORDED.cause("", {"why": self.unrecorded}, follows=(UNJOURNALLED.key(),))
         if self.kept is not None:
-            yield Cause(
-                "kept-beside",
-                Priority.MEDIUM,
-                f"The journal does not have it yet: {self.kept}",
-                "It is carried out, and kept on this machine. Nothing goes on by itself without it.",
-                "Make room for the station's database, or bring it back.",
-                past=f"The journal did not have it at once: {self.kept}",
-            )
+            yield KEPT_BESIDE.cause("", {"what": self.kept})
 
     def _state(self) -> Iterator[Cause]:
         situation = self._outside.situation
         # What is only possible with values that are unknown has an alarm of its own: the topic is silent.
         if situation is not None and situation.certain:
-            yield Cause(
-                UNSAFE,
-                Priority.HIGH,
-                self._outside.describe(situation),
-                self._consequences.standstill(),
-                self._outside.way(),
-                past=self._outside.past(situation),
+            yield UNSAFE_STATE.cause(
+                "",
+                {
+                    "what": self._outside.describe(situation),
+                    "what_past": self._outside.past(situation),
+                    "waiting": self._consequences.standstill(),
+                    "way": self._outside.way(),
+                },
             )
+        automaton = self._execution.automaton
         for one, other, variable in sorted(self._conflicts):
-            yield Cause(
-                f"conflict:{one}:{other}:{variable}",
-                Priority.HIGH,
-                f"{one} and {other} would finish with different values for {variable}",
-                f"Neither was applied. {self._consequences.of_values({variable})}",
-                "Correct the model.",
-                past=f"{one} and {other} would have finished with different values for {variable}",
+            yield CONFLICT.cause(
+                f"{one}:{other}:{variable}",
+                {
+                    "one": one,
+                    "other": other,
+                    "variable": variable,
+                    "consequence": self._consequences.of_values({variable}),
+                },
+                resources=dict.fromkeys(
+                    automaton.abilities[name].resource for name in (one, other) if name in automaton.abilities
+                ),
             )
 
     def _beginning(self) -> Iterator[Cause]:
@@ -156,78 +131,42 @@ class StationAlarms:
         if self._halted is not None and self._execution.mode is not self._begins:
             self._halted = None
         if self._halted is not None:
-            yield Cause(
-                "begins-at-rest",
-                Priority.MEDIUM,
-                f"The station begins {_AT_REST[self._begins]}: {self._halted}",
-                "Nothing starts until a person lets it go on.",
-                "Find out whether somebody has stopped the station, and why. Then let it go on.",
-                past=f"The station began {_AT_REST[self._begins]}: {self._halted}",
-            )
+            yield BEGINS_AT_REST.cause("", {"mode": message(f"at-rest.{self._begins}"), "why": self._halted})
 
     def _belief(self) -> Iterator[Cause]:
         if self.questions:
             first = self.questions[0]
-            texts = [f"{each.variable} is believed to be {print_value(each.believed)}" for each in self.questions]
-            past = [f"{each.variable} was believed to be {print_value(each.believed)}" for each in self.questions]
-            yield Cause(
-                "contradiction",
-                Priority.MEDIUM,
-                f"{texts[0]}, which does not go together with what is measured: {'; '.join(first.because)}",
-                self._consequences.of_values({each.variable for each in self.questions}),
-                f"Look at what {first.variable} stands for, and correct it or the device.",
-                parts=() if len(texts) == 1 else tuple(texts),
-                past=f"{past[0]}, which did not go together with what was measured",
-                past_parts=() if len(past) == 1 else tuple(past),
+            asked = [(each.variable, print_value(each.believed)) for each in self.questions]
+            texts = [message("contradiction.believed", variable=name, value=value) for name, value in asked]
+            past = [message("contradiction.believed-past", variable=name, value=value) for name, value in asked]
+            yield CONTRADICTION.cause(
+                "",
+                {
+                    "first": texts[0],
+                    "first_past": past[0],
+                    "because": "; ".join(first.because),
+                    "consequence": self._consequences.of_values({each.variable for each in self.questions}),
+                    "variable": first.variable,
+                },
+                parts=texts,
+                past_parts=past,
                 about=frozenset(each.variable for each in self.questions),
             )
-        if self._left_out and self._execution.production is not Production.STARTED:
-            left_out, *others = self._left_out
-            more = f", and {len(others)} more" if others else ""
-            yield Cause(
-                "not-restored",
-                Priority.MEDIUM,
-                f"Not all that was known before the controller was started is known now: {left_out}{more}",
-                "The station begins there as its model says, which may not be so.",
-                "See how the station stands, and correct what is believed before production is started.",
-                parts=self._left_out if others else (),
-                past=f"Not all that was known before the controller was started was known after it: {left_out}{more}",
-                past_parts=self._left_out if others else (),
-            )
+        started = self._execution.production is Production.STARTED
+        if self._left_out and not started:
+            first_lost, *others = self._left_out
+            parts = [*map(as_it_was, self._left_out)]
+            more = message("not-restored.more", count=len(others)) if others else ""
+            yield NOT_RESTORED.cause("", {"first": first_lost, "more": more}, parts=parts, past_parts=parts)
         if self.undecided:
-            names = sorted(self.undecided)
-            yield Cause(
-                "undecided-outputs",
-                Priority.MEDIUM,
-                f"Outputs came back from the journal, and devices would react to them: {', '.join(names)}",
-                "Production cannot be started.",
-                "Decide for each whether the device shall react, or stay as it is.",
-                past=f"Outputs had come back from the journal, and somebody had to decide on them: {', '.join(names)}",
-            )
+            yield UNDECIDED_OUTPUTS.cause("", {"outputs": ", ".join(sorted(self.undecided))})
 
     def _deployment(self) -> Iterator[Cause]:
         if self._undone is not None and self._execution.production is not Production.STARTED:
-            yield Cause(
-                "deployment-undone",
-                Priority.HIGH,
-                f"The revision “{self._undone.name}” could not be started, and the model before is back: "
-                f"{self._undone.why}",
-                "The station runs as before the deployment. Nothing is started by itself.",
-                "Change the draft, and deploy it again; or start production with the model that is back.",
-                past=f"The revision “{self._undone.name}” could not be started, and the model before came back",
-            )
+            yield DEPLOYMENT_UNDONE.cause("", {"revision": self._undone.name, "why": self._undone.why or ""})
         if self.unemulated:
-            first, *others = self.unemulated
-            yield Cause(
-                "not-emulated",
-                Priority.HIGH,
-                f"There are no emulated devices, since they cannot be run with this model: {first}",
-                "No device says or does anything.",
-                "Change the model in the draft, and deploy it.",
-                parts=tuple(self.unemulated) if others else (),
-                past="There were no emulated devices, since they could not be run with the model",
-                past_parts=tuple(self.unemulated) if others else (),
-            )
+            parts = [*map(as_it_was, self.unemulated)]
+            yield NOT_EMULATED.cause("", {"why": self.unemulated[0]}, parts=parts, past_parts=parts)
 
     def _errand(self) -> Iterator[Cause]:
         last = self._execution.conduct.last_errand
@@ -235,69 +174,61 @@ class StationAlarms:
         if last is None or last.done or last.by is not None or self._execution.errand is not None:
             return
         if self._execution.mode is not Mode.AUTOMATIC:
-            text = f"“{last.title}” was not carried out to its end: {last.why}"
-            yield Cause(
-                f"errand:{last.ended.epoch}",
-                Priority.MEDIUM,
-                text,
-                "Its goal was not reached, and no more of it is started.",
-                "See how the station stands now, and which ways there are.",
-                past=text,
-            )
+            yield ERRAND.cause(str(last.ended.epoch), {"title": message("quoted", title=last.title), "why": last.why})
 
     def _forces(self) -> Iterator[Cause]:
+        started = self._execution.production is Production.STARTED
         for name, force in self._execution.conduct.forces.items():
-            yield Cause(
-                f"forced:{name}",
-                Priority.LOW,
-                f"{name} is forced to {print_value(force.value)} by {force.by}: {force.why}",
-                "Whatever its device or an ability says does not count meanwhile."
-                if self._execution.production is Production.STARTED
-                else "It is so also when production is started.",
-                "It ends by itself; it can be released before.",
-                past=f"{name} was forced to {print_value(force.value)} by {force.by}: {force.why}",
+            resource = self._execution.automaton.variables[name].resource
+            yield FORCED.cause(
+                name,
+                {
+                    "variable": name,
+                    "value": print_value(force.value),
+                    "by": force.by,
+                    "why": force.why,
+                    "consequence": message("forced.ignored") if started else message("forced.later"),
+                },
+                resources=[] if resource is None else [resource],
             )
 
     def _problems(self) -> Iterator[Cause]:
         """One of each task that somebody cannot do."""
         for task, (name, problem) in self.problems.items():
             ability = self._execution.automaton.abilities[name]
-            said = ("" if problem.what is None else _PROBLEMS[problem.what], problem.why)
-            why = f": {', '.join(filter(None, said))}" if any(said) else ""
-            waiting = self._consequences.waiting(self._consequences.held_up({ability.resource}))
-            yield Cause(
-                f"problem:{task}",
-                Priority.MEDIUM,
-                f"{problem.by} has a problem with “{ability.title}”{why}",
-                f"The task is not done. {waiting}",
-                "Go there and help. It ends when the task is done or withdrawn, or somebody says that it is solved.",
-                past=f"{problem.by} had a problem with “{ability.title}”{why}",
+            what = None if problem.what is None else message(f"problem.{problem.what}")
+            said: Argument = message("problem-both", what=what, why=problem.why) if what and problem.why else ""
+            said = said or what or problem.why
+            yield PROBLEM.cause(
+                task,
+                {
+                    "by": problem.by,
+                    "ability": message("quoted", title=ability.title),
+                    "what": message("problem-said", said=said) if said else "",
+                    "waiting": self._consequences.waiting(self._consequences.held_up({ability.resource})),
+                },
+                resources=[ability.resource],
             )
 
     def _by_hand(self) -> Iterator[Cause]:
         """One of each resource that was last moved by hand."""
         automaton = self._execution.automaton
         for moved in self.moved:
-            changed = listed(
-                f"{value_text(automaton, name, after)} (before: {print_value(before)})"
+            values = [
+                message("by-hand.value", value=value_text(automaton, name, after), before=print_value(before))
                 for name, (before, after) in moved.values.items()
-            )
-            text = f"{automaton.resources.get(moved.resource, moved.resource)} says {changed}, which nothing commanded"
-            yield Cause(
-                f"by-hand:{moved.resource}",
-                Priority.LOW,
-                text,
-                self._went_on(moved),
-                "Somebody may have moved it by hand. If so, look whether what the station believes is still true.",
-                past=text,
+            ]
+            resource = automaton.resources.get(moved.resource, moved.resource)
+            yield BY_HAND.cause(
+                moved.resource,
+                {"resource": resource, "values": values, "went_on": self._went_on(moved)},
+                resources=[moved.resource],
             )
 
-    def _went_on(self, moved: Moved) -> str:
+    def _went_on(self, moved: Moved) -> Message:
         if moved.by is None:
-            return "Nothing has been started because of it yet."
-        title = self._execution.automaton.abilities[moved.by].title
+            return message("by-hand.nothing")
+        title = message("quoted", title=self._execution.automaton.abilities[moved.by].title)
         if moved.how is WentOn.EXECUTES:
-            return f"“{title}” is under way again, as it was commanded before."
-        if moved.how is WentOn.FINISHED:
-            return f"“{title}” counts as finished by it."
-        return f"“{title}” was started after it."
+            return message("by-hand.executes", ability=title)
+        return message("by-hand.finished" if moved.how is WentOn.FINISHED else "by-hand.started", ability=title)

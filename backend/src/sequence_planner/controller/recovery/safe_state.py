@@ -10,16 +10,13 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import StateSet
-from sequence_planner.core.numerals import counted
+from sequence_planner.controller.alarms.message import Argument, Item, Message, message
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.syntax import Comparison, Constant, Expression, Not, Variable, variables
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Circumstances, RecoveryPath, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import deciding, violated
-
-# Which one is best is for advice alone to say, which weighs all that people and devices can do.
-CHOOSE = "The page Restart proposes ways back. The station takes none by itself."
 
 
 @dataclass(frozen=True)
@@ -112,24 +109,23 @@ class SafeStateMonitor:
         else:
             self._answer = (self._key(request.state), why)
 
-    def describe(self, situation: SafetyStatus) -> str:
+    def describe(self, situation: SafetyStatus) -> Message:
         """Say what is wrong, for a person to read."""
         automaton, answer = self._execution.automaton, self.answer
         if situation.violated:
-            wrong = f"It violates {_named(automaton, situation.violated)}."
+            wrong = message("unsafe.violates", specifications=_named(automaton, situation.violated))
         elif isinstance(answer, WayBackAnswer) and answer.threatened:
-            named = _named(automaton, answer.threatened)
-            wrong = f"Nothing is violated yet, but without any start the devices could violate {named}."
+            wrong = message("unsafe.threatened", specifications=_named(automaton, answer.threatened))
         elif isinstance(answer, WayBackAnswer):
-            wrong = "Nothing is violated, but rest can perhaps no longer be reached."
+            wrong = message("unsafe.no-rest")
         else:
-            wrong = "Nothing is violated yet, but that could come without any start, or rest can no longer be reached."
-        return f"The station is outside its safe states. {wrong}{_nearest(automaton, situation.differences)}"
+            wrong = message("unsafe.either")
+        return message("unsafe.now", wrong=wrong, nearest=_nearest(automaton, situation.differences))
 
-    def past(self, situation: SafetyStatus) -> str:
+    def past(self, situation: SafetyStatus) -> Message:
         """Say what was wrong, once it is over."""
         named = _named(self._execution.automaton, situation.violated)
-        return f"The station was outside its safe states{f': it violated {named}' if named else ''}"
+        return message("unsafe.past-violated", specifications=named) if named else message("unsafe.past")
 
     def touched(self, situation: SafetyStatus) -> frozenset[str]:
         """The variables that make the state what it is: of what is violated, and those that would have to change."""
@@ -141,32 +137,34 @@ class SafeStateMonitor:
         names = frozenset(name for expression in told for name in variables(expression))
         return names | {each.name for each in situation.differences}
 
-    def way(self) -> str:
-        """Say which way leads back, for a person to read."""
+    def way(self) -> Message:
+        """Say which way leads back, for a person to read.
+
+        Which one is best is for advice alone to say, which weighs all that people and devices can do.
+        """
         answer = self.answer
         if answer is None:
-            return "A way back is being looked for."
+            return message("way.looking")
         if isinstance(answer, str):
-            return f"No way back could be computed: {answer}"
+            return message("way.failed", why=answer)
         if answer.way is None:
             return self._no_way(answer.searched)
-        return CHOOSE if answer.way.starts else self._by_itself(answer.way)
+        return message("way.choose") if answer.way.starts else self._by_itself(answer.way)
 
-    def _no_way(self, searched: int) -> str:
+    def _no_way(self, searched: int) -> Message:
         unknown = self.situation.awaited if self.situation is not None else ()
-        far = f"within {counted(searched, 'tick')}" if searched else "in time"
-        blind = f", with {', '.join(unknown)} unknown" if unknown else ""
-        return f"No way back by starts alone was found {far}{blind}. {CHOOSE}"
+        far = message("way.within", ticks=searched) if searched else message("way.in-time")
+        blind = message("way.blind", variables=", ".join(unknown)) if unknown else ""
+        return message("way.none", far=far, blind=blind, choose=message("way.choose"))
 
-    def _by_itself(self, way: RecoveryPath) -> str:
+    def _by_itself(self, way: RecoveryPath) -> Message:
         automaton, state = self._execution.automaton, self._execution.state
         awaited = [
             _printed(automaton, name, value)
             for name in automaton.names(Kind.MEASURED)
             if name in self._deciding and (value := way.end[name]) is not None and value != state[name]
         ]
-        when = f" when {' and '.join(awaited)}" if awaited else ""
-        return f"Nothing needs to be started: it comes back by itself{when}."
+        return message("way.itself-when", conditions=awaited) if awaited else message("way.itself")
 
     def _look(self, state: State) -> SafetyStatus:
         automaton, safe = self._execution.automaton, self._execution.supervisor.safe
@@ -183,9 +181,12 @@ class SafeStateMonitor:
         return tuple(state[name] for name in self._deciding)
 
 
-def _nearest(automaton: Automaton, differences: Iterable[SafeStateDifference]) -> str:
-    parts = [f"{_printed(automaton, each.name, each.safe)} (now {print_value(each.now)})" for each in differences]
-    return f" Nearest safe state: {', '.join(parts)}." if parts else ""
+def _nearest(automaton: Automaton, differences: Iterable[SafeStateDifference]) -> Argument:
+    parts = [
+        message("unsafe.difference", safe=_printed(automaton, each.name, each.safe), now=print_value(each.now))
+        for each in differences
+    ]
+    return message("unsafe.nearest", differences=parts) if parts else ""
 
 
 def _printed(automaton: Automaton, name: str, value: Value) -> str:
@@ -196,5 +197,8 @@ def _printed(automaton: Automaton, name: str, value: Value) -> str:
     return print_expression(Comparison("==", variable, Constant(value)))
 
 
-def _named(automaton: Automaton, specifications: Iterable[str]) -> str:
-    return " and ".join(f"“{automaton.specifications[name].title}” ({name})" for name in specifications)
+def _named(automaton: Automaton, specifications: Iterable[str]) -> list[Item]:
+    return [
+        message("unsafe.specification", title=automaton.specifications[name].title, name=name)
+        for name in specifications
+    ]

@@ -239,7 +239,9 @@ def way_back(automaton: Automaton, outside: SafeStateMonitor, feeds: Mapping[str
         ticks=len(way.ticks) if way is not None else None,
         steps=_steps(automaton, way) if way is not None else [],
         breaks=named(way.breaks) if way is not None else [],
-        reason=outside.way() if situation.certain else f"Whether the state is safe depends on {', '.join(awaits)}.",
+        reason=str(outside.way())
+        if situation.certain
+        else f"Whether the state is safe depends on {', '.join(awaits)}.",
     )
 
 

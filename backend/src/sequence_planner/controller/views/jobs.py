@@ -6,14 +6,15 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.features.tasks import TaskProblem, WaitingTask
 from sequence_planner.controller.recovery.explain import of_station
-from sequence_planner.controller.views.station import AlarmView, JobStepState, JobStepView, JobView, Priority
+from sequence_planner.controller.views.station import AlarmView, JobStepState, JobStepView, JobView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job, Jobs
 from sequence_planner.execution.plan_tracker import PlannedStart
-from sequence_planner.execution.timeouts import overdue
+from sequence_planner.execution.timeouts import Late, overdue
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_expression
@@ -24,7 +25,7 @@ from sequence_planner.language.syntax import Expression, conjunction, conjuncts
 # What it is told from is the execution, and what is known `Around` it: open tasks, alarms, who is in control.
 
 # Alarms of what is said here anyway.
-_SAID = ("overdue:", "no-plan", "left-out", "undecided", "tried:", "problem:")
+_SAID = {"overdue", "no-plan", "left-out", "undecided", "undecided-outputs", "tried", "problem"}
 _MOST_ALARMS = 3
 
 
@@ -97,7 +98,7 @@ class _Running:
             found += [*self._alarms(), *self._next()]
         return found if found or moves else list(self._goals())
 
-    def _late(self, step: PlannedStart) -> str | None:
+    def _late(self, step: PlannedStart) -> Late | None:
         return overdue(step, self._automaton.abilities[step.ability], self._around.monotonic)
 
     def _concerns(self, ability: str) -> bool:
@@ -164,8 +165,8 @@ class _Running:
         """Alarms that may be why nothing moves."""
         urgent = [
             alarm
-            for key, alarm in self._around.alarms.items()
-            if alarm.ended is None and alarm.priority is not Priority.LOW and not key.startswith(_SAID)
+            for alarm in self._around.alarms.values()
+            if alarm.ended is None and alarm.priority is not Priority.LOW and alarm.kind not in _SAID
         ]
         urgent.sort(key=lambda alarm: (alarm.priority is not Priority.HIGH, alarm.since))
         yield from (f"an alarm to be dealt with: {alarm.text}" for alarm in urgent[:_MOST_ALARMS])

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
 from pydantic import Field
 
 from sequence_planner.analysis.report import AnalysisDocument
+from sequence_planner.controller.alarms.kinds import AlarmGroup, Priority
+from sequence_planner.controller.alarms.message import Message
 from sequence_planner.controller.commands.approvals import Act
 from sequence_planner.controller.commands.tasks import ProblemKind
 from sequence_planner.controller.views.control_lock import ControlView
@@ -16,14 +19,6 @@ from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Pr
 from sequence_planner.planning.problem import Contract
 
 # Alarms, as they are shown.
-
-
-class Priority(StrEnum):
-    """Urgency of an alarm, after ISA-18.2."""
-
-    HIGH = "high"
-    MEDIUM = "medium"
-    LOW = "low"
 
 
 class AlarmState(StrEnum):
@@ -36,19 +31,36 @@ class AlarmState(StrEnum):
     OUT_OF_SERVICE = "out-of-service"
 
 
+@dataclass(frozen=True)
+class AlarmMessages:
+    """The texts of an alarm as messages of the catalogue, for a page in another language."""
+
+    text: Message
+    consequence: Message | None
+    action: Message | None
+    parts: tuple[Message, ...]
+
+
 class AlarmView(View):
     """Something that wants a person's attention. `ended` is when its cause has gone, null while it lasts.
 
-    One that was acknowledged goes with its cause. `by` is who acknowledged or shelved it or took it out of service,
-    `until` when it is shelved no more, `why` the reason that was given. `count` is how often it came since it was
-    last acknowledged; `part_of` lists what else the same cause has brought about.
+    It is of a `kind` and about its `subject`; `resources` and `topics` are where to look. One that was acknowledged
+    goes with its cause. `by` is who acknowledged or shelved it or took it out of service, `until` when it is shelved no
+    more, `why` the reason that was given. `count` is how often it came since it was last acknowledged; `parts` lists
+    what else the same cause has brought about. The texts are in English, `messages` are the same for other languages.
     """
 
+    kind: str
+    subject: str
+    group: AlarmGroup
     priority: Priority
     state: AlarmState
     text: str  # what is wrong
     consequence: str  # what comes of it
     action: str  # what to do
+    messages: AlarmMessages
+    resources: list[str]
+    topics: list[str]
     since: float
     ended: float | None
     by: str | None

@@ -1,0 +1,163 @@
+"""Kinds of alarms, each declared once; their texts are in `texts`, and `docs/alarms.md` says when each is raised."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Final
+
+from sequence_planner.controller.alarms.message import PLACE, Argument, Message
+from sequence_planner.controller.alarms.texts import TEXTS
+
+
+class Priority(StrEnum):
+    """Urgency of an alarm, after ISA-18.2."""
+
+    HIGH = "high"
+    MEDIUM = "medium"
+    LOW = "low"
+
+
+class AlarmGroup(StrEnum):
+    """What a kind of alarm is about."""
+
+    DEVICE = "device"  # a device fails; an unsafe state can follow from it
+    COMMUNICATION = "communication"
+    PLAN = "plan"
+    RECOVERY = "recovery"  # the remedy is a plan, a correction or a decision of a person
+    PEOPLE = "people"
+    SYSTEM = "system"
+    MODEL = "model"
+
+
+@dataclass(frozen=True)
+class AlarmKind:
+    """A kind of alarm. `subjects` is of how many names its subject consists, which are joined by colons."""
+
+    name: str
+    priority: Priority
+    group: AlarmGroup
+    subjects: int = 0
+
+    def key(self, subject: str = "") -> str:
+        """The key of such an alarm."""
+        return f"{self.name}:{subject}" if subject else self.name
+
+    def cause(
+        self,
+        subject: str,
+        arguments: Mapping[str, Argument],
+        *,
+        follows: tuple[str, ...] = (),
+        parts: Iterable[Message] = (),
+        past_parts: Iterable[Message] = (),
+        resources: Iterable[str] = (),
+        topics: Iterable[str] = (),
+        of: frozenset[str] = frozenset(),
+        about: frozenset[str] = frozenset(),
+        waits: bool = False,
+    ) -> Cause:
+        """A cause of such an alarm. Several `parts` are told one by one; a single one is what the text says."""
+        several, past = tuple(parts), tuple(past_parts)
+        return Cause(
+            self.key(subject),
+            self,
+            subject,
+            self.priority,
+            self._said("text", arguments),
+            self._said("consequence", arguments),
+            self._said("action", arguments),
+            self._said("past", arguments),
+            follows=follows,
+            parts=several if len(several) > 1 else (),
+            past_parts=past if len(past) > 1 else (),
+            resources=tuple(resources),
+            topics=tuple(topics),
+            of=of,
+            about=about,
+            waits=waits,
+        )
+
+    def _said(self, what: str, arguments: Mapping[str, Argument]) -> Message:
+        name = f"{self.name}.{what}"
+        return Message(name, {place[1]: arguments[place[1]] for place in PLACE.finditer(TEXTS[name])})
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Why there is an alarm. `key` stays the same as long as it is the same alarm.
+
+    `parts` are what it consists of, where that is several. It is no alarm of its own but a part of another as long as
+    one of those is there that it `follows` from. `past` is its `text` once it is over, `past_parts` are its parts then,
+    `resources` and `topics` where to look, `of` the resources whose devices fail with it, and `about` the variables of
+    which it is doubted what is believed. A device that `waits` has nothing to do itself.
+    """
+
+    key: str
+    kind: AlarmKind
+    subject: str
+    priority: Priority
+    text: Message  # what is wrong
+    consequence: Message  # what comes of it
+    action: Message  # what to do
+    past: Message
+    follows: tuple[str, ...] = field(default=(), kw_only=True)
+    parts: tuple[Message, ...] = field(default=(), kw_only=True)
+    past_parts: tuple[Message, ...] = field(default=(), kw_only=True)
+    resources: tuple[str, ...] = field(default=(), kw_only=True)
+    topics: tuple[str, ...] = field(default=(), kw_only=True)
+    of: frozenset[str] = field(default=frozenset(), kw_only=True)
+    about: frozenset[str] = field(default=frozenset(), kw_only=True)
+    waits: bool = field(default=False, kw_only=True)
+
+
+KINDS: Final[dict[str, AlarmKind]] = {}
+
+
+def _kind(name: str, priority: Priority, group: AlarmGroup, subjects: int = 0) -> AlarmKind:
+    KINDS[name] = AlarmKind(name, priority, group, subjects)
+    return KINDS[name]
+
+
+SILENT = _kind("silent", Priority.MEDIUM, AlarmGroup.DEVICE, 1)
+MANY_SILENT = _kind("many-silent", Priority.HIGH, AlarmGroup.DEVICE)
+NEVER_HEARD = _kind("never-heard", Priority.MEDIUM, AlarmGroup.DEVICE)
+OVERDUE = _kind("overdue", Priority.MEDIUM, AlarmGroup.DEVICE, 1)
+STILL = _kind("still", Priority.MEDIUM, AlarmGroup.DEVICE, 1)
+GIVEN_UP = _kind("given-up", Priority.MEDIUM, AlarmGroup.DEVICE, 1)
+TRIED = _kind("tried", Priority.LOW, AlarmGroup.PLAN, 1)
+
+NETWORK = _kind("network", Priority.MEDIUM, AlarmGroup.COMMUNICATION, 1)
+RIVAL = _kind("rival", Priority.HIGH, AlarmGroup.COMMUNICATION)
+COMMAND = _kind("command", Priority.HIGH, AlarmGroup.COMMUNICATION)
+MESSAGE = _kind("message", Priority.MEDIUM, AlarmGroup.COMMUNICATION, 2)
+
+PLANNER = _kind("planner", Priority.MEDIUM, AlarmGroup.PLAN)
+NO_PLAN = _kind("no-plan", Priority.MEDIUM, AlarmGroup.RECOVERY)
+LEFT_OUT = _kind("left-out", Priority.LOW, AlarmGroup.PLAN)
+UNDECIDED = _kind("undecided", Priority.LOW, AlarmGroup.PLAN)
+ERRAND_WAITS = _kind("errand-waits", Priority.MEDIUM, AlarmGroup.PLAN)
+ERRAND = _kind("errand", Priority.MEDIUM, AlarmGroup.PLAN, 1)
+LOCAL = _kind("local", Priority.MEDIUM, AlarmGroup.PLAN, 2)
+
+UNSAFE_STATE = _kind("unsafe-state", Priority.HIGH, AlarmGroup.RECOVERY)
+CONFLICT = _kind("conflict", Priority.HIGH, AlarmGroup.MODEL, 3)
+CONTRADICTION = _kind("contradiction", Priority.MEDIUM, AlarmGroup.RECOVERY)
+NOT_RESTORED = _kind("not-restored", Priority.MEDIUM, AlarmGroup.RECOVERY)
+UNDECIDED_OUTPUTS = _kind("undecided-outputs", Priority.MEDIUM, AlarmGroup.RECOVERY)
+RESTLESS = _kind("restless", Priority.MEDIUM, AlarmGroup.MODEL)
+
+BEGINS_AT_REST = _kind("begins-at-rest", Priority.MEDIUM, AlarmGroup.PEOPLE)
+FORCED = _kind("forced", Priority.LOW, AlarmGroup.PEOPLE, 1)
+PROBLEM = _kind("problem", Priority.MEDIUM, AlarmGroup.PEOPLE, 1)
+BY_HAND = _kind("by-hand", Priority.LOW, AlarmGroup.PEOPLE, 1)
+
+CONTROLLER = _kind("controller", Priority.HIGH, AlarmGroup.SYSTEM, 1)
+UNJOURNALLED = _kind("unjournalled", Priority.HIGH, AlarmGroup.SYSTEM)
+UNRECORDED = _kind("unrecorded", Priority.HIGH, AlarmGroup.SYSTEM)
+KEPT_BESIDE = _kind("kept-beside", Priority.MEDIUM, AlarmGroup.SYSTEM)
+DEPLOYMENT_UNDONE = _kind("deployment-undone", Priority.HIGH, AlarmGroup.SYSTEM)
+NOT_EMULATED = _kind("not-emulated", Priority.HIGH, AlarmGroup.SYSTEM)
+NO_SUPERVISOR = _kind("no-supervisor", Priority.HIGH, AlarmGroup.SYSTEM)
+MODEL_UNUSABLE = _kind("model-unusable", Priority.HIGH, AlarmGroup.SYSTEM)

@@ -1,0 +1,106 @@
+"""The catalogue of alarms: every kind has its texts in every language, and these are given what they name."""
+
+from __future__ import annotations
+
+import ast
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+import sequence_planner.controller
+from sequence_planner.controller.alarms.kinds import KINDS
+from sequence_planner.controller.alarms.message import PLACE, Message, Wording, message
+from sequence_planner.controller.alarms.texts import TEXTS
+
+SOURCE = Path(sequence_planner.controller.__file__).parent
+PAGE = Path(__file__).parents[4] / "frontend" / "src" / "lib" / "text"
+LANGUAGES = sorted(path.name for path in PAGE.iterdir() if path.is_dir())
+OF_KIND = ("text", "past", "consequence", "action")
+PHRASES = TEXTS.keys() - {f"{kind}.{what}" for kind in KINDS for what in OF_KIND}
+
+
+def texts(language: str) -> Mapping[str, str]:
+    """The texts of the page in a language."""
+    found: Mapping[str, str] = json.loads((PAGE / language / "alarm-texts.json").read_text(encoding="utf-8"))
+    return found
+
+
+def places(text: str) -> set[str]:
+    """The names of the arguments that a text has a place for."""
+    return {place[1] for place in PLACE.finditer(text)}
+
+
+def calls(name: str) -> Iterator[ast.Call]:
+    """Calls of a function or method in the controller."""
+    for path in SOURCE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and node.args and ast.unparse(node.func).split(".")[-1] == name:
+                yield node
+
+
+def ids(node: ast.expr) -> set[str]:
+    """The texts that an expression can name."""
+    match node:
+        case ast.Constant(value=str(text)):
+            return {text}
+        case ast.IfExp(body=body, orelse=orelse):
+            return ids(body) | ids(orelse)
+        case ast.JoinedStr(values=parts):
+            known = [part.value if isinstance(part, ast.Constant) else "*" for part in parts]
+            start, end = str(known[0]).rstrip("*"), str(known[-1]).lstrip("*")
+            return {name for name in PHRASES if name.startswith(start) and name.endswith(end)}
+    return set()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_kind_has_its_texts(language: str) -> None:
+    said = texts(language)
+    assert not {f"{kind}.{what}" for kind in KINDS for what in OF_KIND} - said.keys()
+    assert said.keys() == TEXTS.keys()
+    assert all(text.strip() for text in said.values())
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_text_names_no_argument_that_is_not_there(language: str) -> None:
+    assert not {name: more for name, text in texts(language).items() if (more := places(text) - places(TEXTS[name]))}
+
+
+def test_the_page_has_the_english_of_the_controller() -> None:
+    assert texts("en") == TEXTS, "make types"
+
+
+def test_messages_are_given_what_their_texts_name() -> None:
+    seen = set()
+    for call in calls("message"):
+        given = {keyword.arg for keyword in call.keywords}
+        for name in ids(call.args[0]):
+            seen.add(name)
+            if None not in given:
+                assert given == places(TEXTS[name]), ast.unparse(call)
+    assert len(seen) > len(TEXTS) / 3, "calls are found"
+
+
+def test_causes_are_given_what_the_texts_of_their_kind_name() -> None:
+    kinds = {kind.name.upper().replace("-", "_"): kind for kind in KINDS.values()}
+    raised = set()
+    for call in calls("cause"):
+        match call:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=name)), args=[_, ast.Dict(keys=keys)]) if name in kinds:
+                kind = kinds[name].name
+                raised.add(kind)
+                wanted = {each for what in OF_KIND for each in places(TEXTS[f"{kind}.{what}"])}
+                assert {key.value for key in keys if isinstance(key, ast.Constant)} >= wanted, ast.unparse(call)
+    assert KINDS.keys() - raised <= {"many-silent", "never-heard", "left-out", "undecided"}, (
+        "made of several kinds at once"
+    )
+
+
+def test_a_message_reads_as_its_language_has_it() -> None:
+    waiting = message("wait.operations", operations=[message("quoted", title="Paint")], until="")
+    assert str(message("wait.standstill", waiting=waiting)) == "Nothing is started. “Paint” waits."
+    several = Message("wait.operations", {"operations": ["a", "b", "c", "d", "e"], "until": ""})
+    assert str(several) == "a, b, c and 2 more wait."
+    assert str(Wording({"sv": "Låg", "en": "Low"})) == "Low"
+    assert str(Wording({"sv": "Låg"})) == "Låg"
