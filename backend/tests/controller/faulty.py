@@ -69,7 +69,7 @@ class FaultyRig(Rig):
             if overdue(step, self.station.automaton.abilities[step.ability], self.now) is not None
         ]
         stalled = stalled_effects(self.station.automaton, execution.state, late)
-        goals = execution.pursued.of(execution.active & execution.pursued.goals.keys())
+        goals = execution.pursued.select(execution.active & execution.pursued.goals.keys())
         circumstances = execution.circumstances
         return advisor().advise(
             AdviceRequest(execution.state, goals, circumstances, stalled, last=self.last.values, deadline=60)
