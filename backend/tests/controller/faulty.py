@@ -121,7 +121,7 @@ def after(chance: random.Random, kind: FaultKind, resource: str, step: int, *, p
     assert rig.run(300, lambda: len(rig.started) > step), "it does no work"
     rig.run(chance.uniform(0, 2))
     fault = drawn(chance, kind, resource, chance.uniform(0.5, 8) if passes else None)
-    rig.faulty.begin(fault, rig.now)
+    rig.faulty.start(fault, rig.now)
     case = f"{fault} as start {step} was made"
     done, worked, said = len(rig.completed), rig.now, len(rig.started)
     while len(rig.completed) < done + 3:

@@ -181,7 +181,7 @@ class _Station:
             writer.write(BEGUN, 1.0, "{}")
             opened.start_life(writer.end, None)
             if away <= number:
-                writer.begin()
+                writer.start()
             stopped = None
             for each in range(number):
                 if each == number - away:

@@ -216,7 +216,7 @@ class Controller:
     def take_command(self) -> None:
         """Nobody else commands the station's devices, so this one does from now on. Raises `TransportError`."""
         self.devices.take_command()
-        self._writer.begin()
+        self._writer.start()
         self._tick_again()
 
     def wait_to_command(self) -> None:
