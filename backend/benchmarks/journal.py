@@ -61,7 +61,7 @@ async def measure(folder: Path, rate: int) -> None:
             waiting.append((writer.write("ticked", time.time(), CONTENT), moment))
 
         writer = RunWriter(database, told)
-        writer.begin()
+        writer.start()
         used = await at_even_distances(rate, write)
         await writer.close()
     took.sort()

@@ -38,7 +38,7 @@ async def record(station: ReadyStation, supervisor: Supervisor, database: Databa
     """Let the station produce, and write what happens."""
     execution = Executor(station.automaton, supervisor)
     writer = RunWriter(database, lambda: None)
-    writer.begin()
+    writer.start()
     now = Timestamp(1_800_000_000.0, 1000.0)
     simulated = SimulatedStation(station, execution, Planner(station.automaton, supervisor), now)
     recorder = RunRecorder(execution, writer.write, model_digest(station.automaton), clock=lambda: simulated.now.epoch)

@@ -109,7 +109,7 @@ test('a viewer looks on and finds nothing to press that acts', async ({ browse }
 		['API keys', 'administrator']
 	] as const) {
 		await expect(vera.getByRole('link', { name: title })).toHaveCount(0);
-		await vera.goto(`/${title.toLowerCase()}`);
+		await vera.goto(`/${title.toLowerCase().replace(' ', '-')}`);
 		await expect(vera.getByRole('heading', { name: `This page needs the role ${role}` })).toBeVisible();
 	}
 });

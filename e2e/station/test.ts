@@ -120,7 +120,7 @@ export const test = base.extend<Given, { bench: Bench }>({
 	},
 	watch: async ({ browse, byItself }, use) => {
 		const page = await browse(byItself ? null : EVA, '/operator', WRIST);
-		await expect(page).toHaveTitle(/^Watch · /); // until it is known who looks on, a page has no name
+		await expect(page).toHaveTitle(/^Operator view · /); // until it is known who looks on, a page has no name
 		await expect(page.getByRole('heading')).toBeVisible();
 		await expect(page.getByTestId('not-live')).toBeHidden();
 		await use(page);

@@ -125,7 +125,7 @@ class Trouble:
         """A device is moved by hand."""
         station = truck_engine()[0]
         name = self.chance.choice(sorted(station.pipelines.feeds))
-        self.devices.emulated.put(name, self.chance.choice(station.automaton.variables[name].type.domain))
+        self.devices.emulated.set_value(name, self.chance.choice(station.automaton.variables[name].type.domain))
         self.seen["devices moved by hand"] += 1
 
     def _correct(self) -> None:

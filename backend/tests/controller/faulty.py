@@ -69,7 +69,7 @@ class FaultyRig(Rig):
             if overdue(step, self.station.automaton.abilities[step.ability], self.now) is not None
         ]
         stalled = stalled_effects(self.station.automaton, execution.state, late)
-        goals = execution.pursued.of(execution.active & execution.pursued.goals.keys())
+        goals = execution.pursued.select(execution.active & execution.pursued.goals.keys())
         circumstances = execution.circumstances
         return advisor().advise(
             AdviceRequest(execution.state, goals, circumstances, stalled, last=self.last.values, deadline=60)
@@ -121,7 +121,7 @@ def after(chance: random.Random, kind: FaultKind, resource: str, step: int, *, p
     assert rig.run(300, lambda: len(rig.started) > step), "it does no work"
     rig.run(chance.uniform(0, 2))
     fault = drawn(chance, kind, resource, chance.uniform(0.5, 8) if passes else None)
-    rig.faulty.begin(fault, rig.now)
+    rig.faulty.start(fault, rig.now)
     case = f"{fault} as start {step} was made"
     done, worked, said = len(rig.completed), rig.now, len(rig.started)
     while len(rig.completed) < done + 3:

@@ -48,7 +48,7 @@ class Watched(Rig):
         return found
 
     def put(self, variable: str, value: Value) -> None:
-        self.devices.put(variable, value)
+        self.devices.set_value(variable, value)
         self.tick()
 
 
@@ -172,7 +172,7 @@ def test_what_a_person_forces_and_what_was_not_heard_is_none_of_it() -> None:
     rig.run(8)
     rig.silent = set(rig.station.pipelines.incoming)
     rig.run(1)
-    rig.devices.put("nutrunner.programmed_torque_reached", True)
+    rig.devices.set_value("nutrunner.programmed_torque_reached", True)
     rig.silent = set()
     rig.run(3)
     assert rig.told == []

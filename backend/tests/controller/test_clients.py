@@ -274,7 +274,7 @@ def test_an_emulated_action_is_aborted_by_hand_and_the_station_gets_out_of_it() 
         with living(devices):
             await start(controller)
             await until_async(lambda: value(controller, "tank.stirring") == "executing", "the goal is executed")
-            devices.put("tank.stirring", "aborted")
+            devices.set_value("tank.stirring", "aborted")
             await until_async(lambda: value(controller, "tank.stirring") != "executing", "it is aborted")
             assert value(controller, "product") == "nothing"
             await until_async(lambda: controller.view().operations["make"].completed == 1, "it is done again")

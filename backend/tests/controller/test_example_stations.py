@@ -48,7 +48,7 @@ def test_the_robots_work_at_the_same_time_and_not_at_the_same_place() -> None:
 def test_a_part_lost_on_its_way_is_replaced() -> None:
     rig = started(BUFFER)
     assert rig.run(30, until=lambda: rig.value("robot_1.at") == "between" and rig.value("robot_1.target") == "buffer")
-    rig.devices.put("robot_1.part_in_gripper", False)
+    rig.devices.set_value("robot_1.part_in_gripper", False)
     assert rig.run(120, until=lambda: rig.completed.count("deliver_part") >= 2)
     count = Counter(rig.started)
     assert count["robot_1.open_gripper"] == 1

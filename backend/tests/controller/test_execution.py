@@ -111,7 +111,7 @@ def test_a_robot_moved_by_hand_is_recovered(pose: str) -> None:
     rig = Rig(seed=2)
     rig.start_production()
     assert rig.run(60, until=lambda: rig.value("robot.pose") == "above_engine")
-    rig.devices.put("robot.pose", pose)
+    rig.devices.set_value("robot.pose", pose)
     assert rig.run(150, until=lambda: engines(rig) >= 1)
 
 
@@ -145,7 +145,7 @@ def test_the_next_step_says_what_it_waits_for() -> None:
     rig.silent = set()
     rig.run(0.2)
     rig.execution.state = {**rig.execution.state, "bolts[bolt_pair_1]": "placed"}
-    rig.devices.put("robot.pose", "above_engine")
+    rig.devices.set_value("robot.pose", "above_engine")
     rig.execution.state = {**rig.execution.state, "robot.pose": "above_engine", "robot.target_pose": "above_engine"}
     rig.tick()
     waiting = waits_for(rig.execution, "robot.move_to_position(bolt_pair_1)", feeds)

@@ -59,7 +59,7 @@ class Watched:
 
     def tick(self, seconds: float, at: str = "here") -> None:
         self.execution.tick({"at": at}, Timestamp(1000 + seconds, seconds))
-        self.timetable.note(1000 + seconds)
+        self.timetable.update(1000 + seconds)
 
     @property
     def expected(self) -> dict[str, tuple[float, float]]:
@@ -136,10 +136,10 @@ def test_a_run_in_which_the_station_stood_tells_nothing_of_how_long_it_takes() -
 def test_without_a_plan_nothing_is_expected(plan_dropped: bool) -> None:
     execution, _ = beginning(SLOW, **AT_REST)
     timetable = Forecast(execution)
-    timetable.note(1000)
+    timetable.update(1000)
     if plan_dropped:
         execution.plan.drop("for a test")
-        timetable.note(1001)
+        timetable.update(1001)
     assert timetable.expected() == {}
 
 
@@ -147,5 +147,5 @@ def test_the_execution_is_left_as_it_is() -> None:
     """What is simulated is a run of its own."""
     execution: Executor = Watched(SLOW).execution
     before = dict(execution.state)
-    Forecast(execution).note(1000)
+    Forecast(execution).update(1000)
     assert dict(execution.state) == before

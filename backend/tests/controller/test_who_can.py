@@ -71,7 +71,7 @@ def test_without_its_robot_nobody_tightens_and_the_operator_still_places() -> No
     rig = FaultyRig()
     rig.start_production()
     assert rig.run(120, until=lambda: "robot.move_to_position(bolt_pair_3)" in rig.started)
-    rig.faulty.begin(Fault(FaultKind.OFFLINE, "robot"), rig.now)
+    rig.faulty.start(Fault(FaultKind.OFFLINE, "robot"), rig.now)
     assert rig.run(10, until=lambda: "robot" in rig.execution.conduct.silent)
     view = found(rig.execution, rig.now)
     assert [(each.name, each.why) for each in view.absent] == [("robot", "silent")]

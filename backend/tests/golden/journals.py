@@ -43,7 +43,7 @@ def records(name: str) -> list[RunRecord]:
     """The records of a journal. AssertionError where they are not as they were written."""
     found, before = list[RunRecord](), ""
     for line in gzip.decompress((JOURNALS / f"{name}.jsonl.gz").read_bytes()).decode().splitlines():
-        record = RunRecord.of(line)
+        record = RunRecord.parse(line)
         assert record is not None, line[:80]
         before = hashlib.sha256((before + record.text()).encode()).hexdigest()
         assert record.hash == before, f"record {record.number} of {name} is not as it was written"

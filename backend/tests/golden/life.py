@@ -76,7 +76,7 @@ class Devices:
 
     def fail(self, kind: FaultKind, target: str, seconds: float, value: Value | None = None, amount: float = 1) -> None:
         """Let a fault begin."""
-        self._faulty.begin(Fault(kind, target, amount, value, seconds), time.monotonic())
+        self._faulty.start(Fault(kind, target, amount, value, seconds), time.monotonic())
 
     async def live(self) -> None:
         """Report until cancelled."""

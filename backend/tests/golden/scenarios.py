@@ -101,7 +101,7 @@ async def moved_by_hand(life: Life) -> None:
     automaton = life.controller.execution.automaton
     for _ in range(6):
         name = life.chance.choice(sorted(life.devices.emulated.topics))
-        life.devices.emulated.put(name, life.chance.choice(automaton.variables[name].type.domain))
+        life.devices.emulated.set_value(name, life.chance.choice(automaton.variables[name].type.domain))
         await asyncio.sleep(0.7)
     life.devices.fail(FaultKind.RESTARTED, life.chance.choice(_resources(life)), 0.5)
     await asyncio.sleep(1.0)
@@ -259,9 +259,9 @@ async def by_hand_for_the_robot(life: Life) -> None:
     """The operator switches the robot off and works in its place for a while."""
     await life.start()
     await life.work(3)
-    life.devices.emulated.put("operator.takes_over", True)
+    life.devices.emulated.set_value("operator.takes_over", True)
     await asyncio.sleep(2.5)
-    life.devices.emulated.put("operator.takes_over", False)
+    life.devices.emulated.set_value("operator.takes_over", False)
     await life.work(2)
 
 

@@ -40,7 +40,7 @@ async def life(
     station, supervisor, planner = ready(folder)
     execution = Executor(station.automaton, supervisor, known)
     writer = RunWriter(database, lambda: None)
-    writer.begin()
+    writer.start()
     simulated = SimulatedStation(station, execution, planner, NOW)
     digest = model_digest(station.automaton)
     RunRecorder(execution, writer.write, digest, known, lambda: simulated.now.epoch, snapshot_every)

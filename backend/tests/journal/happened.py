@@ -25,7 +25,7 @@ def with_writer(database: Database, act: Callable[[RunWriter], Awaitable[None]])
 
     async def run() -> RunWriter:
         writer = RunWriter(database, lambda: None)
-        writer.begin()
+        writer.start()
         await act(writer)
         await writer.close()
         return writer

@@ -180,7 +180,7 @@ def test_what_was_cut_without_an_archive_is_gone_and_known_to_be(database: Datab
     trim(database, 28.0, EVA, folder)
     with database.reading() as connection:
         run = WholeRun(connection)
-        assert (run.begin.number, run.index.whole) == (9, False)
+        assert (run.last_trimmed.number, run.index.whole) == (9, False)
         assert [each.number for each in run.after(0, 100)] == list(range(10, 36))
 
 

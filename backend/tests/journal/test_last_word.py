@@ -48,15 +48,15 @@ def lives(path: Path) -> list[tuple[int, int | None]]:
 def test_what_was_said_is_there_after_a_new_start_beside_the_life_before(tmp_path: Path) -> None:
     path = tmp_path / "state" / "last-word"
     with closing(LastWord.open(path)) as opened:
-        opened.begin(ChainPosition(1, "a"), None)
+        opened.start_life(ChainPosition(1, "a"), None)
         opened.say(word(5))
     assert path.stat().st_mode & 0o777 == 0o600
     with closing(LastWord.open(path)) as opened:
-        opened.begin(ChainPosition(9, "b"), 3)
+        opened.start_life(ChainPosition(9, "b"), 3)
     assert lives(path) == [(9, None), (1, 5)]
     with closing(LastWord.open(path)) as opened:
         assert [each.epoch for each in opened.lives if each.number == 9] == [3]
-        opened.begin(ChainPosition(9, "b"), 3)
+        opened.start_life(ChainPosition(9, "b"), 3)
         opened.say(word(12))
         opened.say(word(15))
     assert lives(path) == [(9, 15), (9, 12)]
@@ -65,7 +65,7 @@ def test_what_was_said_is_there_after_a_new_start_beside_the_life_before(tmp_pat
 def test_a_word_that_was_not_written_to_its_end_leaves_the_one_before(tmp_path: Path) -> None:
     path = tmp_path / "last-word"
     with closing(LastWord.open(path)) as opened:
-        opened.begin(ChainPosition(1, "a"), None)
+        opened.start_life(ChainPosition(1, "a"), None)
         opened.say(word(5))
     whole = path.read_bytes()
     place = len(whole) // 2
@@ -82,7 +82,7 @@ def test_it_needs_no_more_room_later_and_the_longest_texts_fit(tmp_path: Path) -
         size = path.stat().st_size
         blocks = path.stat().st_blocks
         assert blocks * 512 >= size, "room on the disk is its own"
-        opened.begin(ChainPosition(1, "a"), None)
+        opened.start_life(ChainPosition(1, "a"), None)
         for number in range(2, 6):
             opened.say(word(number, reason="𝄞" * LONGEST_REASON))
         large = word(6)
@@ -96,7 +96,7 @@ def test_what_cannot_be_written_is_told_and_the_word_before_stays(tmp_path: Path
     path = tmp_path / "last-word"
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     with closing(LastWord.open(path)) as opened:
-        opened.begin(ChainPosition(1, "a"), None)
+        opened.start_life(ChainPosition(1, "a"), None)
         opened.say(word(5))
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, before[1]))
         try:
@@ -125,7 +125,7 @@ def test_the_words_of_a_station_that_is_no_more_are_set_aside(tmp_path: Path, mo
     other = last_word_file(SqliteFile(tmp_path / "other.sqlite"))
     for path in (*(path for _, path in said), other):
         with closing(LastWord.open(path)) as opened:
-            opened.begin(ChainPosition(1, "a"), None)
+            opened.start_life(ChainPosition(1, "a"), None)
             opened.say(word(5))
     for place in (file, server):
         moved = set_aside(place, when)
@@ -141,7 +141,7 @@ def test_the_words_of_a_station_that_is_no_more_are_set_aside(tmp_path: Path, mo
 def test_the_word_of_a_controller_that_runs_is_not_set_aside(tmp_path: Path) -> None:
     file = SqliteFile(tmp_path / "station.sqlite")
     with closing(LastWord.open(last_word_file(file))) as opened:
-        opened.begin(ChainPosition(1, "a"), None)
+        opened.start_life(ChainPosition(1, "a"), None)
         code = (
             "from datetime import datetime; from pathlib import Path; "
             "from sequence_planner.journal.last_accepted import set_aside; "
@@ -179,9 +179,9 @@ class _Station:
             held = False
             writer = RunWriter(self.database, lambda: None, lambda _: not held)
             writer.write(BEGUN, 1.0, "{}")
-            opened.begin(writer.end, None)
+            opened.start_life(writer.end, None)
             if away <= number:
-                writer.begin()
+                writer.start()
             stopped = None
             for each in range(number):
                 if each == number - away:
@@ -230,7 +230,7 @@ def test_a_word_that_the_journal_never_comes_to_again_counts_once(tmp_path: Path
     station = _Station(tmp_path)
     asyncio.run(station.live(0, [], 1))
     with closing(LastWord.open(tmp_path / "last-word")) as opened:
-        opened.begin(ChainPosition(5000, "a"), None)
+        opened.start_life(ChainPosition(5000, "a"), None)
         opened.say(word(5100))
     ended = station.ended()
     assert ended.word is not None and ended.word.number == 5100

@@ -30,7 +30,7 @@ def test_what_is_left_begins_with_the_newest_snapshot_that_is_old_enough(databas
     assert _left(database) == list(range(20, 36))
     with database.reading() as connection:
         (act,) = audit.read(connection)
-        begin = run_journal.begin(connection)
+        begin = run_journal.last_trimmed(connection)
     assert (act.entry.action, act.entry.subject, act.entry.actor) == ("journal-trimmed", "records up to 19", EVA)
     assert act.entry.details == {"number": 19, "hash": begin.hash}
     happened(database, range(36, 51))
@@ -74,7 +74,7 @@ def test_one_that_was_interrupted_is_whole_and_the_next_one_ends_it(
             trim(database, 28.0, EVA)
     with database.reading() as connection:
         assert verify(connection).wrong == ()
-        assert run_journal.begin(connection).number == 19
+        assert run_journal.last_trimmed(connection).number == 19
     assert trim(database, 5.0, EVA) == Trimmed(begin=19, removed=19)
     assert _left(database) == list(range(20, 36))
 

@@ -44,7 +44,7 @@ def test_records_are_read_in_both_directions_and_by_their_kind(database: Databas
         assert run_journal.after(connection, 0, 9, {"nothing"}) == run_journal.after(connection, 0, 9, ()) == []
         assert run_journal.last(connection, "snapshot") == run_journal.get(connection, 30)
         assert run_journal.last(connection, "nothing") is run_journal.get(connection, 31) is None
-        assert run_journal.begin(connection).number == 0
+        assert run_journal.last_trimmed(connection).number == 0
 
 
 def test_any_text_is_kept_as_it_is(database: Database) -> None:
@@ -65,7 +65,7 @@ def test_it_tells_when_records_are_durable_and_writes_what_waits_together(databa
 
     async def run() -> None:
         writer = RunWriter(database, lambda: told.append((writer.durable, writer.waiting)))
-        writer.begin()
+        writer.start()
         for number in range(1, 2001):
             writer.write("ticked", float(number), content(number))
         assert (writer.durable, writer.waiting) == (0, 2000)
@@ -208,7 +208,7 @@ def test_a_second_station_is_noticed_and_writes_nothing(database: Database, data
     async def write(first: RunWriter) -> None:
         with closing(Database.open(database_url)) as other:
             second = RunWriter(other, lambda: None)
-            second.begin()
+            second.start()
             first.write("ticked", 1.0, content(1))
             await durable(first, 1)
             second.write("ticked", 1.0, content(1))
@@ -236,7 +236,7 @@ def test_an_end_does_not_wait_for_a_database_that_is_away(
 
     async def run() -> None:
         writer = RunWriter(database, lambda: None)
-        writer.begin()
+        writer.start()
         with closing(Database.open(database_url)) as other, other.writing():
             writer.write("ticked", 1.0, content(1))
             began = time.perf_counter()

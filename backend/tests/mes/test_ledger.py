@@ -79,7 +79,7 @@ class Run:
     def ledger(self) -> Ledger:
         ledger = Ledger()
         for record in self.records:
-            ledger.take(read(record), MASTERS)
+            ledger.process(read(record), MASTERS)
         return ledger
 
     def made(self, name: str) -> list[str]:
@@ -150,7 +150,7 @@ def test_a_job_that_a_station_does_not_remember_is_aborted_with_what_was_made() 
     run.add("ticked", jobs={"b": job("b", started=at(b1=5))}, started=["make_b"])
     ledger = run.ledger()
     before = ledger.copied()
-    news = ledger.take(read(run.add("begun", values={}, senses={}, memory={}, jobs={})), MASTERS)
+    news = ledger.process(read(run.add("begun", values={}, senses={}, memory={}, jobs={})), MASTERS)
     assert [(each.what, each.job.state, each.job.ended) for each in news] == [("over", "aborted", 103.0)]
     assert [each.ability for each in news[0].job.abilities] == ["make_b"]
     assert not ledger.jobs

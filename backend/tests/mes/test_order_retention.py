@@ -95,7 +95,11 @@ def test_numbers_and_ids_never_come_again(database: Database, folder: Path) -> N
         end(database, id, OLD)
     assert cut_orders(database, 400.0, SYSTEM, NOW, folder)
     with database.reading() as connection:
-        assert (events.last(connection), events.begin(connection), responses.begin(connection)) == (4, 4, 2)
+        assert (
+            events.last(connection),
+            events.last_trimmed_event(connection),
+            responses.last_trimmed_response(connection),
+        ) == (4, 4, 2)
     with pytest.raises(OrderRefused) as refused:
         store(database, "a", NOW)
     assert refused.value.slug == "job-order-exists"
@@ -114,9 +118,9 @@ def test_who_has_read_less_than_is_kept_is_told(database: Database, folder: Path
     filled(database)
     cut_orders(database, 400.0, SYSTEM, NOW, folder)
     with database.reading() as connection:
-        begin = events.begin(connection)
+        begin = events.last_trimmed_event(connection)
         events.require_kept(connection, begin)
-        responses.require_kept(connection, responses.begin(connection))
+        responses.require_kept(connection, responses.last_trimmed_response(connection))
         with pytest.raises(OrderRefused, match=f"the events after {begin}") as gone:
             events.require_kept(connection, begin - 1)
         assert (gone.value.slug, gone.value.status) == ("events-gone", 410)

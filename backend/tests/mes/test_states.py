@@ -28,7 +28,7 @@ from sequence_planner.journal import audit
 from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.order import JobOrder, OrderCommand, OrderContent, OrderRefused, OrderState, Wish, allowed
 from sequence_planner.mes.tables import JOB_EVENTS, JOB_ORDERS, JOB_RESPONSES
-from sequence_planner.mes.tracker import JobMade, News, note, response
+from sequence_planner.mes.tracker import JobMade, News, response, update_order
 
 MES = Actor(kind=ActorKind.KEY, id="mes", name="MES")
 WAITING, READY, RUNNING, INTERRUPTED = "NotAllowedToStart", "AllowedToStart", "Running", "Interrupted"
@@ -204,7 +204,7 @@ class Orders(RuleBasedStateMachine):
             return
         id, expected = picked
         with self.database.writing() as connection:
-            note(connection, News("taken", made(id), self.now), None)
+            update_order(connection, News("taken", made(id), self.now), None)
         if expected.state == READY:
             expected.state = RUNNING
             expected.revision += 1
@@ -240,7 +240,7 @@ class Orders(RuleBasedStateMachine):
         job = made(id, how)
         with self.database.writing() as connection:
             for _ in range(2):  # told twice, it has happened once
-                note(
+                update_order(
                     connection,
                     News("over", job, self.now),
                     response(job, WorkMastersView(work_masters={}, abilities={})),
@@ -253,7 +253,7 @@ class Orders(RuleBasedStateMachine):
     @invariant()
     def every_order_is_as_it_should_be_and_everything_is_told_once(self) -> None:
         with self.database.reading() as connection:
-            found = {each["id"]: JobOrder.of(each) for each in connection.execute(select(JOB_ORDERS)).mappings()}
+            found = {each["id"]: JobOrder.from_row(each) for each in connection.execute(select(JOB_ORDERS)).mappings()}
             told = events.after(connection, 0, 10_000)
             end = audit.end(connection)
         assert end is not None

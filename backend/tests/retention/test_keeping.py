@@ -52,7 +52,7 @@ def first(database: Database) -> int:
         assert verify(connection).wrong == ()
         archive = Archive()
         assert list(verified(archive, archive.index(connection))) == []
-        return run_journal.begin(connection).number + 1
+        return run_journal.last_trimmed(connection).number + 1
 
 
 def test_what_is_too_old_goes_and_little_waits_for_more(database: Database, pass_of: Pass) -> None:
@@ -108,7 +108,7 @@ def test_files_that_are_too_old_or_too_many_go_and_that_is_known(
     begin = int(files[0].name[17:29])
     with database.reading() as connection:
         run = WholeRun(connection)
-        assert (run.begin.number, run.index.whole) == (begin, False)
+        assert (run.last_trimmed.number, run.index.whole) == (begin, False)
         assert [each.number for each in run.after(0, 100)] == list(range(begin + 1, 96))
     assert first(database) == 90
     assert pass_of(archive_days=1.0).removed == len(files) - 1

@@ -166,10 +166,10 @@ def test_a_command_withdrawn_in_time_has_no_effect() -> None:
 def test_moved_by_hand_it_reports_that_and_goes_where_it_is_told() -> None:
     bench = Bench()
     bench.command(arm__goto="home")
-    bench.devices.put("arm.pose", "out")
+    bench.devices.set_value("arm.pose", "out")
     assert bench.reported()["arm.pose"] == "out"
     bench.until("arm.pose", "home")
-    bench.devices.put("arm.pose", "unknown")
+    bench.devices.set_value("arm.pose", "unknown")
     assert bench.reported()["arm.pose"] == "unknown"
 
 
@@ -178,7 +178,7 @@ def test_moved_by_hand_on_the_way_it_sets_out_anew() -> None:
     bench.command(arm__goto="out")
     bench.until("arm.pose", "unknown")
     bench.wait(0.5)
-    bench.devices.put("arm.pose", "unknown")
+    bench.devices.set_value("arm.pose", "unknown")
     bench.wait(0.7)
     assert bench.reported()["arm.pose"] == "unknown"
     assert bench.until("arm.moving", False) <= 0.3 + 2 * STEP
@@ -189,11 +189,11 @@ def test_by_hand_it_takes_what_it_has_and_says_what_that_is() -> None:
     with pytest.raises(
         ValueError, match=r"no emulated device has `arm.goto`; there are arm.last, arm.moving, arm.pose"
     ):
-        bench.devices.put("arm.goto", "home")
+        bench.devices.set_value("arm.goto", "home")
     with pytest.raises(ValueError, match=r"`away` is no value of arm.pose, which ranges over \{unknown, home, out\}"):
-        bench.devices.put("arm.pose", "away")
+        bench.devices.set_value("arm.pose", "away")
     with pytest.raises(ValueError, match=r"`1` is no value of arm\.moving, which ranges over bool"):
-        bench.devices.put("arm.moving", 1)
+        bench.devices.set_value("arm.moving", 1)
 
 
 def test_a_command_without_sense_is_said_and_makes_the_command_unknown() -> None:
@@ -209,7 +209,7 @@ def test_a_command_without_sense_is_said_and_makes_the_command_unknown() -> None
 def test_whatever_is_done_by_hand_is_what_is_reported(poses: list[str]) -> None:
     bench = Bench()
     for pose in poses:
-        bench.devices.put("arm.pose", pose)
+        bench.devices.set_value("arm.pose", pose)
         assert bench.reported()["arm.pose"] == pose
 
 
@@ -269,7 +269,7 @@ def test_nobody_emulates_the_person() -> None:
     bench.wait(20)
     assert bench.devices.state["operator.acknowledged"] is False
     with pytest.raises(ValueError, match=r"no emulated device has `operator.acknowledged`"):
-        bench.devices.put("operator.acknowledged", True)
+        bench.devices.set_value("operator.acknowledged", True)
 
 
 DONE = st.one_of(
@@ -316,7 +316,7 @@ def _do(bench: Bench, what: str, number: int) -> None:
     elif what == "put":
         name = draw.choice(sorted(bench.devices.topics))
         with contextlib.suppress(CannotSpeakError):
-            bench.devices.put(name, draw.choice(automaton.variables[name].type.domain))
+            bench.devices.set_value(name, draw.choice(automaton.variables[name].type.domain))
     elif what == "slow":
         resource = draw.choice(sorted(automaton.resources))
         bench.devices.advance(bench.now)

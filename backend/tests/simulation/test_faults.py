@@ -45,7 +45,7 @@ class Bench:
     def begin(self, text: str) -> None:
         fault = self.reader.read(text)
         assert isinstance(fault, Fault)
-        self.faulty.begin(fault, self.now)
+        self.faulty.start(fault, self.now)
 
     def command(self, **outputs: Value) -> None:
         """Change outputs (`arm__goto="out"`) and send every message that comes to its device."""

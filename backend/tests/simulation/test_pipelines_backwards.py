@@ -48,7 +48,7 @@ def test_whatever_a_device_is_brought_to_is_read(tmp_path: Path) -> None:
     now = 0.0
     for name in ("attached", "height", "state", "grip"):
         for value in (*station.automaton.variables[f"tank.{name}"].type.domain,) * 2:
-            devices.put(f"tank.{name}", value)
+            devices.set_value(f"tank.{name}", value)
             for later in (1.0, 2.0):  # a new value has to be there for a while
                 for topic in ("/scene", "/arm"):
                     heard.take(topic, now + later, **devices.report(topic))

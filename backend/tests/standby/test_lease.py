@@ -206,7 +206,7 @@ def test_who_is_cut_off_for_long_leaves_the_network_to_others(url: str, tmp_path
 
         async def cut_off() -> None:
             keeper = LeaseKeeper(lease)
-            keeper.begin()
+            keeper.start()
             lost = asyncio.create_task(keeper.lost())
             now.seconds += LASTS
             done, _ = await asyncio.wait({lost}, timeout=3 * EVERY)

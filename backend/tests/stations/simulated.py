@@ -15,7 +15,7 @@ from sequence_planner.pipelines.chain_runtime import first_message
 from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.simulation.truck_station.drivers import Driver
 from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE, PREFIX
-from sequence_planner.simulation.truck_station.signals import put, read
+from sequence_planner.simulation.truck_station.signals import read, set_signals
 from sequence_planner.simulation.truck_station.world import World
 from support.places import TRUCK_ENGINE_STATION
 
@@ -75,7 +75,7 @@ class SimulatedHall:
             if self._now < self._frozen.get(node, 0.0) and topic in self._reports:
                 continue
             driver = self._drivers[node]
-            put(self.world, node, driver.signals(self._now))
+            set_signals(self.world, node, driver.signals(self._now))
             kind = f"{PACKAGE}/{NODE_TYPES[node].says[1]}"
             said = self._registry.encode(kind, driver.say(read(self.world, node), self._now))
             self._reports[topic] = self._registry.decode(kind, said)
@@ -88,7 +88,7 @@ class SimulatedHall:
         """A message of the controller; a node that is away does not hear it."""
         node, kind = HEARS[topic]
         if self._now >= self._away.get(node, 0.0):
-            self._drivers[node].hear(self._registry.decode(kind, self._registry.encode(kind, message)), self._now)
+            self._drivers[node].on_command(self._registry.decode(kind, self._registry.encode(kind, message)), self._now)
 
 
 class HallRig(Rig):

@@ -26,7 +26,7 @@ STILL = [0.0] * 6
 def test_the_nutrunner_runs_only_if_exactly_one_bit_is_set() -> None:
     for bits in product((False, True), repeat=4):
         driver = ToolDriver()
-        driver.hear(dict(zip(RUNS, bits, strict=True)), 0.0)
+        driver.on_command(dict(zip(RUNS, bits, strict=True)), 0.0)
         only = [run for run, bit in zip(RUNS.values(), bits, strict=True) if bit]
         assert driver.signals(0.1)["run"] == (only[0] if len(only) == 1 else "idle")
 
@@ -35,7 +35,7 @@ def test_the_lift_floats_holds_or_stays() -> None:
     told = {}
     for bits in product((False, True), repeat=2):
         driver = ToolDriver()
-        driver.hear(dict(zip(LIFTS, bits, strict=True)), 0.0)
+        driver.on_command(dict(zip(LIFTS, bits, strict=True)), 0.0)
         told[bits] = driver.signals(0.1)["lift"]
     expected = {(False, False): None, (True, False): "float", (False, True): "hold", (True, True): None}
     assert told == expected
@@ -50,7 +50,7 @@ def test_the_valves_move_only_if_exactly_one_bit_is_set() -> None:
     }
     for bits in product((False, True), repeat=4):
         driver = EndEffectorDriver()
-        driver.hear(dict(zip(END_EFFECTOR, bits, strict=True)), 0.0)
+        driver.on_command(dict(zip(END_EFFECTOR, bits, strict=True)), 0.0)
         only = [name for name, bit in zip(END_EFFECTOR, bits, strict=True) if bit]
         assert driver.signals(0.1) == (alone[only[0]] if len(only) == 1 else {})
 
@@ -58,7 +58,7 @@ def test_the_valves_move_only_if_exactly_one_bit_is_set() -> None:
 def test_a_driver_echoes_what_it_hears_and_forgets_it_when_nothing_comes_any_more() -> None:
     driver = ToolDriver()
     assert driver.signals(0.0) == {}  # a device stays as it is until its computer has heard something
-    driver.hear({"run_tool_forward": True, "activate_unload": True}, 10.0)
+    driver.on_command({"run_tool_forward": True, "activate_unload": True}, 10.0)
     read = {"turning": True, "reverse": False, "torque": False, "home": False}
     said = driver.say(read, 10.0 + FORGOTTEN_AFTER - 0.1)
     echoes = {name: value for name, value in said.items() if "got" in name and value}
@@ -80,7 +80,7 @@ def test_a_watch_that_hears_nothing_sets_nothing() -> None:
 
 def test_the_scene_says_what_the_robot_holds() -> None:
     driver = SceneDriver()
-    driver.hear({"object_action": "ATTACH", "object_name": "LFTOOL"}, 0.0)
+    driver.on_command({"object_action": "ATTACH", "object_name": "LFTOOL"}, 0.0)
     assert driver.signals(0.1) == {"action": "ATTACH", "object": "LFTOOL"}
     said = driver.say({"attached": ["LFTOOL"]}, 0.1)
     assert said["attached_objects"] == ["LFTOOL"]
@@ -101,7 +101,7 @@ def command(pose: str, speed: float = 0.25, name: str = "TARS") -> dict[str, obj
 def test_the_robot_is_at_a_saved_pose_on_its_way_or_nowhere() -> None:
     driver = RobotDriver()
     assert driver.say({"joints": HOME, "speeds": STILL}, 0.0)["actual_pose"] == "HomeJOINTPose"
-    driver.hear(command("AboveKitJOINTPose"), 0.1)
+    driver.on_command(command("AboveKitJOINTPose"), 0.1)
     said = driver.say({"joints": HOME, "speeds": [0.0, 0.02, 0.0, 0.0, 0.0, 0.0]}, 0.2)
     assert (said["moving"], said["actual_pose"]) == (True, "moving from HomeJOINTPose to AboveKitJOINTPose")
     said = driver.say({"joints": [9.0] * 6, "speeds": [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]}, 0.3)
@@ -111,11 +111,11 @@ def test_the_robot_is_at_a_saved_pose_on_its_way_or_nowhere() -> None:
 @pytest.mark.parametrize("forget", ["UNKNOWN", "RESET"])
 def test_a_command_that_equals_the_one_before_is_ignored_until_it_is_forgotten(forget: str) -> None:
     driver = RobotDriver()
-    driver.hear(command("AboveKitJOINTPose"), 0.0)
+    driver.on_command(command("AboveKitJOINTPose"), 0.0)
     assert driver.signals(0.0) == {"pose": "AboveKitJOINTPose", "action": "PLANNED", "scaling": 0.25}
-    driver.hear(command(forget), 1.0)
+    driver.on_command(command(forget), 1.0)
     assert driver.signals(1.0) == {}
-    driver.hear(command("AboveKitJOINTPose"), 2.0)
+    driver.on_command(command("AboveKitJOINTPose"), 2.0)
     assert driver.signals(2.0)["pose"] == "AboveKitJOINTPose"
 
 
@@ -130,8 +130,8 @@ def test_a_command_for_another_robot_or_pose_is_an_error_and_moves_nothing(
     wrong: dict[str, object], error: str
 ) -> None:
     driver = RobotDriver()
-    driver.hear(command("HomeJOINTPose"), 0.0)
-    driver.hear(wrong, 1.0)
+    driver.on_command(command("HomeJOINTPose"), 0.0)
+    driver.on_command(wrong, 1.0)
     info = driver.say({"joints": HOME, "speeds": STILL}, 1.0)["info"]
     assert info == {"robot_name": "TARS", "fresh_msg": True, "error_list": [error]}
     assert driver.signals(1.0)["pose"] == "HomeJOINTPose"

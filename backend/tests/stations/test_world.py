@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.simulation.truck_station.poses import HOME, PAIRS, POSES
-from sequence_planner.simulation.truck_station.signals import NODES, put, read
+from sequence_planner.simulation.truck_station.signals import NODES, read, set_signals
 from sequence_planner.simulation.truck_station.world import World
 from sequence_planner.simulation.truck_station.world_server import WorldServer
 
@@ -29,13 +29,13 @@ def pass_time(world: World, seconds: float) -> None:
 
 def go(world: World, *poses: str, action: str = "MOVEJ") -> None:
     for pose in poses:
-        put(world, "ur10", {"pose": pose, "action": action, "scaling": 1.0})
+        set_signals(world, "ur10", {"pose": pose, "action": action, "scaling": 1.0})
         pass_time(world, 3)
         assert world.arm.joints == POSES[pose]
 
 
 def valve(world: World, **signals: bool) -> None:
-    put(world, "rsp_ecu", signals)
+    set_signals(world, "rsp_ecu", signals)
     pass_time(world, 0.6)
 
 
@@ -46,14 +46,14 @@ def with_nutrunner() -> World:
     world.line.engine.bolts[PAIRS[0]] = "placed"
     go(world, *NUTRUNNER)
     valve(world, lock=True)
-    put(world, "tool_ecu", {"lift": "float"})
+    set_signals(world, "tool_ecu", {"lift": "float"})
     go(world, NUTRUNNER[0], "AboveEngineTCPPose")
     assert not world.verdict.events
     return world
 
 
 def run(world: World, run_: str) -> None:
-    put(world, "tool_ecu", {"run": run_})
+    set_signals(world, "tool_ecu", {"run": run_})
     pass_time(world, 0.5)
 
 
@@ -115,14 +115,14 @@ def test_a_way_is_planned_around_what_the_robot_holds() -> None:
     world = with_nutrunner()
     go(world, "HomeJOINTPose", action="PLANNED")
     assert world.verdict.wrong == ["wrong plan: the scene has [], and the robot ATLASTOOL"]
-    put(world, "scene", {"action": "ATTACH", "object": "ATLASTOOL"})
+    set_signals(world, "scene", {"action": "ATTACH", "object": "ATLASTOOL"})
     go(world, "AboveEngineTCPPose", action="PLANNED")
     assert len(world.verdict.wrong) == 1
 
 
 def test_an_engine_that_leaves_unfinished_is_wrong_and_says_what_is_missing() -> None:
     world = World()
-    put(world, "rfidcam", {"release": True})
+    set_signals(world, "rfidcam", {"release": True})
     pass_time(world, 3)
     assert read(world, "rfidcam") == {"in_place": False, "tag": ""}
     (wrong,) = world.verdict.wrong
@@ -132,7 +132,7 @@ def test_an_engine_that_leaves_unfinished_is_wrong_and_says_what_is_missing() ->
 
 def test_an_engine_assembled_step_by_step_is_done() -> None:
     world = World()
-    put(world, "mircom", {"goal": "station"})
+    set_signals(world, "mircom", {"goal": "station"})
     go(world, *FRAME_TOOL)
     valve(world, lock=True)
     valve(world, close=False)
@@ -144,30 +144,30 @@ def test_an_engine_assembled_step_by_step_is_done() -> None:
     valve(world, close=True)
     valve(world, lock=False)
     for pair in PAIRS:
-        put(world, "watch", {"task": "place", "pair": pair})
+        set_signals(world, "watch", {"task": "place", "pair": pair})
         pass_time(world, 4)
         assert read(world, "watch")["acknowledged"] is True
-        put(world, "watch", {"task": "none"})
+        set_signals(world, "watch", {"task": "none"})
         pass_time(world, 0.1)
     go(world, FRAME_TOOL[0], *NUTRUNNER)
     valve(world, lock=True)
-    put(world, "tool_ecu", {"lift": "float"})
+    set_signals(world, "tool_ecu", {"lift": "float"})
     for pair in PAIRS:
         go(world, "AboveEngineTCPPose")
         run(world, "forward")
         go(world, pair)
         run(world, "idle")
     go(world, "AboveEngineTCPPose", *NUTRUNNER)
-    put(world, "tool_ecu", {"lift": "hold"})
+    set_signals(world, "tool_ecu", {"lift": "hold"})
     valve(world, lock=False)
     go(world, NUTRUNNER[0], *FILTER_TOOL)
     valve(world, lock=True)
     go(world, FILTER_TOOL[0], "PRE_OF_1_UNTIGHTENED", "OF_1_TIGHTENED", "PRE_OF_1_UNTIGHTENED", "HomeJOINTPose")
-    put(world, "rfidcam", {"release": True})
+    set_signals(world, "rfidcam", {"release": True})
     pass_time(world, 3)
     assert world.verdict.wrong == []
     assert world.verdict.counted["engine done"] == 1
-    put(world, "rfidcam", {"release": False, "read": True})
+    set_signals(world, "rfidcam", {"release": False, "read": True})
     pass_time(world, 4)
     assert read(world, "rfidcam") == {"in_place": True, "tag": "D13-00002"}
 
@@ -176,7 +176,7 @@ def test_a_hand_and_the_robot_are_not_at_the_same_bolts() -> None:
     world = with_nutrunner()
     assert world.line.engine is not None
     world.line.engine.frame = True
-    put(world, "watch", {"task": "place", "pair": PAIRS[1]})
+    set_signals(world, "watch", {"task": "place", "pair": PAIRS[1]})
     run(world, "forward")
     go(world, PAIRS[1])
     assert f"collision: the robot and a hand at {PAIRS[1]}" in world.verdict.wrong
@@ -186,11 +186,13 @@ def test_a_robot_that_is_switched_off_is_pushed_home_and_goes_only_where_it_is_s
     world = with_nutrunner()
     world.person.takes_over = True
     for pose in (PAIRS[0], "AboveKitJOINTPose"):
-        put(world, "ur10", {"pose": pose, "action": "MOVEL", "scaling": 1.0})
+        set_signals(world, "ur10", {"pose": pose, "action": "MOVEL", "scaling": 1.0})
         pass_time(world, 2)
         assert world.arm.joints == POSES[HOME]
     world.person.takes_over = False
-    put(world, "ur10", {"pose": "AboveKitJOINTPose", "action": "MOVEL", "scaling": 1.0})  # as its computer repeats it
+    set_signals(
+        world, "ur10", {"pose": "AboveKitJOINTPose", "action": "MOVEL", "scaling": 1.0}
+    )  # as its computer repeats it
     pass_time(world, 2)
     assert world.arm.joints == POSES[HOME]
     go(world, "AboveEngineTCPPose")
@@ -201,7 +203,7 @@ def test_the_nutrunner_comes_off_a_robot_that_is_switched_off_and_tightens_by_ha
     world = with_nutrunner()
     world.person.takes_over = True
     for task in ("free", "none", "guide", "none", "guide", "none"):
-        put(world, "watch", {"task": task, "pair": PAIRS[0]})
+        set_signals(world, "watch", {"task": task, "pair": PAIRS[0]})
         pass_time(world, 9)
     assert read(world, "rsp_ecu") == {"tool": None, "frame": False, "locked": False, "closed": True}
     assert read(world, "tool_ecu")["home"] is True
@@ -214,7 +216,7 @@ def test_the_nutrunner_comes_off_a_robot_that_is_switched_off_and_tightens_by_ha
 
 def test_nobody_takes_the_nutrunner_off_a_robot_that_is_on() -> None:
     world = with_nutrunner()
-    put(world, "watch", {"task": "free"})
+    set_signals(world, "watch", {"task": "free"})
     pass_time(world, 9)
     assert world.verdict.wrong == ["wrong task: no nutrunner can be taken off the robot"]
     assert read(world, "rsp_ecu")["tool"] == "ATLASTOOL"
@@ -253,7 +255,7 @@ def test_whatever_is_set_the_world_goes_on_and_bolts_are_tightened_only_once_pla
         before = dict.fromkeys(PAIRS, "empty")
         number = 1
         for node, signals in acts:
-            put(world, node, signals)
+            set_signals(world, node, signals)
             for _ in range(20):
                 world.advance(0.05)
                 engine = world.line.engine

@@ -167,21 +167,21 @@ class SignIn:
             tried = find_by_name(connection, attempt.name)
         if waiting is None:
             with self._database.writing() as connection:
-                self._tell_limited(connection, attempt.now)
+                self._record_limited(connection, attempt.now)
                 waiting = rate_limit.waiting(connection, attempt.counters, attempt.now)
                 if waiting is None:
                     clear(connection, attempt.now)
                     rate_limit.count(connection, attempt.counters, attempt.now)
                     found = find_password(connection, attempt.name)
                     return None if found is None else _Known(*found)
-        self._limited.note(waiting.counter, attempt.refused("too-many-attempts", tried), attempt.now)
+        self._limited.record(waiting.counter, attempt.refused("too-many-attempts", tried), attempt.now)
         if self._limited.due(attempt.now):
             with self._database.writing() as connection:
-                self._tell_limited(connection, attempt.now)
+                self._record_limited(connection, attempt.now)
         raise waiting.refusal()
 
-    def _tell_limited(self, connection: Connection, now: float) -> None:
-        for entry in self._limited.take(now):
+    def _record_limited(self, connection: Connection, now: float) -> None:
+        for entry in self._limited.collect_due(now):
             append(connection, entry, now)
 
     def _record(self, attempt: _Attempt, known: _Known | None) -> None:

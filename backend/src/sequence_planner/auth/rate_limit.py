@@ -120,7 +120,7 @@ def forgive(connection: Connection, counters: tuple[Counter, ...]) -> None:
             connection.execute(update(ATTEMPTS).where(_at(counter) & (ATTEMPTS.c.wrong > 0)).values(less))
 
 
-def forget(connection: Connection, name: str) -> None:
+def clear_attempts(connection: Connection, name: str) -> None:
     """Let a name begin anew, as after its password was reset."""
     connection.execute(delete(ATTEMPTS).where(_at(of_name(name))))
 
@@ -173,7 +173,7 @@ class RefusalLog:
         self._gathered: dict[Counter, _Gathered] = {}
         self._lock = threading.Lock()
 
-    def note(self, counter: Counter, entry: Entry, now: float) -> None:
+    def record(self, counter: Counter, entry: Entry, now: float) -> None:
         """Somebody was refused; of several, `entry` tells of the last."""
         with self._lock:
             before = self._gathered.get(counter)
@@ -185,7 +185,7 @@ class RefusalLog:
         with self._lock:
             return any(_due(each, now) for each in self._gathered.values())
 
-    def take(self, now: float) -> list[Entry]:
+    def collect_due(self, now: float) -> list[Entry]:
         """The entries that are due, each with the number of refusals that it stands for."""
         with self._lock:
             due = {counter: each for counter, each in self._gathered.items() if _due(each, now)}

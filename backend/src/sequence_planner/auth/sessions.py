@@ -14,7 +14,7 @@ from sqlalchemy import ColumnElement, Connection, Row, Select, delete, func, ins
 from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.auth.tables import PEOPLE, SESSIONS
 from sequence_planner.auth.tokens import hash_of, new_id, new_token, record, short
-from sequence_planner.auth.users import DEMONSTRATOR, Person, known
+from sequence_planner.auth.users import DEMONSTRATOR, Person, get_user
 from sequence_planner.core.actor import Actor, ActorKind
 
 LONGEST = 12 * 3600.0  # seconds from the sign-in
@@ -130,7 +130,7 @@ def end_sessions_of(connection: Connection, person_id: str, by: Actor, now: floa
 
     Raises `IdentityRefused` (`no-user`, 404).
     """
-    person = known(connection, person_id)
+    person = get_user(connection, person_id)
     ended = delete(SESSIONS).where(SESSIONS.c.person == person.id)
     if but is not None:
         ended = ended.where(SESSIONS.c.id != but)

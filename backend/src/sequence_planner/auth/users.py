@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
-from sequence_planner.auth.rate_limit import forget
+from sequence_planner.auth.rate_limit import clear_attempts
 from sequence_planner.auth.roles import IdentityRefused, Role
 from sequence_planner.auth.tables import LONGEST_KEY, PEOPLE, SESSIONS
 from sequence_planner.auth.tokens import (
@@ -132,7 +132,7 @@ def change(
     Raises `IdentityRefused`: `no-user` (404), `user-changed` (412) since that revision, `last-administrator` (409)
     when nobody would be left who can manage people, `role-from-provider` (409) where a provider says who has which.
     """
-    person = known(connection, id)
+    person = get_user(connection, id)
     if revision is not None and person.revision != revision:
         detail = f"{person.name} has been changed meanwhile: look at what is there now, and change that."
         raise IdentityRefused("user-changed", "Changed meanwhile", detail, 412)
@@ -169,10 +169,10 @@ def set_password(
     For whom a provider vouches has none, but an administrator in a `recovery`, until the provider signs that one in
     again. Raises `IdentityRefused`: `no-user` (404), `no-password-here` (409).
     """
-    person = known(connection, id)
+    person = get_user(connection, id)
     check_has_password(person, recovery=recovery)
     replace_password(connection, person, password_hash, temporary=temporary)
-    forget(connection, person.name)
+    clear_attempts(connection, person.name)
     record(connection, by, "password-reset", _subject(person), now, id=id, temporary_password=temporary)
 
 
@@ -206,7 +206,7 @@ def administrator_exists(connection: Connection, *, but: str | None = None) -> b
     return connection.execute(counted).scalar_one() > 0
 
 
-def known(connection: Connection, id: str) -> Person:
+def get_user(connection: Connection, id: str) -> Person:
     """The person with this id. Raises `IdentityRefused` (`no-user`, 404)."""
     person = find(connection, id)
     if person is None:

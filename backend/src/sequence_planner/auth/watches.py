@@ -218,7 +218,7 @@ def redeem(database: Database, code: str, now: float, *, address: str, agent: st
     if waiting is None:
         with database.writing() as connection:
             waiting = rate_limit.waiting(connection, counters, now)
-            taken = _take(connection, code, now) if waiting is None else None
+            taken = _redeem(connection, code, now) if waiting is None else None
             if taken is not None:
                 return _make_watch(connection, taken, now, address, agent)
             if waiting is None:
@@ -231,7 +231,7 @@ def redeem(database: Database, code: str, now: float, *, address: str, agent: st
     raise IdentityRefused("wrong-code", "Code does not work", detail, 403)
 
 
-def _take(connection: Connection, code: str, now: float) -> PairingOffer | None:
+def _redeem(connection: Connection, code: str, now: float) -> PairingOffer | None:
     """The offer of a code, which is gone then."""
     matching = [row for row in connection.execute(_open(now)) if same(row.code_hash, _code_hash(row.id, code))]
     if not matching:

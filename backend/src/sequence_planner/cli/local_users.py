@@ -12,7 +12,7 @@ from sequence_planner.auth.first_start import new_link_token
 from sequence_planner.auth.passwords import Passwords, check_password
 from sequence_planner.auth.roles import IdentityRefused, Role
 from sequence_planner.auth.tokens import clean_name
-from sequence_planner.auth.users import Person, create, everybody, find_by_name, known, set_password
+from sequence_planner.auth.users import Person, create, everybody, find_by_name, get_user, set_password
 from sequence_planner.cli.local_actor import at_the_command_line
 from sequence_planner.core.actor import Actor
 from sequence_planner.db.database import Database
@@ -46,7 +46,7 @@ class PeopleAtHand:
         hashed = _hash(ask(), person.name)
         with self.database.writing() as connection:
             set_password(connection, person.id, hashed, self.by, time.time(), temporary=True, recovery=True)
-            return known(connection, person.id)
+            return get_user(connection, person.id)
 
     def link_token(self) -> str:
         """The token of a new link for the first administrator."""

@@ -217,7 +217,7 @@ class Controller:
     def take_command(self) -> None:
         """Nobody else commands the station's devices, so this one does from now on. Raises `TransportError`."""
         self.devices.take_command()
-        self._writer.begin()
+        self._writer.start()
         self._tick_again()
 
     def wait_to_command(self) -> None:
@@ -303,7 +303,7 @@ class Controller:
     def _note(self, kind: str, content: Mapping[str, JsonValue]) -> None:
         if kind == "alarm" and content["event"] == "came" and content["priority"] != Priority.LOW:
             self._adviser.expect()
-        self._recorder.note(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
+        self._recorder.record(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
 
     def _unjournalled(self) -> str | None:
         """Return why what happens cannot be journalled; None when it can."""

@@ -37,7 +37,7 @@ class Lasting:
 
     async def begin(self, controller: Controller, epoch: int | None) -> None:
         """A controller begins its life; `epoch` is that of the lease that it holds."""
-        await self._written(partial(self._last_word.begin, controller.begun, epoch))
+        await self._written(partial(self._last_word.start_life, controller.begun, epoch))
 
     async def settle(
         self, command: Command, controller: Controller, before: int, audited: asyncio.Task[None] | None

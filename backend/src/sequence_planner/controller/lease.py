@@ -31,7 +31,7 @@ async def held_lease(
     lease = open_lease(database, name, digest_of(model))
     await asyncio.to_thread(_tell, lease, ended)
     keeper, deployed = LeaseKeeper(lease), False
-    keeper.begin()
+    keeper.start()
     try:
         yield keeper
     except DeployedError:

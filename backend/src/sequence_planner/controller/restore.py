@@ -185,7 +185,7 @@ def _read(connection: Connection, whole: RunRecord) -> tuple[_Known, list[int]]:
     """Return what is known after the last record, and which records are not as they were written."""
     number = whole.number
     last = run_journal.get(connection, number - 1)
-    changed = [] if whole.is_whole((last or run_journal.begin(connection)).hash) else [number]
+    changed = [] if whole.is_whole((last or run_journal.last_trimmed(connection)).hash) else [number]
     known = _Known(whole)
     while page := run_journal.after(connection, number, _PAGE):
         for record, before in zip(page, [known.record, *page], strict=False):

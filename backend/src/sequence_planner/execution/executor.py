@@ -238,14 +238,14 @@ class ExecutorBase:
         self._run.sense(kept)
         self._run.synchronise()
         ended = tuple(name for name in finishing.finished if self.plan.order.finish(name, now))
-        called_off, given_up = self._look_after_running(ended, now)
+        called_off, given_up = self._check_running(ended, now)
         activated, completed = self._update_operations(now)
         self._look_after_errand(now)
         self._heed_supervisor()
         started = self._start(now)
         self._heed_supervisor()
         self._heed_answers(started)
-        self._look_at_plan(now)
+        self._update_plan(now)
         # Before production is started nothing is published, and then all outputs are: no change of one is news.
         news = self.automaton.outputs if self.production is Production.STARTED else ()
         outputs = frozenset(name for name in news if self.state[name] != self.published[name])
@@ -276,7 +276,7 @@ class ExecutorBase:
                 done = self.conduct.done - master.operations.keys()
                 self._change(jobs=self.conduct.jobs.having_begun(job.id, now), done=done)
 
-    def _look_after_running(self, ended: tuple[str, ...], now: Timestamp) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    def _check_running(self, ended: tuple[str, ...], now: Timestamp) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """The overdue abilities that are called off to be planned anew, and those of them that are given up."""
         if any(name in self.conduct.tried for name in ended):
             self._change(tried={name: n for name, n in self.conduct.tried.items() if name not in ended})
@@ -376,16 +376,16 @@ class ExecutorBase:
         if answers != self.conduct.answers:
             self.conduct = replace(self.conduct, answers=answers)
 
-    def _look_at_plan(self, now: Timestamp) -> None:
+    def _update_plan(self, now: Timestamp) -> None:
         """Notice that the plan is done with, or that the state has departed from it."""
         if self.conduct.executes_operations:
-            self.plan.look(self._present, self.active)
+            self.plan.update(self._present, self.active)
         elif self.errand is not None and self.errand.ability is not None:
-            self._look_after_trial(self.errand.ability, now)
+            self._check_trial(self.errand.ability, now)
         elif self.errand is not None and not self.blind and not self.plan.still_leads(self._present):
             self._end_errand("the station departed from it, so that it no longer led to its goal", now)
 
-    def _look_after_trial(self, ability: str, now: Timestamp) -> None:
+    def _check_trial(self, ability: str, now: Timestamp) -> None:
         """A trial starts in the first tick after it was taken, and is over when its run is, or when that is overdue."""
         title, order = self.automaton.abilities[ability].title, self.plan.order
         if order.ahead:
@@ -442,18 +442,18 @@ class ExecutorBase:
         circumstances = self.conduct.circumstances(self.automaton)
         lookahead, curious = self._supervised, self._curious
         if self._is_free:
-            lookahead, curious = self._free = self._free or (self._look_out(), self._look_out())
+            lookahead, curious = self._free = self._free or (self._recovery_lookahead(), self._recovery_lookahead())
         if circumstances != self.circumstances or not self.plan.looks(lookahead):
             self.circumstances = circumstances
             lookahead.face(circumstances)
             curious.face(circumstances)
-            self.plan.look_with(lookahead)
+            self.plan.use_lookahead(lookahead)
 
-    def _look_out(self) -> Lookahead:
+    def _recovery_lookahead(self) -> Lookahead:
         """A look ahead from outside the safe states: whatever is to be reached is reached inside."""
         return Lookahead(self._compiled, _UNSUPERVISED, self.supervisor.safe)
 
-    def forget(self) -> None:
+    def drop_caches(self) -> None:
         """Drop what was remembered only to be quick, so that who goes on from a copy of this goes on the same way."""
         self._supervised.face(self.circumstances)
         if self._free is not None:
@@ -535,12 +535,12 @@ class Executor(ExecutorBase):
             self.state, self.published, self.active, self._operations, self.plan, self.conduct = kept
             self.obstacles = kept_obstacles
             self._face()
-            self.forget()
+            self.drop_caches()
             raise
         self.ticks += 1
         if outcome.changed:
             self.revision += 1
-        self._tell(Ticked(measured, obstacles, silent, now), before, outcome)
+        self._emit(Ticked(measured, obstacles, silent, now), before, outcome)
         return outcome
 
     def start_production(self) -> None:
@@ -548,7 +548,7 @@ class Executor(ExecutorBase):
         before = self.state
         self._change(production=Production.STARTED, returned=frozenset())
         self.published = self.state
-        self._tell(ProductionStarted(), before)
+        self._emit(ProductionStarted(), before)
 
     def change_mode(self, mode: Mode, by: str, now: Timestamp) -> None:
         """Another mode. An errand ends with it, and holding calls off what runs."""
@@ -560,7 +560,7 @@ class Executor(ExecutorBase):
         self._change(mode=mode, steps=0)  # a step is for what can be seen now
         if restarts:
             self.plan.drop("operations wait in restart mode" if mode is Mode.RESTART else "restart mode was left")
-        self._tell(ModeChanged(mode, by, now), before)
+        self._emit(ModeChanged(mode, by, now), before)
 
     def call_off(self, by: str, now: Timestamp) -> None:
         """Call off what runs, and the errand; the mode stays."""
@@ -568,17 +568,17 @@ class Executor(ExecutorBase):
         self._end_errand(f"{by} chose to hold", now, by=by)
         self._change(steps=0)
         self._call_off(now)
-        self._tell(CalledOff(by, now), before)
+        self._emit(CalledOff(by, now), before)
 
     def set_stepping(self, on: bool) -> None:
         """From now on every start waits for a step, or none does."""
         self._change(stepping=on, steps=0)
-        self._tell(SteppingChanged(on), self.state)
+        self._emit(SteppingChanged(on), self.state)
 
     def take_step(self) -> None:
         """One start may be taken."""
         self._change(steps=1)
-        self._tell(StepTaken(), self.state)
+        self._emit(StepTaken(), self.state)
 
     def set_service(self, of: ServiceKind, name: str, in_service: bool, by: str, why: str, now: Timestamp) -> None:
         """Take something out of service, or put it back."""
@@ -588,7 +588,7 @@ class Executor(ExecutorBase):
         done = self.conduct.done - {name} if of is ServiceKind.OPERATION else self.conduct.done
         tried = {each: times for each, times in self.conduct.tried.items() if each != name}
         self._change(service=service, done=done, tried=tried)
-        self._tell(ServiceChanged(of, name, in_service, by, why, now), self.state)
+        self._emit(ServiceChanged(of, name, in_service, by, why, now), self.state)
 
     def correct(
         self,
@@ -611,12 +611,12 @@ class Executor(ExecutorBase):
             forces={**forces, **real} if real else forces,
             answers=answered(self.automaton, self.conduct.answers, values, self.state, taken_back),
         )
-        self._tell(Corrected(values, by, why, now, taken_back), before)
+        self._emit(Corrected(values, by, why, now, taken_back), before)
 
     def confirm(self, names: frozenset[str], by: str, now: Timestamp) -> None:
         """A person has seen that these estimates are as believed."""
         self._change(answers=answered(self.automaton, self.conduct.answers, names, self.state))
-        self._tell(Confirmed(names, by, now), self.state)
+        self._emit(Confirmed(names, by, now), self.state)
 
     def force(self, name: str, value: Value, until: Timestamp, by: str, why: str) -> None:
         """Let a measured variable or an output have a value until then; a measured one is sensed by the next tick."""
@@ -626,20 +626,20 @@ class Executor(ExecutorBase):
         self._change(forces={**self.conduct.forces, name: Force(value, until, by, why, real)})
         if name in self.automaton.outputs:
             self._write({name: value})
-        self._tell(Forced(name, value, until, by, why), before)
+        self._emit(Forced(name, value, until, by, why), before)
 
     def release(self, name: str) -> None:
         """Let a forced variable be as it comes."""
         before = self.state
         self._release((name,))
-        self._tell(ForceReleased(name), before)
+        self._emit(ForceReleased(name), before)
 
     def take_errand(self, errand: OperatorPlan, now: Timestamp) -> None:
         """Carry out a plan that a person has taken."""
         self._end_errand("another was taken", now, by=errand.by)
         self._change(errand=errand)
-        self.plan.carry_out(errand.plan, frozenset() if errand.ability else frozenset({ERRAND}), errand.title)
-        self._tell(ErrandTaken(errand, now), self.state)
+        self.plan.follow(errand.plan, frozenset() if errand.ability else frozenset({ERRAND}), errand.title)
+        self._emit(ErrandTaken(errand, now), self.state)
 
     def stop_errand(self, by: str, now: Timestamp) -> None:
         """Start no more of it. What is only tried is called off with it."""
@@ -647,34 +647,34 @@ class Executor(ExecutorBase):
         if errand is not None and errand.ability is not None:
             self._break_off(errand.ability, now)
         self._end_errand(f"{by} stopped it", now, by=by)
-        self._tell(ErrandStopped(by, now), before)
+        self._emit(ErrandStopped(by, now), before)
 
     # Its jobs. They advance with the next tick.
 
     def set_by_order(self, on: bool, by: str, why: str, now: Timestamp) -> None:
         """From now on the operations of work masters are active for jobs only, or whenever they can be."""
         self._change(jobs=replace(self.conduct.jobs, by_order=on))
-        self._tell(ByOrderChanged(on, by, why, now), self.state)
+        self._emit(ByOrderChanged(on, by, why, now), self.state)
 
-    def take_job(self, job: str, title: str, work_master: str, by: str, now: Timestamp) -> None:
+    def accept_job(self, job: str, title: str, work_master: str, by: str, now: Timestamp) -> None:
         """Work a job of which there is none yet, and whose operations no other job under way has."""
         self._change(jobs=self.conduct.jobs.taking(Job(job, title, work_master, now)))
-        self._tell(JobTaken(job, title, work_master, by, now), self.state)
+        self._emit(JobTaken(job, title, work_master, by, now), self.state)
 
     def sequence_jobs(self, waits: Waits, by: str, now: Timestamp) -> None:
         """Operations of jobs wait for these of others, which leads into no circle."""
         self._change(jobs=replace(self.conduct.jobs, waits=waits))
-        self._tell(JobsSequenced(waits, by, now), self.state)
+        self._emit(JobsSequenced(waits, by, now), self.state)
 
     def command_job(self, job: str, act: JobAct, by: str, why: str, now: Timestamp) -> None:
         """Pause, resume, stop or abort a job under way."""
-        self._change(jobs=self.conduct.jobs.told(job, act, self.active, self.automaton, now))
-        self._tell(JobCommanded(job, act, by, why, now), self.state)
+        self._change(jobs=self.conduct.jobs.command(job, act, self.active, self.automaton, now))
+        self._emit(JobCommanded(job, act, by, why, now), self.state)
 
     def forget_job(self, job: str, by: str, now: Timestamp) -> None:
         """Do not keep a job that has ended any longer."""
         self._change(jobs=self.conduct.jobs.forgetting(job))
-        self._tell(JobForgotten(job, by, now), self.state)
+        self._emit(JobForgotten(job, by, now), self.state)
 
     # Its plan.
 
@@ -683,40 +683,40 @@ class Executor(ExecutorBase):
         again.
         """
         request = self.plan.request(self._present, deadline) if self.conduct.executes_operations else None
-        return self._note_asked(request, Contract.FAST)
+        return self._record_request(request, Contract.FAST)
 
     def better(self, deadline: float) -> PlanRequest | None:
         """Return what to ask a planner that has nothing else to do; None when there is nothing that could become
         better.
         """
         request = self.plan.better(self._present, deadline) if self.conduct.executes_operations else None
-        return self._note_asked(request, Contract.MINIMAL)
+        return self._record_request(request, Contract.MINIMAL)
 
     def adopt(self, request: PlanRequest, answer: PlanAnswer) -> bool:
         """Follow an answered plan, if it still fits the state. False when a new one must be asked for."""
         if not self.conduct.executes_operations:
             return True
         adopted = self.plan.adopt(self._present, request, answer)
-        self._tell(Answered(answer), self.state)
+        self._emit(Answered(answer), self.state)
         return adopted
 
     def unanswered(self, why: str, again: bool) -> None:
         """The planner could not answer. With `again` the same question is asked once more, else only another one."""
         self.plan.unanswered(why, again)
-        self._tell(Unanswered(why, again), self.state)
+        self._emit(Unanswered(why, again), self.state)
 
     def explained(self, diagnosis: Diagnosis) -> None:
         """Take note of why there is no plan, as far as that was found."""
         self.plan.explained(diagnosis)
-        self._tell(Explained(diagnosis), self.state)
+        self._emit(Explained(diagnosis), self.state)
 
-    def _note_asked(self, request: PlanRequest | None, contract: Contract) -> PlanRequest | None:
+    def _record_request(self, request: PlanRequest | None, contract: Contract) -> PlanRequest | None:
         if request is not None:
             self.asked = request
-            self._tell(Asked(contract), self.state)
+            self._emit(Asked(contract), self.state)
         return request
 
-    def _tell(self, happening: Event, before: State, outcome: TickOutcome | None = None) -> None:
+    def _emit(self, happening: Event, before: State, outcome: TickOutcome | None = None) -> None:
         if outcome is None and not isinstance(happening, Asked | Answered | Unanswered | Explained):
             self.revision += 1
         heard = Heard(happening, before, self.state, outcome)

@@ -70,7 +70,7 @@ class Forecast:
         ] = {}  # by each ability, with the guard added then
         self._written: dict[str, frozenset[str]] = {}
 
-    def note(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """After a tick: remember how long has taken what ended, and look through a plan that is new."""
         order = self._execution.plan.order
         if self._execution.mode is not Mode.AUTOMATIC or self._execution.errand is not None:
@@ -81,7 +81,7 @@ class Forecast:
         self._counted = frozenset(ended)
         self._disturbed &= {step.number for step in order.past}
         if order.plan is not self._outlook.plan:
-            self._outlook = look_through(order, self._execution.simulated(), self._execution.automaton)
+            self._outlook = simulate_plan(order, self._execution.simulated(), self._execution.automaton)
             self._began = now
 
     def _learn(self, step: PlannedStart) -> None:
@@ -175,7 +175,7 @@ def waiting_for_people(automaton: Automaton) -> frozenset[str]:
     )
 
 
-def look_through(order: PlanCursor, run: CompiledRun, automaton: Automaton) -> Outlook:
+def simulate_plan(order: PlanCursor, run: CompiledRun, automaton: Automaton) -> Outlook:
     """Simulate what is left of the plan from where `run` stands; the run is changed by it."""
     plan = order.plan
     if plan is None:

@@ -310,7 +310,7 @@ class PlanTracker:
         goals = frozenset(answer.goals) & hopeful
         starts = tuple(name for _, name in answer.plan.starts)
         ticks = self._lookahead.remaining(
-            present.run, present.published, present.pursued.of(goals), starts, answer.plan.ticks
+            present.run, present.published, present.pursued.select(goals), starts, answer.plan.ticks
         )
         if ticks is None:
             return following
@@ -334,7 +334,7 @@ class PlanTracker:
             self._asked_better = None  # it may be an answer about what was for a moment, such as a device being silent
         return True
 
-    def carry_out(self, plan: Plan, goals: frozenset[str], reason: str) -> None:
+    def follow(self, plan: Plan, goals: frozenset[str], reason: str) -> None:
         """Follow a plan that a person has taken, as long as it leads to `goals`; one without is followed regardless."""
         self.order.adopt(plan, goals, goals)
         self.status, self.reason = PlanStatus.FOLLOWED, reason
@@ -355,7 +355,7 @@ class PlanTracker:
         """Return whether it is `lookahead` that says where the rest of the plan leads."""
         return self._lookahead is lookahead
 
-    def look_with(self, lookahead: Lookahead) -> None:
+    def use_lookahead(self, lookahead: Lookahead) -> None:
         """From now on `lookahead` says it."""
         self._lookahead = lookahead
 
@@ -417,7 +417,7 @@ class PlanTracker:
         """
         if lookahead.as_written(after, present.published, goals, *self.order.rest(taken=1)):
             return True
-        before = present.pursued.of(self.order.goals)
+        before = present.pursued.select(self.order.goals)
         if lookahead.as_written(present.run, present.published, before, *self.order.rest()):
             return False
         return lookahead.length(after, present.published, goals, self.order.names[1:]) is not None
@@ -428,16 +428,16 @@ class PlanTracker:
         Nor may it violate one that the planner has not been asked about yet.
         """
         new = present.pursued.hopeful - self.order.requested
-        if moved(present.pursued.of(new), after.values) is None:
+        if moved(present.pursued.select(new), after.values) is None:
             return None
-        return moved(present.pursued.of(self.order.goals), after.values)
+        return moved(present.pursued.select(self.order.goals), after.values)
 
     def start(self, now: Timestamp) -> PlannedStart:
         """The first ability of the order has been started."""
         self._started_since_asked = True
         return self.order.start(now)
 
-    def look(self, present: ExecutionSnapshot, active: frozenset[str]) -> None:
+    def update(self, present: ExecutionSnapshot, active: frozenset[str]) -> None:
         """Notice that the plan is done with, or that the state has departed from it."""
         if not active:
             self.status, self.reason = PlanStatus.IDLE, "no operation is active"
@@ -456,7 +456,7 @@ class PlanTracker:
         """Return whether what is left of the plan reaches its goals from here."""
         if self._left(present) is not None:
             return True
-        goals = present.pursued.of(self.order.goals)
+        goals = present.pursued.select(self.order.goals)
         return self._lookahead.as_written(present.run, present.published, goals, *self.order.rest())
 
     def _following(self, present: ExecutionSnapshot) -> bool:
@@ -471,7 +471,7 @@ class PlanTracker:
 
     def _left(self, present: ExecutionSnapshot) -> int | None:
         """In how many ticks the rest of the plan reaches its goals; None when it does not."""
-        goals = present.pursued.of(self.order.goals)
+        goals = present.pursued.select(self.order.goals)
         return self._lookahead.remaining(present.run, present.published, goals, *self.order.rest())
 
     def _is_better(self, present: ExecutionSnapshot, goals: frozenset[str], ticks: int, plan: Plan) -> bool:
@@ -539,7 +539,7 @@ def _question(present: ExecutionSnapshot, goals: frozenset[str]) -> PlanQuestion
 def _request(present: ExecutionSnapshot, goals: frozenset[str], deadline: float, contract: Contract) -> PlanRequest:
     return PlanRequest(
         dict(present.run.state),
-        present.pursued.of(goals),
+        present.pursued.select(goals),
         deadline,
         contract=contract,
         circumstances=present.circumstances,

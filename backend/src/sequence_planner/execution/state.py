@@ -276,7 +276,7 @@ class ActiveGoals:
         """The operations whose goals can still be reached as their formulas demand."""
         return frozenset(name for name in self.goals if name not in self.violated)
 
-    def of(self, names: Iterable[str]) -> tuple[Goal, ...]:
+    def select(self, names: Iterable[str]) -> tuple[Goal, ...]:
         """The goals of operations, in order of their names."""
         return tuple(self.goals[name] for name in sorted(names))
 

@@ -52,7 +52,7 @@ class SimulatedStation:
         for name in self._devices.topics:
             value = execution.state[name]
             if value is not None:
-                self._devices.put(name, value)
+                self._devices.set_value(name, value)
         self._command()
         self._desk.update(execution.state, (), (), now.epoch)
         self._next_better = now.monotonic

@@ -23,7 +23,7 @@ def looking_back(run: WholeRun, automaton: Automaton, supervisor: Supervisor, nu
     Raises `HistoryError` if there is no such record, if it cannot be replayed, or is not replayed as it was written.
     """
     if run.get(number) is None:
-        begin = run.begin.number
+        begin = run.last_trimmed.number
         detail = f": records up to {begin} were cut off" if number <= begin else ""
         raise HistoryError("no-record", f"the journal has no record {number}{detail}")
     last: Replayed | None = None

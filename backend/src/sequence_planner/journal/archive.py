@@ -177,7 +177,7 @@ class Segment:
         return {"number": self.last, "hash": self.hash, **{k: v for k, v in asdict(self).items() if k != "hash"}}
 
     @classmethod
-    def of(cls, details: dict[str, Any]) -> Segment | None:
+    def from_details(cls, details: dict[str, Any]) -> Segment | None:
         """Return what the record of a cut tells; None of one that was made without an archive."""
         if "file" not in details:
             return None
@@ -217,7 +217,7 @@ class Archive:
         """Tell which files there are to be. It does not look whether they are there."""
         chosen = select(AUDIT.c.number, AUDIT.c.action, AUDIT.c.entry).where(AUDIT.c.action.in_((TRIMMED, REMOVED)))
         newest = select(AUDIT.c.number).where(AUDIT.c.action.in_((TRIMMED, REMOVED))).order_by(AUDIT.c.number.desc())
-        begin = run_journal.begin(connection)
+        begin = run_journal.last_trimmed(connection)
         key = connection.execute(newest.limit(1)).scalar() or 0, begin
         known = self._index
         if known is None or known[0] != key:
@@ -277,7 +277,7 @@ def broken_at(archive: Archive, segment: Segment) -> int | None:
     for line in lines(archive.path(segment), segment.sha256):
         if line.startswith('{"archive"'):
             continue
-        record = RunRecord.of(line)
+        record = RunRecord.parse(line)
         if record is None or record.number != number or not record.is_whole(last):
             return number
         number, last = number + 1, record.hash
@@ -292,7 +292,7 @@ def _index(entries: list[tuple[str, dict[str, Any]]], begin: ChainPosition) -> I
             first = ChainPosition(details["number"], details["hash"])
             segments = [each for each in segments if each.last > first.number]
             continue
-        segment = Segment.of(details)
+        segment = Segment.from_details(details)
         if segment is None:
             segments, first = [], ChainPosition(details["number"], details["hash"])
         else:

@@ -38,7 +38,7 @@ class WholeRun:
         return self._index
 
     @property
-    def begin(self) -> ChainPosition:
+    def last_trimmed(self) -> ChainPosition:
         """The last record that is kept nowhere any more; `START` if all are."""
         return self.index.begin
 
@@ -58,7 +58,7 @@ class WholeRun:
                 lines = self._archive.lines(segment)[start:]
                 found += _up_to(lines, limit - len(found), kinds)
         if len(found) < limit:
-            begin = max(number, run_journal.begin(self.connection).number)
+            begin = max(number, run_journal.last_trimmed(self.connection).number)
             found += run_journal.after(self.connection, begin, limit - len(found), kinds)
         return found
 
@@ -72,7 +72,7 @@ class WholeRun:
     ) -> list[RunRecord]:
         """As `run_journal.before`; `reached` says where it stopped looking after `most_files`."""
         found, self.reached = list[RunRecord](), None
-        begin = run_journal.begin(self.connection).number
+        begin = run_journal.last_trimmed(self.connection).number
         if number is None or number > begin + 1:
             # What an earlier cut has left in the database is in the archive by now.
             chosen = run_journal.before(self.connection, number, limit, kinds, sought)
@@ -105,7 +105,7 @@ class WholeRun:
         within = run_journal.bounds(self.connection)
         if within is None:
             return 0
-        segments, begin = self.index.segments, run_journal.begin(self.connection).number
+        segments, begin = self.index.segments, run_journal.last_trimmed(self.connection).number
         if segments and time < segments[-1].until:
             segment = segments[bisect_right(segments, time, key=lambda each: each.since) - 1]
             if time < segments[0].since:
@@ -152,6 +152,6 @@ def _is_chosen(record: RunRecord, kinds: Collection[str] | None, sought: RecordQ
 
 
 def _read(line: str) -> RunRecord:
-    record = RunRecord.of(line)
+    record = RunRecord.parse(line)
     assert record is not None, line  # the file is as it was written
     return record

@@ -134,7 +134,7 @@ class LastWord:
                 raise StorageError(text) from error
             raise StorageError(f"{path}, the last word of the station, cannot be written: {error.strerror}") from error
 
-    def begin(self, begun: ChainPosition, epoch: int | None) -> None:
+    def start_life(self, begun: ChainPosition, epoch: int | None) -> None:
         """A life begins, of which `begun` is the first record, whether that is durable yet or not. Raises `OSError`."""
         self._write(Life(turn=0, number=begun.number, hash=begun.hash, epoch=epoch))
 
@@ -215,7 +215,7 @@ def _has_begun(connection: Connection, life: Life, end: int) -> bool:
     if life.number > end:
         return False
     found = run_journal.get(connection, life.number)
-    return life.number <= run_journal.begin(connection).number if found is None else _is(life, found)
+    return life.number <= run_journal.last_trimmed(connection).number if found is None else _is(life, found)
 
 
 def _is(life: Life, record: RunRecord) -> bool:

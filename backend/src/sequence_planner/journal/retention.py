@@ -60,12 +60,12 @@ def trim(database: Database, older_than: float, by: Actor, folder: Path | None =
     removed += remove(database)
     sign(database)
     with database.reading() as connection:
-        return Trimmed(run_journal.begin(connection).number, removed)
+        return Trimmed(run_journal.last_trimmed(connection).number, removed)
 
 
 def due(connection: Connection, older_than: float, not_beyond: int | None = None) -> int | None:
     """The newest snapshot that is older than this time, and so all before it may be cut; None where nothing may."""
-    begin = run_journal.begin(connection)
+    begin = run_journal.last_trimmed(connection)
     chosen = select(func.max(RUN.c.number)).where(
         RUN.c.kind == SNAPSHOT, RUN.c.number > begin.number + 1, RUN.c.time < older_than
     )
@@ -77,7 +77,7 @@ def due(connection: Connection, older_than: float, not_beyond: int | None = None
 
 def due_up_to(connection: Connection, number: int) -> int | None:
     """The newest snapshot up to a number."""
-    begin = run_journal.begin(connection)
+    begin = run_journal.last_trimmed(connection)
     chosen = select(func.max(RUN.c.number)).where(
         RUN.c.kind == SNAPSHOT, RUN.c.number > begin.number + 1, RUN.c.number <= number
     )
@@ -90,7 +90,7 @@ def cut(database: Database, snapshot: int, by: Actor, folder: Path | None) -> Se
     given. False where there was nothing to cut. Raises `StorageError`; then nothing is cut.
     """
     with database.reading() as connection:
-        begin = run_journal.begin(connection)
+        begin = run_journal.last_trimmed(connection)
         first = select(func.min(RUN.c.number)).where(RUN.c.kind == SNAPSHOT, RUN.c.number > begin.number + 1)
         at_least = connection.execute(first).scalar()
         fitting = due_up_to(connection, min(snapshot, begin.number + 1 + MOST_IN_FILE))
@@ -119,7 +119,7 @@ def cut(database: Database, snapshot: int, by: Actor, folder: Path | None) -> Se
 def remove(database: Database) -> int:
     """Take out the records that are no part of the run any more, little by little; how many."""
     with database.reading() as connection:
-        begin = run_journal.begin(connection).number
+        begin = run_journal.last_trimmed(connection).number
     return _remove(database, RUN, RUN.c.number, begin)
 
 
@@ -143,7 +143,7 @@ def _is_double(run: WholeRun, file: Path) -> bool:
     try:
         said = json.loads(next(archive.lines(file)))
         last = run.get(said["last"])
-        return last is not None and last.hash == said["hash"] and run.begin.number < said["first"]
+        return last is not None and last.hash == said["hash"] and run.last_trimmed.number < said["first"]
     except (ArchiveError, StopIteration, ValueError, LookupError, TypeError):
         return False  # whatever it is, it is nobody's to throw away
 
@@ -151,7 +151,7 @@ def _is_double(run: WholeRun, file: Path) -> bool:
 def sign(database: Database) -> None:
     """Sign how far the journal has come, which covers all that checkpoints of what was cut have covered; these go."""
     with database.reading() as connection:
-        begin = run_journal.begin(connection).number
+        begin = run_journal.last_trimmed(connection).number
     checkpoints.make(database, time.time())
     _remove(database, RUN_CHECKPOINTS, RUN_CHECKPOINTS.c.run_number, begin)
 

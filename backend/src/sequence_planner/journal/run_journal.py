@@ -96,7 +96,7 @@ class RunRecord(ChainLink):
         return f'{{"number":{self.number},"time":{self.time!r},"kind":{_quoted(self.kind)},"content":{self.content}'
 
     @classmethod
-    def of(cls, line: str) -> RunRecord | None:
+    def parse(cls, line: str) -> RunRecord | None:
         """The record of a `line`; None for one that is none."""
         if (found := _LINE.fullmatch(line)) is None:
             return None
@@ -243,7 +243,7 @@ def _time(connection: Connection, number: int) -> float:
     return found
 
 
-def begin(connection: Connection) -> ChainPosition:
+def last_trimmed(connection: Connection) -> ChainPosition:
     """The last record that retention has cut off; `START` if it has cut nothing."""
     return hash_chain.position(connection, RUN_BEGIN) or START
 
@@ -255,7 +255,7 @@ def end(connection: Connection) -> ChainPosition | None:
 
 def broken_at(connection: Connection) -> int | None:
     """The number of the first record that is not as it was written, or is missing; None when all are whole."""
-    first = begin(connection)
+    first = last_trimmed(connection)
     return hash_chain.broken_at(_everything(connection, first), first, end(connection))
 
 

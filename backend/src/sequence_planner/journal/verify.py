@@ -34,7 +34,7 @@ def verify(connection: Connection, key: str | None = None, kept: Checkpoint | No
 
     `key` is the station's public key, where that is at hand; `kept` is a checkpoint that was kept elsewhere.
     """
-    begin = run_journal.begin(connection)
+    begin = run_journal.last_trimmed(connection)
     wrong = [*_broken(connection, begin)]
     try:
         newest = checkpoints.newest(connection)

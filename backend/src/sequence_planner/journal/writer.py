@@ -69,12 +69,12 @@ class GroupCommit:
         self._until: float | None = None  # the moment of the monotonic clock after which nothing is tried any more
         self._thread: threading.Thread | None = None
 
-    def begin(self) -> None:
+    def start(self) -> None:
         """Begin to write."""
         self._thread = threading.Thread(target=self._work, name="journal", daemon=True)
         self._thread.start()
 
-    def put(self, record: RunRecord) -> None:
+    def append(self, record: RunRecord) -> None:
         """Let it be written. Never waits for the disk."""
         with self._changed:
             self._queue.append(record)
@@ -210,13 +210,13 @@ class RunWriter:
         self._loop = asyncio.get_running_loop()
         self._end = end  # of what was given to write
         self._closed = False
-        self._commits = GroupCommit(database, end, Checkpointing(database, signed), self._tell, fence)
+        self._commits = GroupCommit(database, end, Checkpointing(database, signed), self._report, fence)
 
-    def begin(self) -> None:
+    def start(self) -> None:
         """Begin to write, beginning with what has been given until now."""
         now = monotonic()
         self._given = deque([now] * len(self._given))  # until now nobody waited for them
-        self._commits.begin()
+        self._commits.start()
 
     @property
     def end(self) -> ChainPosition:
@@ -242,7 +242,7 @@ class RunWriter:
         record = RunRecord(number, float(time), kind, content, digest(self._end.hash, text))
         self._end = ChainPosition(number, record.hash)
         self._given.append(monotonic())
-        self._commits.put(record)
+        self._commits.append(record)
         return number
 
     async def until_durable(self, number: int, patience: float) -> bool:
@@ -261,12 +261,12 @@ class RunWriter:
         if self.waiting:
             LOG.error("what happened last is not journalled", records=self.waiting, trouble=self.trouble)
 
-    def _tell(self, durable: int, trouble: str | None) -> None:
+    def _report(self, durable: int, trouble: str | None) -> None:
         """Hear from the thread, which may still wait for the database when the loop has ended."""
         with contextlib.suppress(RuntimeError):
-            self._loop.call_soon_threadsafe(self._heard, durable, trouble)
+            self._loop.call_soon_threadsafe(self._on_committed, durable, trouble)
 
-    def _heard(self, durable: int, trouble: str | None) -> None:
+    def _on_committed(self, durable: int, trouble: str | None) -> None:
         now = monotonic()
         for _ in range(durable - self.durable):
             self.latency.note(now - self._given.popleft())

@@ -79,7 +79,7 @@ def after(connection: Connection, number: int, limit: int) -> list[JobEvent]:
     ]
 
 
-def begin(connection: Connection) -> int:
+def last_trimmed_event(connection: Connection) -> int:
     """The number of the last event that is kept no more; 0 if all are."""
     found: int | None = connection.execute(select(JOB_BEGIN.c.events)).scalar_one_or_none()
     return found or 0
@@ -88,12 +88,12 @@ def begin(connection: Connection) -> int:
 def last(connection: Connection) -> int:
     """The number of the newest event; 0 where there was none."""
     found: int | None = connection.execute(select(func.max(JOB_EVENTS.c.number))).scalar_one()
-    return found or begin(connection)
+    return found or last_trimmed_event(connection)
 
 
 def require_kept(connection: Connection, after: int) -> None:
     """Raises `OrderRefused` (`events-gone`, 410) where an event behind `after` is kept no more."""
-    if after < (gone := begin(connection)):
+    if after < (gone := last_trimmed_event(connection)):
         detail = (
             f"The events up to {gone} are kept no more: whoever administers the station finds them in its archive. "
             f"Read the orders and their responses anew, and the events after {gone}."

@@ -49,7 +49,7 @@ def recall(connection: Connection, bearer: str, key: str, digest: str) -> KeptAn
     return KeptAnswer(row.status, row.tag, row.content)
 
 
-def keep(connection: Connection, bearer: str, key: str, digest: str, answer: KeptAnswer, now: float) -> None:
+def store_answer(connection: Connection, bearer: str, key: str, digest: str, answer: KeptAnswer, now: float) -> None:
     """Keep an answer in the transaction of its effect; those that are too old go."""
     connection.execute(delete(JOB_ANSWERS).where(JOB_ANSWERS.c.time <= now - KEPT))
     row = {"bearer": bearer, "key": key, "digest": digest, "time": now, **vars(answer)}

@@ -145,7 +145,7 @@ class JobOrder(OrderContent):
     removed: float | None
 
     @classmethod
-    def of(cls, row: RowMapping) -> JobOrder:
+    def from_row(cls, row: RowMapping) -> JobOrder:
         """The order in a row of its table."""
         by = row["wished_by"]
         return cls.model_validate({**row, "wished_by": None if by is None else json.loads(by)})

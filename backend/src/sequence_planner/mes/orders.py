@@ -230,7 +230,7 @@ def page(connection: Connection, state: OrderState | None, after: int, limit: in
     chosen = select(JOB_ORDERS).where(_SHOWN, JOB_ORDERS.c.number > after).order_by(JOB_ORDERS.c.number).limit(limit)
     if state is not None:
         chosen = chosen.where(JOB_ORDERS.c.state == state.value)
-    return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
+    return [JobOrder.from_row(row) for row in connection.execute(chosen).mappings()]
 
 
 def open_orders(connection: Connection, known: Sequence[JobOrder] = ()) -> list[JobOrder]:
@@ -242,7 +242,7 @@ def open_orders(connection: Connection, known: Sequence[JobOrder] = ()) -> list[
     for start in range(0, len(changed), _MOST_NAMED):
         named = JOB_ORDERS.c.number.in_(changed[start : start + _MOST_NAMED])
         chosen = select(JOB_ORDERS).where(_OPEN, named)
-        found |= {row["number"]: JobOrder.of(row) for row in connection.execute(chosen).mappings()}
+        found |= {row["number"]: JobOrder.from_row(row) for row in connection.execute(chosen).mappings()}
     return [found[number] for number in numbers if number in found]
 
 
@@ -261,7 +261,7 @@ def count_open(connection: Connection) -> int:
 def find(connection: Connection, id: str) -> JobOrder | None:
     """The order with this id, be it removed or not; None if there never was one."""
     row = connection.execute(select(JOB_ORDERS).where(JOB_ORDERS.c.id == id)).mappings().first()
-    return None if row is None else JobOrder.of(row)
+    return None if row is None else JobOrder.from_row(row)
 
 
 def _gone(connection: Connection, id: str) -> float | None:

@@ -124,13 +124,13 @@ def nothing_made(order: JobOrder) -> JobResponse:
 def write(connection: Connection, response: JobResponse, now: float) -> int:
     """Keep a response, within a `writing()` block; its number."""
     last: int | None = connection.execute(select(func.max(JOB_RESPONSES.c.number))).scalar_one()
-    number = (last or begin(connection)) + 1
+    number = (last or last_trimmed_response(connection)) + 1
     row = {"number": number, "job_order": response.job_order, "time": now, "content": response.model_dump_json()}
     connection.execute(insert(JOB_RESPONSES), row)
     return number
 
 
-def begin(connection: Connection) -> int:
+def last_trimmed_response(connection: Connection) -> int:
     """The number of the last response that is kept no more; 0 if all are."""
     found: int | None = connection.execute(select(JOB_BEGIN.c.responses)).scalar_one_or_none()
     return found or 0
@@ -138,7 +138,7 @@ def begin(connection: Connection) -> int:
 
 def require_kept(connection: Connection, after: int) -> None:
     """Raises `OrderRefused` (`responses-gone`, 410) where a response behind `after` is kept no more."""
-    if after < (gone := begin(connection)):
+    if after < (gone := last_trimmed_response(connection)):
         detail = (
             f"The responses up to {gone} are kept no more: whoever administers the station finds them in its archive. "
             f"Read those after {gone}."

@@ -123,7 +123,7 @@ def cut_orders(
     with database.writing() as connection:
         if tuple(connection.execute(_BEGIN).one()) != old.begin:
             raise StorageError("somebody else takes job orders out just now: try again")
-        undelivered = _take_out(connection, old, now)
+        undelivered = _delete(connection, old, now)
         if undelivered:
             details["undelivered"] = dict(undelivered)
         audit.append(connection, Entry(actor=by, action=CUT, subject=_subject(old), details=details), now)
@@ -196,7 +196,7 @@ def _json(document: Mapping[str, Any]) -> str:
     return json.dumps(document, separators=(",", ":"), ensure_ascii=False)
 
 
-def _take_out(connection: Connection, old: _Old, now: float) -> Counter[str]:
+def _delete(connection: Connection, old: _Old, now: float) -> Counter[str]:
     """All of it; how many events each webhook, by its title, was not told of."""
     numbers = {
         "orders": max([old.begin[0], *(each["number"] for each in old.orders)]),

@@ -322,7 +322,7 @@ class Ledger(BaseModel):
         """One that can go on without this one."""
         return self.model_copy(update={"jobs": {id_: job.copied() for id_, job in self.jobs.items()}})
 
-    def take(self, record: ReadRecord, masters: WorkMastersView) -> list[News]:
+    def process(self, record: ReadRecord, masters: WorkMastersView) -> list[News]:
         """Take note of the next record. What it says of jobs that have become others comes back."""
         self.number = record.number
         self.values = dict(record.values) if record.whole else {**self.values, **record.values}
@@ -332,10 +332,10 @@ class Ledger(BaseModel):
         # Operations begin and are completed before abilities start, and what was active then is what they start for.
         news = list(self._jobs(record, masters))
         self._start(record, masters)
-        self._note(record)
+        self._record_deviations(record)
         return news
 
-    def stand(self, record: RunRecord) -> list[StationEvent]:
+    def update_station(self, record: RunRecord) -> list[StationEvent]:
         """Take note of how the station stands after a record that was taken. What is to be told of it comes back."""
         self.station, told = self.station.after(record)
         for job in [job for job in self.station.waits if job not in self.jobs or self.jobs[job].state.is_over]:
@@ -430,7 +430,7 @@ class Ledger(BaseModel):
                 if each.ended is None and ended is not None and not job.state.is_over:
                     job.abilities[index] = each.model_copy(update={"ended": ended, "called_off": True})
 
-    def _note(self, record: ReadRecord) -> None:
+    def _record_deviations(self, record: ReadRecord) -> None:
         for job in self.jobs.values():
             if job.state.is_over and (job.ended is None or job.ended < record.time):
                 continue
@@ -496,9 +496,9 @@ class OrderTracker:
             return False, False
         ledger, happened = self._ledger.copied(), list[tuple[News, JobResponse | None] | StationEvent]()
         for record in records:
-            for news in ledger.take(read(record), masters):
+            for news in ledger.process(read(record), masters):
                 happened.append((news, response(news.job, masters) if news.what == "over" else None))
-            happened += ledger.stand(record)
+            happened += ledger.update_station(record)
         if happened or ledger.number - self._kept >= _KEEP_EVERY:
             with self._database.writing() as connection:
                 if _number(connection) != self._kept:  # where several stations share it another one has read on
@@ -506,9 +506,9 @@ class OrderTracker:
                     return True, True
                 for each in happened:
                     if isinstance(each, StationEvent):
-                        tell(connection, each)
+                        emit_event(connection, each)
                     else:
-                        note(connection, *each)
+                        update_order(connection, *each)
                 _keep(connection, ledger)
             self._kept = ledger.number
         self._ledger = ledger
@@ -548,7 +548,7 @@ def response(job: JobMade, masters: WorkMastersView) -> JobResponse:
     )
 
 
-def note(connection: Connection, news: News, made: JobResponse | None) -> None:
+def update_order(connection: Connection, news: News, made: JobResponse | None) -> None:
     """Let an order be as its job is. Of jobs that nobody has ordered here there is nothing to note."""
     order = orders.find(connection, news.job.job)
     if order is None or order.is_over:
@@ -564,7 +564,7 @@ def note(connection: Connection, news: News, made: JobResponse | None) -> None:
             events.append(connection, kind, order.id, news.time, {"operation": news.operation})
 
 
-def tell(connection: Connection, told: StationEvent) -> None:
+def emit_event(connection: Connection, told: StationEvent) -> None:
     """Write an event of the station, or of an order that is not over."""
     if told.job_order is not None:
         order = orders.find(connection, told.job_order)

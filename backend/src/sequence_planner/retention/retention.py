@@ -113,7 +113,7 @@ class Blocks:
 
 def run_blocks(connection: Connection) -> Blocks:
     """Samples of the run."""
-    begin, end = run_journal.begin(connection).number, run_journal.end(connection)
+    begin, end = run_journal.last_trimmed(connection).number, run_journal.end(connection)
     return _blocks(connection, RUN, RUN.c.content, begin, begin if end is None else end.number)
 
 
@@ -241,12 +241,12 @@ def do(task: RetentionTask) -> Done:
         records = files = orders = batches = 0
         while files < MOST_FILES and (snapshot := _due(database, settings, now, task.everything)) is not None:
             with database.reading() as connection:
-                before = run_journal.begin(connection).number
+                before = run_journal.last_trimmed(connection).number
             if not retention.cut(database, snapshot, task.by, folder):
                 break
             retention.remove(database)
             with database.reading() as connection:
-                records += run_journal.begin(connection).number - before
+                records += run_journal.last_trimmed(connection).number - before
             files += 1
         if files:
             retention.sign(database)
@@ -276,7 +276,7 @@ def _due(database: Database, settings: Retention, now: float, everything: bool) 
 
 
 def _is_overdue(connection: Connection, older_than: float) -> bool:
-    first = run_journal.get(connection, run_journal.begin(connection).number + 1)
+    first = run_journal.get(connection, run_journal.last_trimmed(connection).number + 1)
     return first is not None and first.time < older_than
 
 

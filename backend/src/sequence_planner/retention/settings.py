@@ -36,7 +36,7 @@ class Retention:
     archive_gb: float | None = None
 
     @classmethod
-    def told(
+    def from_options(
         cls,
         journal_days: float,
         journal_gb: float,

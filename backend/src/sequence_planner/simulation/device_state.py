@@ -32,7 +32,7 @@ class DeviceState:
     messages: dict[str, Message] = field(default_factory=dict)
 
 
-def keep(devices: EmulatedDevices, file: Path) -> None:
+def save_state(devices: EmulatedDevices, file: Path) -> None:
     """Write down how the devices stand, whole or not at all. Raises `OSError`."""
     document = {"values": devices.state, "messages": {topic: devices.report(topic) for topic in devices.spoken}}
     new = file.with_suffix(".new")

@@ -201,7 +201,7 @@ class EmulatedDevices:
         """The topics, services and actions on which the devices say something."""
         return list(self._messages)
 
-    def take_over(self, values: Mapping[str, Value | None], messages: Mapping[str, Message]) -> None:
+    def restore(self, values: Mapping[str, Value | None], messages: Mapping[str, Message]) -> None:
         """Stand as devices of another model did, in all that is here too, before any time has passed.
 
         A goal or a request that was under way is not known here. On a topic on which it cannot be said how things were
@@ -214,10 +214,10 @@ class EmulatedDevices:
             for name in (self.topics.keys() | outputs) - goals
             if (value := values.get(name)) is not None and contains(self._automaton.variables[name].type, value)
         }
-        while (unsaid := self._take_over(taken, messages)) is not None:
+        while (unsaid := self._restore(taken, messages)) is not None:
             taken = {name: value for name, value in taken.items() if unsaid not in self.topics.get(name, ())}
 
-    def _take_over(self, taken: Mapping[str, Value], before: Mapping[str, Message]) -> str | None:
+    def _restore(self, taken: Mapping[str, Value], before: Mapping[str, Message]) -> str | None:
         """Take these values; or the topic on which that cannot be said, and nothing has changed then."""
         state, said = {**self.state, **taken}, dict(self._messages)
         for topic in self._spoken_on(name for name in taken if name in self.topics):
@@ -284,7 +284,7 @@ class EmulatedDevices:
         """Return whether an effect on one of these variables is on its way."""
         return any(not each.writes.keys().isdisjoint(variables) for each in self._underway.values())
 
-    def put(self, variable: str, value: Value) -> None:
+    def set_value(self, variable: str, value: Value) -> None:
         """Bring a measured variable to a value by hand. Raises ValueError for a variable or value that is none."""
         if variable not in self.topics:
             known = ", ".join(sorted(self.topics))

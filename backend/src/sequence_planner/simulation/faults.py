@@ -254,7 +254,7 @@ class FaultyDevices:
         """The resources whose devices are not on the network."""
         return frozenset(each.fault.target for each in self._underway if each.fault.kind in _OFFLINE)
 
-    def begin(self, fault: Fault, now: float) -> None:
+    def start(self, fault: Fault, now: float) -> None:
         """Let a fault begin. It takes the place of one of the same kind at the same target."""
         self._end(
             [each for each in self._underway if (each.fault.kind, each.fault.target) == (fault.kind, fault.target)]

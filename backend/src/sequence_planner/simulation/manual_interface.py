@@ -72,7 +72,7 @@ def cause(devices: FaultyDevices, what: Fault | Clear, now: float) -> str:
     if isinstance(what, Clear):
         ended = devices.clear(what)
         return f"ended: {'; '.join(map(str, ended))}" if ended else "there was nothing to end"
-    devices.begin(what, now)
+    devices.start(what, now)
     return "begins"
 
 
@@ -86,9 +86,9 @@ def move(devices: EmulatedDevices, text: str) -> None:
     action = parse_assignment(text)
     match action.value if action.condition is None else None:
         case Constant(value):
-            devices.put(str(action.target), value)
+            devices.set_value(str(action.target), value)
         case Name():
-            devices.put(str(action.target), str(action.value))
+            devices.set_value(str(action.target), str(action.value))
         case _:
             raise ValueError(f"`{text}`: write `variable := value`")
 

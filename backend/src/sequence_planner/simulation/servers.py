@@ -81,12 +81,12 @@ class _Action:
         self._is_busy = True
         try:
             _command(devices, use.goal.topic.name, dict(work.goal))
-            devices.put(self._status, GoalState.IDLE.value)
+            devices.set_value(self._status, GoalState.IDLE.value)
             devices.want(use.when, True)
             while (end := _ENDS.get(devices.state[self._status])) is None:
                 work.feedback(devices.report(use.feedback.name))
                 if await cancelled(work.cancel_wanted, LOOK_EVERY):
-                    devices.put(self._status, GoalState.CANCELED.value)
+                    devices.set_value(self._status, GoalState.CANCELED.value)
                 devices.advance(time.monotonic())
             work.feedback(devices.report(use.feedback.name))
             return GoalOutcome(end, devices.report(use.result.name))

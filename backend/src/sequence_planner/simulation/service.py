@@ -22,7 +22,7 @@ from sequence_planner.ros.exclusivity import require_sole_publisher
 from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.ros.types.standard_types import GOAL_STATUSES
-from sequence_planner.simulation.device_state import DeviceState, keep
+from sequence_planner.simulation.device_state import DeviceState, save_state
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.fault_script import Scripted
 from sequence_planner.simulation.faults import FaultReader, FaultyDevices
@@ -111,7 +111,7 @@ class _Life:
             resources=emulation.resources,
         )
         if emulation.standing is not None:
-            devices.take_over(emulation.standing.values, emulation.standing.messages)
+            devices.restore(emulation.standing.values, emulation.standing.messages)
         self._devices = FaultyDevices(devices, station.pipelines, emulation.seed)
         self._others = RunningPipelines(station.pipelines)  # what devices say that are not emulated
         self._random = random.Random(f"reports {emulation.seed}")
@@ -129,7 +129,7 @@ class _Life:
         main = self._connect(NODE)
         try:
             listen(main, self._registry, self._devices, self._emulation.reader())
-            self._look_on(main)
+            self._subscribe_real_devices(main)
             serve_clients(self._emulation.station, self._devices.devices, main)
             self._links.keep(frozenset())
             LOG.info("emulated devices are up", resources=sorted(self._emulated))
@@ -169,9 +169,9 @@ class _Life:
         self._kept, self._unkept = time.monotonic(), False
         if self._emulation.kept_in is not None:
             with contextlib.suppress(OSError):  # then those that come after begin as their model says
-                keep(self._devices.devices, self._emulation.kept_in)
+                save_state(self._devices.devices, self._emulation.kept_in)
 
-    def _look_on(self, main: Transport) -> None:
+    def _subscribe_real_devices(self, main: Transport) -> None:
         """Hear what is said and commanded where the devices are not emulated."""
         emulated = self._emulated
         for incoming in self._pipelines.incoming.values():
@@ -209,7 +209,7 @@ class _Life:
                     trouble = "; ".join(self._devices.devices.command(sample.topic, message))
                 except MalformedMessageError as error:
                     trouble = str(error)
-                self._note(sample.topic, trouble)
+                self._log_trouble(sample.topic, trouble)
 
     def _see(self, samples: Sequence[Sample]) -> None:
         """Take what devices say that are not emulated; what cannot be read leaves what they said before."""
@@ -217,13 +217,13 @@ class _Life:
             type_name = self._pipelines.incoming[sample.topic].topic.type_name
             try:
                 self._others.take(sample.topic, self._registry.decode(type_name, sample.data), sample.received)
-                self._note(sample.topic, "")
+                self._log_trouble(sample.topic, "")
             except MalformedMessageError as error:
-                self._note(sample.topic, str(error))
+                self._log_trouble(sample.topic, str(error))
         fresh = dict.fromkeys(self._pipelines.sources, True)
         self._devices.devices.observe({n: v for n, v in self._others.values(fresh).items() if v is not None})
 
-    def _note(self, topic: str, trouble: str) -> None:
+    def _log_trouble(self, topic: str, trouble: str) -> None:
         if trouble and trouble != self._troubles.get(topic):
             LOG.warning("message not understood", topic=topic, trouble=trouble)
         self._troubles[topic] = trouble

@@ -202,7 +202,7 @@ class Lease:
             return False
         if seen is not None and not self._may_take(seen, now):
             return False
-        return self._take(seen)
+        return self._acquire(seen)
 
     def _may_take(self, seen: Seen, now: float) -> bool:
         """Return whether it may be taken by now from who holds it, or did."""
@@ -225,7 +225,7 @@ class Lease:
             settled = connection.execute(counted).scalar()
         renewed = settled is not None
         if settled is not None:
-            self._note_settled(settled)
+            self._update_settled(settled)
             self._hold(began)
         else:
             self._epoch, self._until = None, 0.0
@@ -294,7 +294,7 @@ class Lease:
         """End all connections."""
         self.engine.dispose()
 
-    def _take(self, seen: Seen | None) -> bool:
+    def _acquire(self, seen: Seen | None) -> bool:
         began = self.clock()
         from sqlalchemy.dialects.postgresql import insert as insert_or_not  # noqa: PLC0415 - as above
 
@@ -316,11 +316,11 @@ class Lease:
             self.taken_from = None if seen is None or seen.holder == self.name else seen.holder
             self._epoch = 1 if seen is None else seen.epoch + 1
             self.seen = Seen(self.name, self.model, self._epoch, 0, free=False)
-            self._note_settled(settled)
+            self._update_settled(settled)
             self._hold(began)
         return settled is not None
 
-    def _note_settled(self, settled: int) -> None:
+    def _update_settled(self, settled: int) -> None:
         self.settled_before = self._epoch is not None and settled >= self._epoch - 1
 
     def _hold(self, began: float) -> None:
@@ -425,7 +425,7 @@ class LeaseKeeper:
         """See `Lease.fence`; used from the thread that writes the journal."""
         return self._lease.fence(connection)
 
-    def begin(self) -> None:
+    def start(self) -> None:
         """From now on it waits for the lease, or holds it."""
         self._thread.start()
 
@@ -463,7 +463,7 @@ class LeaseKeeper:
                 self._step()
             except StorageError as error:
                 self._lease.look_anew()
-                self._tell(str(error))
+                self._publish(str(error))
                 if self._lease.is_gone:
                     # It says nothing, but it is seen on the network, and whoever commands now waits until it is not.
                     LOG.warning("this station leaves the command to others", because="the database does not answer")
@@ -486,13 +486,13 @@ class LeaseKeeper:
             self._call(self._settled)  # before it is told that the lease was taken
         if self._lease.is_ours:
             self._call(self._taken)
-        self._tell(None)
+        self._publish(None)
 
     def _lose(self) -> None:
         self._is_lost = True
         self._call(self._lost)
 
-    def _tell(self, trouble: str | None) -> None:
+    def _publish(self, trouble: str | None) -> None:
         """Show how things are; where the database does not answer it is said that nobody knows."""
         lease = self._lease
         holder = None if lease.seen is None else lease.seen.holder

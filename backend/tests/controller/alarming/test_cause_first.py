@@ -43,7 +43,7 @@ def stuck() -> Watched:
     down = "robot.move_to_position(bolt_pair_3)"
     assert rig.run(120, until=lambda: down in rig.started)
     assert rig.run(2, until=lambda: rig.value("robot.pose") == "unknown")
-    rig.faulty.begin(Fault(FaultKind.STUCK, "robot"), rig.now)
+    rig.faulty.start(Fault(FaultKind.STUCK, "robot"), rig.now)
     return rig
 
 
@@ -126,7 +126,7 @@ def test_what_waited_for_a_device_that_works_again_is_no_alarm_of_its_own() -> N
         return runs and rig.started[-1] == up and "tightened" in rig.execution.state.values()
 
     assert rig.run(240, until=is_on_its_way)
-    rig.faulty.begin(Fault(FaultKind.STUCK, "robot"), rig.now)
+    rig.faulty.start(Fault(FaultKind.STUCK, "robot"), rig.now)
     rig.run(45)
     (while_it_lasts,) = rig.shown.values()
     assert "Smart nutrunner: Run the nutrunner has not finished within 30 s" in while_it_lasts.parts

@@ -339,7 +339,9 @@ def run(
         log_format=log_format,
         webhooks=webhooks,
         backups=Keeping(backup_folder, backups_kept, backup_every),
-        retention=Retention.told(journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb),
+        retention=Retention.from_options(
+            journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb
+        ),
         new=new,
         memory=memory,
         cut_off=cut_off,
@@ -451,7 +453,9 @@ def server(
         provider=provider,
         webhooks=_targets(webhook_host, webhook_network, webhook_loopback),
         backups=Keeping(backup_folder, backups_kept, backup_every),
-        retention=Retention.told(journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb),
+        retention=Retention.from_options(
+            journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb
+        ),
     )
     listening = None if listener is None else ListeningSocket(fileno=listener)
     serve(settings, listening)

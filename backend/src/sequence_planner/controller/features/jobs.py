@@ -56,7 +56,7 @@ class JobHandler:
                 detail = f"Job {other.id} ({other.title}) is under way and has {_listed(common)} too. Wait for its end."
                 raise CommandRefused("job-conflict", "Another job is in the way", detail)
         by = command.actor.name
-        self._execution.take_job(command.job, command.title, command.work_master, by, moment)
+        self._execution.accept_job(command.job, command.title, command.work_master, by, moment)
 
     @handles(SequenceJobs)
     def sequence(self, command: SequenceJobs, moment: Timestamp) -> None:
@@ -97,7 +97,7 @@ class JobHandler:
             if act is JobAct.ABORT or act is JobAct.STOP:
                 raise _ended(job, "There is nothing left of it to end.")
             raise _ended(job, "Order another one.")
-        if self._jobs.told(job.id, act, execution.active, self._automaton, moment) != self._jobs:
+        if self._jobs.command(job.id, act, execution.active, self._automaton, moment) != self._jobs:
             execution.command_job(job.id, act, command.actor.name, command.reason or "", moment)
 
     @handles(ForgetJob)

@@ -251,7 +251,7 @@ def hopeful_goals(execution: Executor) -> Goals:
     """The goals of active operations that can be planned for; before production is started none has begun."""
     if execution.production is not Production.STARTED:
         return goals_of(execution.automaton, sorted(execution.active))
-    return execution.pursued.of(execution.active & execution.pursued.hopeful)
+    return execution.pursued.select(execution.active & execution.pursued.hopeful)
 
 
 def _waiting_goals(execution: Executor) -> Goals:
@@ -264,4 +264,4 @@ def _waiting_goals(execution: Executor) -> Goals:
 
 def violated_goals(execution: Executor) -> Goals:
     """The goals of active operations whose formulas were violated."""
-    return execution.pursued.of(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)
+    return execution.pursued.select(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)

@@ -304,7 +304,7 @@ class ViewBuilder:
             if name not in self._since or self._since[name][0] != value:
                 self._since[name] = (value, now)
         self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
-        self._timetable.note(now)
+        self._timetable.update(now)
         if self._execution.plan.replacement is not self._replaced[0]:
             self._replaced = (self._execution.plan.replacement, now)
 

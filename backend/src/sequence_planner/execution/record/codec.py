@@ -95,7 +95,7 @@ class Shapes:
         self._known: dict[Any, Shape] = dict(own or {})
         self._dropped = dropped
 
-    def of(self, form: Any) -> Shape:  # noqa: ANN401 - what annotations are is no type
+    def shape(self, form: Any) -> Shape:  # noqa: ANN401 - what annotations are is no type
         """The shape of a type, such as `Mapping[str, int | None]` or a class of immutable values."""
         known = self._known.get(form)
         if known is None:
@@ -116,7 +116,7 @@ class Shapes:
         if origin is not None and issubclass(origin, Mapping):
             return self._mapping(*get_args(form))
         if isinstance(form, type) and issubclass(form, tuple):  # with names for its parts
-            parts = self.of(tuple[tuple(get_type_hints(form).values())])  # type: ignore[misc]
+            parts = self.shape(tuple[tuple(get_type_hints(form).values())])  # type: ignore[misc]
             return Shape(parts.encode, lambda document: form(*parts.decode(document)))
         if form in self._dropped:
             return Shape(lambda value: None, lambda document: None)
@@ -135,7 +135,7 @@ class Shapes:
         if set(some) <= set(_PRIMITIVES):
             return _primitive(forms)
         union: Any = Union[some]  # noqa: UP007 - of a number of members that is known here only
-        inner = self.of(union) if optional or len(some) == 1 else self._by_name(some)
+        inner = self.shape(union) if optional or len(some) == 1 else self._by_name(some)
         if not optional:
             return inner
         return Shape(
@@ -144,7 +144,7 @@ class Shapes:
         )
 
     def _by_name(self, classes: tuple[Any, ...]) -> Shape:
-        named = {each.__name__: self.of(each) for each in classes}
+        named = {each.__name__: self.shape(each) for each in classes}
 
         def encode(value: Any) -> JsonValue:  # noqa: ANN401
             name = type(value).__name__
@@ -159,7 +159,7 @@ class Shapes:
         return Shape(encode, decode)
 
     def _some(self, form: Any, sort: bool = False) -> Shape:  # noqa: ANN401
-        make, inner = get_origin(form), self.of(get_args(form)[0])
+        make, inner = get_origin(form), self.shape(get_args(form)[0])
 
         def encode(value: Any) -> JsonValue:  # noqa: ANN401
             return [inner.encode(each) for each in (sorted(value) if sort else value)]
@@ -167,7 +167,7 @@ class Shapes:
         return Shape(encode, lambda document: make(inner.decode(each) for each in _expected(list, document)))
 
     def _tuple(self, form: Any) -> Shape:  # noqa: ANN401
-        parts = tuple(map(self.of, get_args(form)))
+        parts = tuple(map(self.shape, get_args(form)))
 
         def decode(document: Any) -> Any:  # noqa: ANN401
             if len(_expected(list, document)) != len(parts):
@@ -178,13 +178,13 @@ class Shapes:
 
     def _mapping(self, key: Any, value: Any) -> Shape:  # noqa: ANN401
         """An object with its names in order, whatever order they came in; or pairs, where the keys are no texts."""
-        inner = self.of(value)
+        inner = self.shape(value)
         if key is str:
             return Shape(
                 lambda mapping: {name: inner.encode(mapping[name]) for name in sorted(mapping)},
                 lambda document: {name: inner.decode(each) for name, each in _expected(dict, document).items()},
             )
-        pairs = self.of(tuple[tuple[key, value], ...])
+        pairs = self.shape(tuple[tuple[key, value], ...])
         return Shape(
             lambda mapping: pairs.encode(sorted(mapping.items(), key=lambda pair: pair[0])),
             lambda document: dict(pairs.decode(document)),
@@ -193,7 +193,7 @@ class Shapes:
     def _record(self, form: type) -> Shape:
         """The fields of a class that are not as their default is."""
         hints = get_type_hints(form)
-        fields = {name: (self.of(hints[name]), default) for name, default in _fields(form).items()}
+        fields = {name: (self.shape(hints[name]), default) for name, default in _fields(form).items()}
 
         def encode(value: Any) -> JsonValue:  # noqa: ANN401
             document: dict[str, JsonValue] = {}
@@ -303,20 +303,20 @@ class Codec:
 
     def __init__(self, automaton: Automaton) -> None:
         self._predicates = _Predicates(automaton)
-        self._trees = Shapes().of(Expression)
+        self._trees = Shapes().shape(Expression)
         own = {Expression: Shape(self._written, self._expression), State: Shape(dict, _state)}
         self._shapes = Shapes(own, dropped=(Proof,))
-        request = self._shapes.of(PlanRequest)
+        request = self._shapes.shape(PlanRequest)
         own[PlanRequest] = Shape(lambda value: request.encode(_without_deadline(value)), request.decode)
         self._shapes = Shapes(own, dropped=(Proof,))
 
     def encode(self, form: Any, value: object) -> JsonValue:  # noqa: ANN401 - what annotations are is no type
         """The document of a value of the type `form`."""
-        return self._shapes.of(form).encode(value)
+        return self._shapes.shape(form).encode(value)
 
     def decode(self, form: Any, document: JsonValue) -> Any:  # noqa: ANN401
         """The value of the type `form` that a document has."""
-        return self._shapes.of(form).decode(document)
+        return self._shapes.shape(form).decode(document)
 
     def happening(self, kind: str, content: Mapping[str, JsonValue]) -> Event:
         """Return what a record says that has happened, no tick. Raises `UnreadableError`."""

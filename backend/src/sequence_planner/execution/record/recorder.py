@@ -148,7 +148,7 @@ def model_digest(automaton: Automaton) -> str:
     """
     shapes = Shapes({Expression: Shape(print_expression, _unread)})
     orders = [list(each) for each in (automaton.variables, automaton.abilities, automaton.operations)]
-    text = json.dumps([orders, shapes.of(Automaton).encode(automaton)], separators=(",", ":"))
+    text = json.dumps([orders, shapes.shape(Automaton).encode(automaton)], separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -201,9 +201,9 @@ class RunRecorder:
         self._now = Timestamp(clock(), 0.0) if beginning is None else beginning.now
         self.last = 0
         self._put(BEGUN, clock(), self._everything())
-        execution.listeners.append(self._hear)
+        execution.listeners.append(self._on_event)
 
-    def note(self, kind: str, epoch: float, content: Mapping[str, JsonValue], lasts: bool = False) -> None:
+    def record(self, kind: str, epoch: float, content: Mapping[str, JsonValue], lasts: bool = False) -> None:
         """Write down what is no happening of the execution, such as an alarm.
 
         What `lasts` holds part by part until it is noted otherwise. It is written again with each snapshot, so that
@@ -218,7 +218,7 @@ class RunRecorder:
         """Something that lasts has been noted in a life before: it is written again with each snapshot."""
         self._lasting[kind] = dict(content)
 
-    def _hear(self, heard: Heard) -> None:
+    def _on_event(self, heard: Heard) -> None:
         happening, outcome = heard.happening, heard.outcome
         if isinstance(happening, Ticked):
             content = self._book.content(happening) | self._outcome(outcome)
@@ -283,7 +283,7 @@ class RunRecorder:
     def _now_and_then(self, epoch: float) -> None:
         if self._since_snapshot >= self._snapshot_every:
             self._since_snapshot = 0
-            self._execution.forget()  # or it would know more than one that goes on from the snapshot
+            self._execution.drop_caches()  # or it would know more than one that goes on from the snapshot
             self._put(SNAPSHOT, epoch, self._everything())
             for kind, content in self._lasting.items():
                 self._put(kind, epoch, content)

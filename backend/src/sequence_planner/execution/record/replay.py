@@ -99,7 +99,7 @@ class Player:
                 if record.kind == BEGUN or self._execution is None:
                     self._begin(record, content)
                 else:
-                    self._execution.forget()
+                    self._execution.drop_caches()
         except (ValueError, LookupError, TypeError, AttributeError) as error:
             why = f"record {record.number} cannot be read: {error or type(error).__name__}"
             if self._program != VERSION:
@@ -170,7 +170,7 @@ class Player:
             case ByOrderChanged(on, by, why, now):
                 execution.set_by_order(on, by, why, now)
             case JobTaken(job, title, work_master, by, now):
-                execution.take_job(job, title, work_master, by, now)
+                execution.accept_job(job, title, work_master, by, now)
             case JobsSequenced(waits, by, now):
                 execution.sequence_jobs(waits, by, now)
             case JobCommanded(job, act, by, why, now):

@@ -273,18 +273,18 @@ class KnownTimes:
         before = self._known()
         while page := run_journal.after(connection, self._number, _PAGE):
             self._number = page[-1].number
-            self.hear(page)
+            self.add_records(page)
         return self._known() != before
 
-    def hear(self, records: Sequence[RunRecord]) -> None:
+    def add_records(self, records: Sequence[RunRecord]) -> None:
         """Take in what these records tell, which follow on those before."""
         for record in records:
             if record.kind == _BEGUN:
                 self._active.clear()  # the controller has started anew, after a time in which nothing was worked
             elif record.kind == _TICKED:
-                self._hear_tick(record.time, json.loads(record.content))
+                self._add_tick(record.time, json.loads(record.content))
 
-    def _hear_tick(self, time: float, told: dict[str, Any]) -> None:
+    def _add_tick(self, time: float, told: dict[str, Any]) -> None:
         """Operations are completed and activated before abilities start."""
         for name in told.get("completed", ()):
             # Where the clock was set meanwhile, as after a start without one, it is not known.
@@ -315,7 +315,7 @@ class SchedulingProblem:
     exclusive: tuple[frozenset[str], ...]
 
 
-def asked(
+def scheduling_problem(
     orders: Sequence[JobOrder], view: StationView, masters: WorkMastersView, known: KnownTimes
 ) -> SchedulingProblem:
     """The works of orders that the station works on or may start. Jobs that are paused are none: nobody knows when they

@@ -73,7 +73,7 @@ def sequence(
         return _rolling(works, groups, problem, limit, remaining, most)
     best = min((dispatch(problem, rule) for rule in RULES), key=lambda starts: cost(problem, starts))
     found = improve(problem, best, EFFORT * limit, remaining)
-    return replace(_told(works, problem, found.starts, found.bound), optimal=found.proven)
+    return replace(_schedule(works, problem, found.starts, found.bound), optimal=found.proven)
 
 
 def by_rule(works: Sequence[JobWork], exclusive: Iterable[Collection[str]], now: float, why: str) -> Schedule:
@@ -81,7 +81,7 @@ def by_rule(works: Sequence[JobWork], exclusive: Iterable[Collection[str]], now:
     problem = instance(works, exclusive, now)
     many = len(problem.tasks) > HORIZON
     starts = pack(problem, _in_rows(problem, by_priority)) if many else dispatch(problem, by_priority)
-    return replace(_told(works, problem, starts, 0), fallback=why, horizon=0)
+    return replace(_schedule(works, problem, starts, 0), fallback=why, horizon=0)
 
 
 def _rolling(
@@ -119,7 +119,7 @@ def _rolling(
     rest = in_order(problem, best, [job for job in order if job not in known])
     candidate = pack(problem, [*(task for _, task in first), *rest])
     starts = min(candidate, best, key=lambda each: cost(problem, each))
-    return replace(_told(works, problem, starts, 0), horizon=len(near))
+    return replace(_schedule(works, problem, starts, 0), horizon=len(near))
 
 
 def _in_rows(problem: Instance, rule: Rule) -> list[int]:
@@ -134,7 +134,7 @@ def _place(problem: Instance, starts: Starts, job: int) -> tuple[int, int]:
     return -1 if found.begun else min((starts[task] for task in found.tasks), default=0), job
 
 
-def _told(works: Sequence[JobWork], problem: Instance, starts: Starts, bound: int) -> Schedule:
+def _schedule(works: Sequence[JobWork], problem: Instance, starts: Starts, bound: int) -> Schedule:
     now, ends = problem.now, [job_end(problem, starts, job) for job in range(len(problem.jobs))]
     least = sum(
         job.weight * max(0, end - job.due)

@@ -169,7 +169,7 @@ class Deliverer:
         self._made = asyncio.Event()
         self._has_webhooks = True  # as far as it is known
 
-    def look(self) -> None:
+    def wake(self) -> None:
         """A webhook was made."""
         self._made.set()
 
@@ -179,7 +179,7 @@ class Deliverer:
             while True:
                 self._made.clear()
                 if not self._stands_by():
-                    await self._look()
+                    await self._poll()
                 with contextlib.suppress(TimeoutError):
                     async with asyncio.timeout(LOOK_EVERY if self._has_webhooks else LOOK_FOR_WEBHOOKS):
                         await self._made.wait()
@@ -188,16 +188,16 @@ class Deliverer:
                 task.cancel()
             await asyncio.gather(*self._under_way.values(), return_exceptions=True)
 
-    async def _look(self) -> None:
+    async def _poll(self) -> None:
         try:
             self._has_webhooks, found = await self._read(partial(_waiting, now=self._now()))
             self._in_trouble = False
         except StorageError as error:
-            self._note(str(error))
+            self._log_trouble(str(error))
             return
         except Exception as error:  # whatever it is, the next look may be better
             LOG.exception("webhooks cannot be looked at")
-            self._note(repr(error))
+            self._log_trouble(repr(error))
             return
         for webhook in found:
             if webhook not in self._under_way:
@@ -212,10 +212,10 @@ class Deliverer:
         try:
             await self._deliver_all(webhook)
         except StorageError as error:
-            self._note(str(error))
+            self._log_trouble(str(error))
         except Exception as error:  # of one webhook must not keep others from being told
             LOG.exception("a webhook cannot be told", webhook=webhook)
-            self._note(repr(error))
+            self._log_trouble(repr(error))
 
     async def _deliver_all(self, webhook: str) -> None:
         while True:
@@ -261,7 +261,7 @@ class Deliverer:
 
         return await run_in_threadpool(inside)
 
-    def _note(self, reason: str) -> None:
+    def _log_trouble(self, reason: str) -> None:
         if not self._in_trouble:
             LOG.warning("webhooks cannot be told now", reason=reason)
         self._in_trouble = True

@@ -42,8 +42,8 @@ from sequence_planner.mes.scheduling.problem import (
     KnownTimes,
     Schedule,
     SchedulingProblem,
-    asked,
     held_up,
+    scheduling_problem,
 )
 from sequence_planner.mes.scheduling.scheduler import Sequencer
 from sequence_planner.mes.tables import LONGEST_ID
@@ -266,7 +266,7 @@ async def store_job_order(
             raise unknown
         order = orders.store(connection, body.content(), actor, now, id=body.id, start=body.start)
         kept = KeptAnswer(201, _tag(order), answered(order, desk).model_dump_json())
-        idempotency.keep(connection, actor.id, idempotency_key, digest, kept, now)
+        idempotency.store_answer(connection, actor.id, idempotency_key, digest, kept, now)
         return kept, False
 
     found, again = await identity.write(write, by=actor)
@@ -624,7 +624,7 @@ class OrderOfWorkDesk:
         masters = await self._desk.work_masters()
         if view is None or masters is None or self._controller.stands_by:
             return
-        question = asked(self._desk.orders, view, masters, await self._times(view))
+        question = scheduling_problem(self._desk.orders, view, masters, await self._times(view))
         if len(question.works) < 2:
             self._asked = self._answered = SchedulingProblem((), ())
             self._places, self.found = {}, None

@@ -255,7 +255,7 @@ async def set_user_password(person: Identifier, body: TemporaryPasswordBody, ide
 
     409 `no-password-here` where the person signs in with a provider.
     """
-    found = await identity.read(lambda connection: users.known(connection, person))
+    found = await identity.read(lambda connection: users.get_user(connection, person))
     users.check_has_password(found)
     check_password(body.password, found.name)
     hashed = await identity.passwords.hash(body.password)

@@ -33,7 +33,7 @@ END_EFFECTOR = ("lock_rsp", "unlock_rsp", "open_gripper", "close_gripper")
 class Driver(Protocol):
     """One computer. Times are seconds on any clock that only goes forward."""
 
-    def hear(self, command: Record, now: float) -> None:
+    def on_command(self, command: Record, now: float) -> None:
         """Take a message of the controller."""
 
     def signals(self, now: float) -> Signals:
@@ -50,7 +50,7 @@ class Listening:
         self._command: Record = {}
         self._heard: float | None = None
 
-    def hear(self, command: Record, now: float) -> None:
+    def on_command(self, command: Record, now: float) -> None:
         """See `Driver.hear`."""
         self._command, self._heard = command, now
 
@@ -314,9 +314,9 @@ class RobotDriver(Listening):
         self._previous = "UNKNOWN"
         self._target = "UNKNOWN"
 
-    def hear(self, command: Record, now: float) -> None:
+    def on_command(self, command: Record, now: float) -> None:
         """See `Driver.hear`."""
-        super().hear(command, now)
+        super().on_command(command, now)
         pose = str(command.get("pose_name", ""))
         self._errors = _errors(command)
         if pose in FORGET:

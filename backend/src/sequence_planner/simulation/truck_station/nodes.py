@@ -138,6 +138,6 @@ def _hearing(driver: Driver, registry: MessageRegistry, type_name: str) -> Calla
             except MalformedMessageError as error:
                 LOG.warning("command not understood", topic=sample.topic, reason=str(error))
                 continue
-            driver.hear(command, time.monotonic())
+            driver.on_command(command, time.monotonic())
 
     return hear

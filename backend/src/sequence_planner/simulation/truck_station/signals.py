@@ -13,7 +13,7 @@ NODES = ("tool_ecu", "rsp_ecu", "dock_ecu", "mircom", "rfidcam", "ur10", "scene"
 COMPUTERS = (*NODES, "mir")
 
 
-def put(world: World, node: str, signals: Signals) -> None:
+def set_signals(world: World, node: str, signals: Signals) -> None:
     """Set signals of a node's device. Raises KeyError for a node that there is not; unknown signals are left out."""
     _PUT[node](world, signals)
 
@@ -59,7 +59,7 @@ def _put_arm(world: World, signals: Signals) -> None:
     is_planned = signals.get("action") == "PLANNED"
     tool = world.held if world.effector.locked else None
     if is_planned and not world.arm.off and goal != world.arm.goal and world.scene != ([] if tool is None else [tool]):
-        world.verdict.note(world.now, f"wrong plan: the scene has {world.scene}, and the robot {tool}")
+        world.verdict.record(world.now, f"wrong plan: the scene has {world.scene}, and the robot {tool}")
     world.arm.command(goal, scaling)
 
 

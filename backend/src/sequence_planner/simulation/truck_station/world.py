@@ -258,7 +258,7 @@ class Verdict:
 
     events: list[tuple[float, str]] = field(default_factory=list)
 
-    def note(self, now: float, event: str) -> None:
+    def record(self, now: float, event: str) -> None:
         """Take down an event."""
         self.events.append((round(now, 3), event))
 
@@ -322,18 +322,18 @@ class World:
         before = self.agv.position
         self.agv.advance(seconds)
         if before == "station" and self.agv.position != "station" and self._at == FRAME_IN_KIT:
-            self._note("collision: the AGV leaves with the robot at its kit")
+            self._record("collision: the AGV leaves with the robot at its kit")
         if (gone := self.line.advance(self.now)) is not None:
             self._leave(gone)
         if self.person.busy_at and self._at in (self.person.busy_at, FRAME_ON_ENGINE):
             self._once(f"collision: the robot and a hand at {self._at}")
 
-    def _note(self, event: str) -> None:
-        self.verdict.note(self.now, event)
+    def _record(self, event: str) -> None:
+        self.verdict.record(self.now, event)
 
     def _once(self, event: str) -> None:
         if not self.verdict.events or self.verdict.events[-1][1] != event:
-            self._note(event)
+            self._record(event)
 
     def _meet(self, at: str | None) -> None:
         """The arm touches what is at `at`, or lets go of what was where it was."""
@@ -349,13 +349,13 @@ class World:
         elif at in PAIRS:
             self._reach_bolts(at)
         elif at == FRAME_ON_ENGINE and self.frame_held and self.line.engine and self.line.engine.frame:
-            self._note("collision: two ladder frames on one engine")
+            self._record("collision: two ladder frames on one engine")
         elif at == OIL_FILTER and self.line.engine is not None:
             if self.held == "OFTOOL" and self.line.engine.frame:
                 self.line.engine.oil_filter = True
-                self._note("oil filter tightened")
+                self._record("oil filter tightened")
             else:
-                self._note("collision: no filter tool at the oil filter")
+                self._record("collision: no filter tool at the oil filter")
 
     def _leave_place(self) -> None:
         tool = self.held
@@ -364,18 +364,18 @@ class World:
         if not self.effector.locked:
             self.held = None
         elif (tool == "LFTOOL" and self.effector.closed) or (tool == "ATLASTOOL" and self.nutrunner.lift == "hold"):
-            self._note(f"collision: {tool} is pulled while its place holds it")
+            self._record(f"collision: {tool} is pulled while its place holds it")
         else:
             self.away.add(tool)
 
     def _reach_place(self, place: str) -> None:
         tool = next(name for name, where in TOOL_PLACES.items() if where == place)
         if self.held is not None and self.held != tool:
-            self._note(f"collision: {self.held} is driven into the place of {tool}")
+            self._record(f"collision: {self.held} is driven into the place of {tool}")
         elif self.held is None and self.effector.locked:
-            self._note(f"collision: a locked coupling is driven onto {tool}")
+            self._record(f"collision: a locked coupling is driven onto {tool}")
         elif self.held == "LFTOOL" and (self.effector.closed or self.frame_held):
-            self._note("collision: a closed gripper is driven into the dock")
+            self._record("collision: a closed gripper is driven into the dock")
         elif self.held is None and tool not in self.away:
             self.held = tool
         else:
@@ -385,9 +385,9 @@ class World:
         self._turned, self._needed = 0.0, self._random.uniform(1.5, 2.5)
         engine = self.line.engine
         if self.held != "ATLASTOOL":
-            self._note(f"collision: no nutrunner at {pair}")
+            self._record(f"collision: no nutrunner at {pair}")
         elif engine is not None and engine.bolts[pair] == "placed" and not self.nutrunner.turning:
-            self._note(f"collision: a standing tool is driven onto the bolts of {pair}")
+            self._record(f"collision: a standing tool is driven onto the bolts of {pair}")
 
     def _moved(self, moved: str) -> None:
         """A valve of the end-effector has moved."""
@@ -396,21 +396,21 @@ class World:
             at_place = self._at == TOOL_PLACES[tool]
             is_held = {"LFTOOL": self.effector.closed, "ATLASTOOL": self.nutrunner.lift == "hold"}.get(tool, True)
             if not (at_place and is_held):
-                self._note(f"tool dropped: {tool}")
+                self._record(f"tool dropped: {tool}")
             if not at_place:
                 self.held = None
         elif moved == "close" and tool == "LFTOOL" and self._at == FRAME_IN_KIT:
             if self.agv.position == "station" and self.agv.frame:
                 self.agv.frame, self.frame_held = False, True
-                self._note("ladder frame gripped")
+                self._record("ladder frame gripped")
         elif moved == "open" and self.frame_held:
             self.frame_held = False
             engine = self.line.engine
             if self._at == FRAME_ON_ENGINE and engine is not None and not engine.frame:
                 engine.frame = True
-                self._note("ladder frame mounted")
+                self._record("ladder frame mounted")
             else:
-                self._note("ladder frame dropped")
+                self._record("ladder frame dropped")
 
     def _turn(self, seconds: float) -> None:
         """The nutrunner turns on what is below it."""
@@ -421,7 +421,7 @@ class World:
         self._turned += seconds
         if engine.bolts[pair] == "placed" and self._turned >= self._needed:
             engine.bolts[pair], tool.torque, tool.turning, self._turned = "tightened", True, False, 0.0
-            self._note(f"bolt tightened: {pair}")
+            self._record(f"bolt tightened: {pair}")
         elif engine.bolts[pair] == "tightened" and self._turned > LONGEST_ON_TIGHT:
             self._once(f"over-torque: {pair}")
         elif engine.bolts[pair] == "empty" and self._turned > LONGEST_ON_AIR:
@@ -435,36 +435,36 @@ class World:
         state = engine.bolts.get(pair) if engine is not None else None
         if done == "place":
             if engine is None or state != "empty" or not engine.frame or self.agv.position != "station":
-                self._note(f"wrong task: no bolts can be placed at {pair}")
+                self._record(f"wrong task: no bolts can be placed at {pair}")
                 return
             engine.bolts[pair] = "placed"
             self.agv.pairs -= 1
-            self._note(f"bolts placed: {pair}")
+            self._record(f"bolts placed: {pair}")
         elif done == "free":
             self._free()
         elif engine is None or state == "empty" or self.nutrunner.lift != "float" or self.held == "ATLASTOOL":
-            self._note(f"wrong task: nothing can be tightened by hand at {pair}")
+            self._record(f"wrong task: nothing can be tightened by hand at {pair}")
         elif state == "tightened":
-            self._note(f"bolt found tight: {pair} by hand")  # the tool stops at once
+            self._record(f"bolt found tight: {pair} by hand")  # the tool stops at once
         else:
             engine.bolts[pair] = "tightened"
-            self._note(f"bolt tightened: {pair} by hand")
+            self._record(f"bolt tightened: {pair} by hand")
 
     def _free(self) -> None:
         """The nutrunner comes off the robot by hand, and is hung back."""
         if not self.arm.off or self.held != "ATLASTOOL" or self.nutrunner.turning or self.nutrunner.lift != "float":
-            self._note("wrong task: no nutrunner can be taken off the robot")
+            self._record("wrong task: no nutrunner can be taken off the robot")
             return
         self.effector.locked = self.effector.lock_wanted = False
         self.held = None
         self.away.discard("ATLASTOOL")
         self.arm.push(POSES[HOME])
-        self._note("nutrunner taken off by hand")
+        self._record("nutrunner taken off by hand")
 
     def _leave(self, engine: TruckEngine) -> None:
         if self._at in AT_ENGINE:
-            self._note("collision: the engine leaves with the robot at it")
+            self._record("collision: the engine leaves with the robot at it")
         faults = engine.faults
-        self._note("engine done" if not faults else f"engine wrong: {', '.join(faults)}")
+        self._record("engine done" if not faults else f"engine wrong: {', '.join(faults)}")
         if self.person.busy_at:
-            self._note("collision: the engine leaves with a person at it")
+            self._record("collision: the engine leaves with a person at it")

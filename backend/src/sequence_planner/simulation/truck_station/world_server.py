@@ -11,7 +11,7 @@ from http import HTTPStatus
 from sequence_planner.simulation.truck_station.drivers import DeviceLink, Signals, WorldEndedError, WorldLink
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from sequence_planner.simulation.truck_station.rest import GOAL, STATUS
-from sequence_planner.simulation.truck_station.signals import COMPUTERS, put, read
+from sequence_planner.simulation.truck_station.signals import COMPUTERS, read, set_signals
 from sequence_planner.simulation.truck_station.world import World
 
 # The AGV, a computer of its own behind the bridge `mircom`: its REST interface (see `rest`) as a small HTTP server.
@@ -183,7 +183,7 @@ class WorldServer:
             fault = None
         if fault is not None and fault.kind == "stuck":
             return {"read": self._frozen.setdefault(node, read(self.world, node)), "fault": {"kind": "stuck"}}
-        put(self.world, node, signals)
+        set_signals(self.world, node, signals)
         told = {} if fault is None else {"kind": fault.kind, "fields": fault.fields}
         return {"read": read(self.world, node), "fault": told}
 
