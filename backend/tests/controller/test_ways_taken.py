@@ -123,7 +123,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     take(taken, OperatorPlan(ErrandKind.WAY_BACK, "home", Plan(ticks, False, False), goal, unsupervised=True, by="Eva"))
 
     def causes(seconds: float) -> list[str]:
-        return [c.text for c in alarms.causes(None, taken.seconds + seconds) if c.key == "errand-waits"]
+        return [str(c.text) for c in alarms.causes(None, taken.seconds + seconds) if c.key == "errand-waits"]
 
     assert taken.tick() == (TO_ABOVE,)
     taken.tick((LEAVES,))
