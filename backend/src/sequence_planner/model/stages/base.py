@@ -28,7 +28,17 @@ from sequence_planner.language.records.record import FieldType, Record, RecordTy
 from sequence_planner.language.types import Place
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.marks import ExampleValue, Mark, Marked, NameMark, NameUse, Steps, marks_of, texts_at
+from sequence_planner.model.stages.marks import (
+    ExampleValue,
+    Mark,
+    Marked,
+    NameMark,
+    NameUse,
+    Steps,
+    Within,
+    marks_of,
+    texts_at,
+)
 from sequence_planner.model.stages.suggestions import Candidate, Spot
 
 # What a stage is: as written, as checked, and as it runs.
@@ -116,15 +126,17 @@ class StageDeclaration(DocumentPart, ABC):
     @classmethod
     def about_field(cls, name: str, spot: Spot) -> object:
         """What could be written about a field: its name, a free one for what is given, and examples of all else."""
+        marks = dict(marks_of(cls))
         content: dict[str, object] = {}
         for field, info in cls.model_fields.items():
+            key = info.alias or field
+            mark = marks.get((key,)) or marks.get((key, Within.ENTRIES))
             if (example := next((each for each in info.metadata if isinstance(each, ExampleValue)), None)) is not None:
-                content[info.alias or field] = example.value
-        for steps, mark in marks_of(cls):
-            if isinstance(mark, NameMark) and isinstance(key := steps[0], str):
+                content[key] = example.value
+            elif isinstance(mark, NameMark):
                 given = mark.use(spot.is_incoming) is NameUse.GIVEN
                 text = spot.name(f"{name}_{cls.kind}") if given else name
-                content[key] = text if len(steps) == 1 else [text]
+                content[key] = text if (key,) in marks else [text]
         return next(iter(content.values())) if cls.is_bare else content
 
     @classmethod
