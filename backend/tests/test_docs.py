@@ -30,7 +30,6 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
 from support.places import DOCS, REPOSITORY
@@ -124,7 +123,6 @@ def test_errors_are_said_as_shown(station: Path, line: str, finding: str) -> Non
     [
         StationDocument,
         TopicDocument,
-        StageDocument,
         AbilityDocument,
         EffectDocument,
         OperationDocument,

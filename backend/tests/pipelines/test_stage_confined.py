@@ -23,8 +23,10 @@ from typer.testing import CliRunner
 from pipelines.stage_texts import MESSAGE, VARIABLES, build
 from sequence_planner.cli.station import configuration
 from sequence_planner.language.records.record import Record
-from sequence_planner.model.stages import confinement, python
-from sequence_planner.model.stages.confinement import (
+from sequence_planner.model.stages import python
+from sequence_planner.model.stages.python import PythonStage
+from sequence_planner.model.stages.sandbox import confinement
+from sequence_planner.model.stages.sandbox.confinement import (
     CALLS,
     CLONE,
     CLONE3,
@@ -38,8 +40,7 @@ from sequence_planner.model.stages.confinement import (
     TGKILL,
     missing,
 )
-from sequence_planner.model.stages.python import PythonStage
-from sequence_planner.model.stages.python_program import CONFINED
+from sequence_planner.model.stages.sandbox.program import CONFINED
 
 NUMBERS = {
     0: Path("/usr/include/x86_64-linux-gnu/asm/unistd_64.h"),
@@ -192,7 +193,7 @@ def test_a_stage_has_no_more_memory_than_it_may(model: Path) -> None:
 # With Landlock of this version, which knows fewer rights, and so on an older kernel.
 ON_OLDER = """
 import os, sys
-from sequence_planner.model.stages import confinement
+from sequence_planner.model.stages.sandbox import confinement
 version, newest = int(sys.argv[1]), confinement._landlock_version()
 sys.path.append(os.getcwd())
 confinement._landlock_version = lambda: min(version, newest)

@@ -18,8 +18,8 @@ from sequence_planner.core.secrets import CLIENT_SECRET, PASSWORD
 from sequence_planner.core.storage_error import DATABASE
 from sequence_planner.language.records.record import Record
 from sequence_planner.model.stages.base import NotInvertibleError
-from sequence_planner.model.stages.confinement import missing
 from sequence_planner.model.stages.python import PythonCourse, PythonStage
+from sequence_planner.model.stages.sandbox.confinement import missing
 from sequence_planner.pipelines.examples import failures, loading_failures
 from sequence_planner.station import prepare_station
 from support.waiting import PATIENCE, until

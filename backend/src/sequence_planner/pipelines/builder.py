@@ -8,14 +8,15 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.language.lexer import KEYWORDS
-from sequence_planner.language.records.field_paths import NoFieldError, find_field
+from sequence_planner.language.records.field_paths import NoFieldError, feeds, fills, find_field
 from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place, Type
 from sequence_planner.model.documents import FlowDocument, ResourceDocument, TopicDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.model.stages.base import NameUse, Patient
+from sequence_planner.model.stages.base import Patient
+from sequence_planner.model.stages.marks import NameUse
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.stages.timing import OverrideDocument
 from sequence_planner.pipelines.chain_runtime import first_message
@@ -34,7 +35,7 @@ from sequence_planner.pipelines.graph import (
     Topic,
     VariableField,
 )
-from sequence_planner.pipelines.message_types import feeds, fills, message_fields
+from sequence_planner.pipelines.message_types import message_fields
 from sequence_planner.ros.names import check_topic
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.types.errors import MessageDefinitionError, MessageValueError

@@ -10,9 +10,10 @@ from sequence_planner.language.records.field_paths import NoFieldError, find_fie
 from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.source import Finding, SourceText
-from sequence_planner.model.stages.base import Context, NameUse, Scalar, Stage
+from sequence_planner.model.stages.base import Context, Stage
 from sequence_planner.model.stages.discretise import DiscretiseDocument
 from sequence_planner.model.stages.map import MapDocument
+from sequence_planner.model.stages.marks import NameUse, Scalar
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.stages.support import PassingStage
 from sequence_planner.model.stages.timing import FoldDocument

@@ -17,7 +17,7 @@ from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.documents import ResourceDocument, TopicDocument, VariableDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.model.stages.base import NameUse
+from sequence_planner.model.stages.marks import NameUse
 from sequence_planner.model.stages.rename import RenameDocument
 from sequence_planner.pipelines.client_builder import (
     client_findings,

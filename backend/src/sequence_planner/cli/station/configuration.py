@@ -19,7 +19,7 @@ from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import SqliteFile, address
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.stages.confinement import missing
+from sequence_planner.model.stages.sandbox.confinement import missing
 from sequence_planner.retention.settings import NO_ARCHIVE
 from sequence_planner.server.binding import check_demonstration, wrong_with
 from sequence_planner.server.settings import Endpoint, SettingsError

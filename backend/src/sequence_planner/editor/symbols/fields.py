@@ -12,7 +12,7 @@ from sequence_planner.language.records.field_paths import NoFieldError, find_fie
 from sequence_planner.language.records.record import FieldType
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import NameUse
+from sequence_planner.model.stages.marks import NameUse
 from sequence_planner.model.stages.rename import RenameDocument
 from sequence_planner.pipelines.graph import GOAL_STATE
 from sequence_planner.pipelines.inference import MOST_VALUES

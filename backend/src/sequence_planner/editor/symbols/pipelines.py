@@ -39,7 +39,7 @@ from sequence_planner.language.records.field_paths import NoFieldError, find_fie
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import IntegerRange, Place
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import NameUse
+from sequence_planner.model.stages.marks import NameUse
 from sequence_planner.model.yaml.editor import insert, remove, replace
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE

@@ -9,7 +9,7 @@ from sequence_planner.editor.symbols.collectors import Names, read_calculation
 from sequence_planner.editor.symbols.index import Declared, Where
 from sequence_planner.editor.symbols.texts import marked_in
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import EntryPath, FormulaMark, Marked, NameMark, NameUse, ValueMark
+from sequence_planner.model.stages.marks import EntryPath, FormulaMark, Marked, NameMark, NameUse, ValueMark
 
 T = TypeVar("T")
 

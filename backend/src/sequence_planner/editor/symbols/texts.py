@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.model.stages.base import Marked, NameMark, NameUse
+from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
 from sequence_planner.model.stages.registry import KINDS
 from sequence_planner.model.yaml.reader import EntryPath, read_text
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from sequence_planner.core.numerals import counted
 from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
 from sequence_planner.language.resolver import suggestion
-from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, contains
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type, contains
 
 # Fields of a record by their paths, such as `pose.position.x`, `joints[0]` or `transforms[0].header.frame_id`.
 #
@@ -205,3 +205,42 @@ def domain(type_: FieldType) -> tuple[object, ...] | None:
     if isinstance(type_, IntegerRange) and type_.maximum - type_.minimum >= MOST_VALUES:
         return None
     return type_.domain if isinstance(type_, BooleanType | EnumerationType | IntegerRange) else None
+
+
+# Which fields and variables correspond.
+
+
+def feeds(field: FieldType, variable: Type) -> bool:
+    """Return whether values of a field can be those of a variable; which of them are none shows when they come."""
+    match field, variable:
+        case BooleanType(), BooleanType():
+            return True
+        case TextType(), EnumerationType():
+            return True
+        case EnumerationType(), EnumerationType():
+            return set(field.values) <= set(variable.values)
+        case IntegerRange(), IntegerRange():
+            return _within(field, variable) or _within(variable, field)
+    return False
+
+
+def fills(value: FieldType, field: FieldType) -> bool:
+    """Return whether values of the type of a record's field can be sent in a field of a message."""
+    match value, field:
+        case IntegerRange(), IntegerRange():
+            return _within(value, field)
+        case (IntegerRange(), RealType()) | (EnumerationType(), TextType()):
+            return True
+        case ListType(), ListType():
+            return fills(value.element, field.element) and (None in (value.length, field.length) or _same(value, field))
+        case NestedType(), NestedType():
+            return value.name == field.name
+    return type(value) is type(field) and not isinstance(field, EnumerationType)
+
+
+def _same(value: ListType, field: ListType) -> bool:
+    return value.length == field.length
+
+
+def _within(inner: IntegerRange, outer: IntegerRange) -> bool:
+    return outer.minimum <= inner.minimum and inner.maximum <= outer.maximum

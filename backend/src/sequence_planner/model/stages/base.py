@@ -1,8 +1,7 @@
 """The nature of a stage: declared once, checked when the station is loaded, and run while the station does.
 
-A stage is a class that is derived from `StageDeclaration`. Its fields are what an engineer writes; their annotations
-say what the stage does with each name, from which all follows that others must know: what renaming looks at, which
-fields become variables by themselves, what may stand where. `check` makes of it a `Stage`, which knows the types of
+A stage is a class that is derived from `StageDeclaration`. Its fields are what an engineer writes, with `marks` of what
+the stage does with each name. `check` makes of it a `Stage`, which knows the types of
 the record before it, and `begin` of that a `StageInstance`, which has what must be remembered from record to record.
 
 A stage reads some fields of a record and gives some; all others pass through it. No stage looks at a clock: times are
@@ -15,161 +14,32 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from enum import Enum
 from functools import cache
 from pathlib import Path
-from types import UnionType
 from typing import (
-    Annotated,
     ClassVar,
     Literal,
-    NamedTuple,
     Protocol,
-    Union,
-    get_args,
-    get_origin,
-    get_type_hints,
     runtime_checkable,
 )
-
-from pydantic import BaseModel
 
 from sequence_planner.language.records.field_paths import FieldPath, NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, Record, RecordType
 from sequence_planner.language.types import Place
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import SourceText
-
-# What a stage does with what is named in it.
-
-
-class NameUse(Enum):
-    """The use of a name: a field before the stage, or, where it is given, behind it."""
-
-    READ = "read"  # it is looked at, and stays what it is
-    KEPT = "kept"  # it is given again, from itself alone
-    COMBINED = "combined"  # something else is made of it and others
-    CONSUMED = "consumed"  # something else is made of it
-    RENAMED = "renamed"  # it goes on under another name
-    GIVEN = "given"
-
-
-@dataclass(frozen=True)
-class NameMark:
-    """Marks a text of a declaration as a name in the record: its use in an incoming pipeline, and in an outgoing one.
-
-    A field must `fit`, and findings call what does `what`. A name that is given `alike` has the values of what is read;
-    of `outsider`, who knows the name from elsewhere, renaming tells people.
-    """
-
-    incoming: NameUse | None
-    outgoing: NameUse | None
-    fits: Callable[[FieldType], bool] | None = None
-    what: str = ""
-    alike: bool = False
-    outsider: str | None = None
-
-    def use(self, is_incoming: bool) -> NameUse | None:
-        """Its use in a pipeline of this direction."""
-        return self.incoming if is_incoming else self.outgoing
-
-
-@dataclass(frozen=True)
-class ValueMark:
-    """Marks a text as a value of what the stage reads, or of what it gives; `but` is a word that is none."""
-
-    of_given: bool
-    but: str | None = None
-
-
-@dataclass(frozen=True)
-class FormulaMark:
-    """Marks a text as an expression over the record; the name that is given at the same place has its value."""
-
-
-# Names of the message's side and of the model's, of which each is read or given as the pipeline goes.
-MessageField = Annotated[SourceText, NameMark(NameUse.CONSUMED, NameUse.GIVEN)]
-ModelVariable = Annotated[SourceText, NameMark(NameUse.GIVEN, NameUse.CONSUMED)]
-# Names of which a stage does the same whichever way the pipeline goes.
-ReadField = Annotated[SourceText, NameMark(NameUse.READ, NameUse.READ)]
-KeptField = Annotated[SourceText, NameMark(NameUse.KEPT, NameUse.KEPT)]
-CombinedField = Annotated[SourceText, NameMark(NameUse.COMBINED, NameUse.COMBINED)]
-GivenField = Annotated[SourceText, NameMark(NameUse.GIVEN, NameUse.GIVEN)]
-
-Scalar = SourceText | bool | int | float
-READ_VALUE, GIVEN_VALUE = ValueMark(of_given=False), ValueMark(of_given=True)
-ReadValue = Annotated[SourceText, READ_VALUE]
-GivenValue = Annotated[SourceText, GIVEN_VALUE]
-
-
-class Within(Enum):
-    """A step into a mapping or a list, whatever is in it."""
-
-    KEYS = "keys"
-    ENTRIES = "entries"
-
-
-Mark = NameMark | ValueMark | FormulaMark
-Steps = tuple[str | Within, ...]
-EntryPath = tuple[str | int, ...]
-
-
-class Marked(NamedTuple):
-    """A text of a stage as written, where it stands in it (a key at the path of its entry), and what it is."""
-
-    text: SourceText
-    path: EntryPath
-    mark: Mark
-
-
-def _marks(annotation: object, steps: Steps) -> Iterator[tuple[Steps, Mark]]:
-    """The marks within an annotation, each with the steps to what it marks."""
-    origin, arguments = get_origin(annotation), get_args(annotation)
-    if origin is Annotated:
-        found = (each for each in arguments[1:] if isinstance(each, NameMark | ValueMark | FormulaMark))
-        yield from ((steps, each) for each in found)
-        yield from _marks(arguments[0], steps)
-    elif origin in (Union, UnionType):
-        for each in arguments:
-            yield from _marks(each, steps)
-    elif origin in (dict, Mapping):
-        yield from _marks(arguments[0], (*steps, Within.KEYS))
-        yield from _marks(arguments[1], (*steps, Within.ENTRIES))
-    elif origin is list:
-        yield from _marks(arguments[0], (*steps, Within.ENTRIES))
-    elif isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield from _marks_of(annotation, steps)
-
-
-def _marks_of(part: type[BaseModel], steps: Steps) -> Iterator[tuple[Steps, Mark]]:
-    hints = get_type_hints(part, include_extras=True)
-    for name, info in part.model_fields.items():
-        yield from _marks(hints[name], (*steps, info.alias or name))
-
-
-def _texts(content: object, steps: Steps, path: EntryPath) -> Iterator[tuple[SourceText, EntryPath]]:
-    """The texts at these steps, in a document or in what may become one, of whatever form it is."""
-    if not steps:
-        if isinstance(content, SourceText):
-            yield content, path
-        return
-    step, rest = steps[0], steps[1:]
-    match step, content:
-        case Within.KEYS, Mapping():
-            yield from ((key, (*path, str(key))) for key in content if isinstance(key, SourceText))
-        case Within.ENTRIES, Mapping():
-            for key, each in content.items():
-                yield from _texts(each, rest, (*path, str(key)))
-        case Within.ENTRIES, list():
-            for index, each in enumerate(content):
-                yield from _texts(each, rest, (*path, index))
-        case str(), Mapping():
-            yield from _texts(content.get(step), rest, (*path, step))
-        case str(), BaseModel():
-            fields = type(content).model_fields
-            name = next(name for name, info in fields.items() if (info.alias or name) == step)
-            yield from _texts(getattr(content, name), rest, (*path, step))
-
+from sequence_planner.model.stages.marks import (
+    ExampleValue,
+    Mark,
+    Marked,
+    NameMark,
+    NameUse,
+    Steps,
+    Within,
+    marks_of,
+    texts_at,
+)
+from sequence_planner.model.stages.suggestions import Candidate, Spot
 
 # What a stage is: as written, as checked, and as it runs.
 
@@ -204,19 +74,24 @@ class Context:
             return None
 
 
+Direction = Literal["incoming", "outgoing"]
+
+
 class StageDeclaration(DocumentPart, ABC):
     """One kind of stage: what is written of it, and what is made of that.
 
     `kind` is the key by which documents name it, and `about` says under that key what it is for. It is `bare` when what
     is written is what its only field holds. `direction` is that of the topics it is for, if it is not for all, and
-    `instead` the kind for the others.
+    `instead` the kind for the others. Where it `gives_open`, it is suggested only for what
+    nothing gives yet.
     """
 
     kind: ClassVar[str]
     about: ClassVar[str]
     is_bare: ClassVar[bool] = False
-    direction: ClassVar[Literal["incoming", "outgoing"] | None] = None
+    direction: ClassVar[Direction | None] = None
     instead: ClassVar[str] = ""
+    gives_open: ClassVar[tuple[Direction, ...]] = ()
 
     @abstractmethod
     def check(self, context: Context) -> Stage | None:
@@ -224,26 +99,58 @@ class StageDeclaration(DocumentPart, ABC):
 
     def is_for(self, context: Context) -> bool:
         """Check whether the stage is of the right direction; a finding when it is not."""
-        is_right = self.direction in (None, "incoming" if context.is_incoming else "outgoing")
+        is_right = self.direction in (None, _direction(context.is_incoming))
         if not is_right:
-            names = [each for each in self.marked(self) if isinstance(each.mark, NameMark)]
-            names.sort(key=lambda each: each.mark != MESSAGE_FIELD)
+            of_message = self.named(self, True, NameUse.CONSUMED)
+            first = (of_message or self.named(self, True, *NameUse))[0]
             use = f"; use `{self.instead}` here" if self.instead else ""
-            context.found(names[0].text.place, f"`{self.kind}` is for {self.direction} topics{use}")
+            context.found(first.place, f"`{self.kind}` is for {self.direction} topics{use}")
         return is_right
 
     @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first: one about each field that fits."""
+        names = [mark for _, mark in cls.marks() if isinstance(mark, NameMark)]
+        fits = next((mark.fits for mark in names if mark.fits is not None), None)
+        paths = [path for path, _ in spot.subjects(fits)] if names else [""]
+        return (Candidate({cls.kind: cls.about_field(path, spot)}) for path in paths)
+
+    @classmethod
+    def suggest_any(cls, spot: Spot) -> Iterator[Candidate]:
+        """A stage about any field, where none suggests one, so that its check says why not; none if nothing is open."""
+        if not spot.open and _direction(spot.is_incoming) in cls.gives_open:
+            return iter(())
+        name = next((path for path, _ in spot.leaves), "field")
+        return iter([Candidate({cls.kind: cls.about_field(name, spot)})])
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field: its name, a free one for what is given, and examples of all else."""
+        marks = dict(marks_of(cls))
+        content: dict[str, object] = {}
+        for field, info in cls.model_fields.items():
+            key = info.alias or field
+            mark = marks.get((key,)) or marks.get((key, Within.ENTRIES))
+            if (example := next((each for each in info.metadata if isinstance(each, ExampleValue)), None)) is not None:
+                content[key] = example.value
+            elif isinstance(mark, NameMark):
+                given = mark.use(spot.is_incoming) is NameUse.GIVEN
+                text = spot.name(f"{name}_{cls.kind}") if given else name
+                content[key] = text if (key,) in marks else [text]
+        return next(iter(content.values())) if cls.is_bare else content
+
+    @classmethod
     @cache
-    def marks(cls) -> tuple[tuple[Steps, NameMark | ValueMark | FormulaMark], ...]:
+    def marks(cls) -> tuple[tuple[Steps, Mark], ...]:
         """The marks of all that is written, each with the steps to it."""
-        return tuple((steps[cls.is_bare :], mark) for steps, mark in _marks_of(cls, ()))
+        return tuple((steps[cls.is_bare :], mark) for steps, mark in marks_of(cls))
 
     @classmethod
     def marked(cls, content: object) -> list[Marked]:
         """The texts that are marked in a stage of this kind: one that was read, or what is written, sound or not."""
         if cls.is_bare and isinstance(content, cls):
             content = getattr(content, next(iter(cls.model_fields)))
-        return [Marked(text, path, mark) for steps, mark in cls.marks() for text, path in _texts(content, steps, ())]
+        return [Marked(text, path, mark) for steps, mark in cls.marks() for text, path in texts_at(content, steps)]
 
     @classmethod
     def named(cls, content: object, is_incoming: bool, *uses: NameUse) -> list[SourceText]:
@@ -252,7 +159,8 @@ class StageDeclaration(DocumentPart, ABC):
         return [text for text, _, mark in found if isinstance(mark, NameMark) and mark.use(is_incoming) in uses]
 
 
-MESSAGE_FIELD = get_args(MessageField)[1]
+def _direction(is_incoming: bool) -> Direction:
+    return "incoming" if is_incoming else "outgoing"
 
 
 class StageInstance(ABC):

@@ -15,16 +15,9 @@ from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import (
-    Context,
-    GivenValue,
-    MessageField,
-    ModelVariable,
-    NotInvertibleError,
-    ReadValue,
-    StageDeclaration,
-    StageInstance,
-)
+from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration, StageInstance
+from sequence_planner.model.stages.marks import GivenValue, MessageField, ModelVariable, ReadValue
+from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, has_numbers
 from sequence_planner.model.stages.support import ImmediateStage, wanted_type
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
@@ -218,6 +211,26 @@ class DiscretiseDocument(StageDeclaration):
         variable, hysteresis = str(self.variable), self.hysteresis
         return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, field)
 
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects(has_numbers):
+            for name, values, declares in _named(path, spot):
+                made: dict[str, object] = {"field": path, "variable": name}
+                if isinstance(type_, ListType):
+                    points = {value: [float(index)] * (type_.length or 1) for index, value in enumerate(values[:-1])}
+                    made |= {"values": points, "tolerance": 0.1, "otherwise": values[-1]}
+                else:
+                    low = type_.minimum if isinstance(type_, IntegerRange) else 0
+                    bounds = [None, *(float(low + index) for index in range(1, len(values))), None]
+                    made["ranges"] = {value: [bounds[index], bounds[index + 1]] for index, value in enumerate(values)}
+                yield Candidate({cls.kind: made}, declares)
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"field": name, "variable": spot.name(f"{name}_name"), "ranges": {"low": [None, 0]}}
+
 
 def _regions(document: DiscretiseDocument, field: FieldType, context: Context) -> Regions | None:
     if document.ranges is not None:
@@ -366,6 +379,17 @@ class DiscretiseCourse(StageInstance):
         return record
 
 
+def _named(path: str, spot: Spot) -> Iterator[tuple[str, tuple[str, ...], dict[str, str]]]:
+    """The variables with names that a field could become, with their values, and what must be declared for them."""
+    for name, wanted in spot.open.items():
+        if isinstance(wanted, EnumerationType) and 1 < len(wanted.values) <= MOST_POINTS:
+            yield name, wanted.values, {}
+    for enumeration, values in spot.enumerations.items():
+        if 1 < len(values) <= MOST_POINTS:
+            name = spot.name(f"{path}_{enumeration}")
+            yield name, values, {name: enumeration}
+
+
 # `undiscretise`: from the name of a point to its numbers.
 
 
@@ -374,6 +398,7 @@ class UndiscretiseDocument(StageDeclaration):
 
     kind: ClassVar[str] = "undiscretise"
     about: ClassVar[str] = "From the name of a point to its numbers; for outgoing topics."
+    gives_open: ClassVar = ("outgoing",)
     direction: ClassVar = "outgoing"
     instead: ClassVar[str] = "discretise"
 
@@ -403,6 +428,22 @@ class UndiscretiseDocument(StageDeclaration):
         points = {str(name): _coordinates(context, name, at, element) for name, at in self.values.items()}
         known = {name: point for name, point in points.items() if point is not None}
         return UndiscretiseStage(context.place, path, str(self.field), field, known) if known == points else None
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects(lambda each: isinstance(each, EnumerationType)):
+            assert isinstance(type_, EnumerationType)
+            for name, wanted in spot.open.items():
+                axes = (wanted.length or 1) if isinstance(wanted, ListType) else 1
+                if has_numbers(wanted):
+                    values = {value: [float(index)] * axes for index, value in enumerate(type_.values[:MOST_POINTS])}
+                    yield Candidate({cls.kind: {"variable": path, "field": name, "values": values}})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"variable": name, "field": spot.target, "values": {"low": [0.0]}}
 
 
 def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_: FieldType) -> Numbers | None:

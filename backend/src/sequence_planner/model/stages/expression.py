@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from sequence_planner.language.records.expressions import Calculation, read_calculation, read_condition
-from sequence_planner.language.records.field_paths import as_written
+from sequence_planner.language.records.field_paths import as_written, fills, is_numeric
 from sequence_planner.language.records.record import FieldType, Record, RecordType
 from sequence_planner.language.syntax import ExpressionError
-from sequence_planner.language.types import Place
+from sequence_planner.language.types import BooleanType, Place
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import Context, FormulaMark, GivenField, Scalar, StageDeclaration, StageInstance
+from sequence_planner.model.stages.base import Context, StageDeclaration, StageInstance
 from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.marks import FormulaMark, GivenField, Scalar
+from sequence_planner.model.stages.suggestions import Candidate, Spot, truth
 from sequence_planner.model.stages.support import ImmediateStage, candidates, put_at, solve
 
 # `expression`: values computed from others.
@@ -34,6 +36,29 @@ class ExpressionDocument(StageDeclaration):
         read = {str(name): _read(read_calculation, text, name.place, context) for name, text in self.texts.items()}
         known = {name: calculation for name, calculation in read.items() if calculation is not None}
         return ExpressionStage(context.place, known) if len(known) == len(read) else None
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        conditions = [(path, truth(path, type_)) for path, type_ in spot.subjects()]
+        if spot.is_incoming:
+            for path, condition in conditions:
+                if condition is not None:
+                    name = spot.name(f"{path}_is_so")
+                    yield Candidate({cls.kind: {name: condition}}, {name: "bool"})
+            return
+        for name, type_ in spot.open.items():
+            if isinstance(type_, BooleanType):
+                yield from (Candidate({cls.kind: {name: each}}) for _, each in conditions if each is not None)
+                yield Candidate({cls.kind: {name: "true"}})
+            elif is_numeric(type_):
+                numbers = (path for path, given in spot.subjects(is_numeric) if fills(given, type_))
+                yield from (Candidate({cls.kind: {name: each}}) for each in (*numbers, "0"))
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {spot.name(f"{name}_again"): name}
 
 
 @dataclass(frozen=True)
@@ -86,6 +111,19 @@ class FilterDocument(StageDeclaration):
         """A condition on records."""
         condition = _read(read_condition, self.condition, context.place, context)
         return None if condition is None else FilterStage(context.place, condition)
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects():
+            if (condition := truth(path, type_)) is not None:
+                yield Candidate({cls.kind: condition})
+        yield Candidate({cls.kind: True})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return name
 
 
 @dataclass(frozen=True)

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from sequence_planner.language.records.field_paths import FieldPath, as_written, domain, shown
-from sequence_planner.language.records.record import FieldType, Record
+from sequence_planner.language.records.field_paths import FieldPath, as_written, domain, is_numeric, is_textual, shown
+from sequence_planner.language.records.record import FieldType, ListType, Record
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import (
+from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration
+from sequence_planner.model.stages.marks import (
     GIVEN_VALUE,
     CombinedField,
-    Context,
     GivenField,
     MessageField,
     ModelVariable,
-    NotInvertibleError,
     ReadValue,
     Scalar,
-    StageDeclaration,
     ValueMark,
 )
+from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, as_key, some_values
 from sequence_planner.model.stages.support import (
     ImmediateStage,
     Passing,
@@ -50,6 +49,7 @@ class MapDocument(StageDeclaration):
 
     kind: ClassVar[str] = "map"
     about: ClassVar[str] = "From each value to another."
+    gives_open: ClassVar = ("incoming", "outgoing")
 
     field: MessageField
     """The field of the message."""
@@ -81,6 +81,30 @@ class MapDocument(StageDeclaration):
         otherwise = None if self.otherwise is None else meant[-1]
         pairs = tuple(zip(given, meant, strict=False))
         return MapStage(context.place, path, source_type, str(target), target_type, pairs, otherwise)
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects(lambda each: is_textual(each) or domain(each) is not None or is_numeric(each)):
+            given = some_values(type_)[:MOST_POINTS]
+            if not given:
+                continue
+            if spot.is_incoming:
+                first, *others = map(as_key, given[:2])
+                values = {first: True, **dict.fromkeys(others, False)}
+                name = spot.name(f"{path}_means")
+                more = {} if domain(type_) is not None and len(given) <= len(values) else {"otherwise": False}
+                yield Candidate({cls.kind: {"field": path, "variable": name, "values": values, **more}}, {name: "bool"})
+                continue
+            for name, wanted in spot.open.items():
+                if (meant := some_values(wanted)) and not isinstance(wanted, ListType):
+                    values_out = {as_key(value): meant[index % len(meant)] for index, value in enumerate(given)}
+                    yield Candidate({cls.kind: {"field": name, "variable": path, "values": values_out}})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"field": name, "variable": spot.target, "values": {"0": 0}}
 
 
 def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
@@ -202,6 +226,29 @@ class TableDocument(StageDeclaration):
         paths = tuple(source.path for source in sources)
         kinds = tuple(source.type for source in sources)
         return TableStage(context.place, paths, kinds, gives, known, otherwise)
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects(lambda each: not isinstance(each, ListType) and bool(some_values(each))):
+            when = some_values(type_)[0]
+            if spot.is_incoming:
+                name = spot.name(f"{path}_is_so")
+                rows = [{"when": [when], "gives": [True]}]
+                made = {"fields": [path], "variables": [name], "rows": rows, "otherwise": [False]}
+                yield Candidate({cls.kind: made}, {name: "bool"})
+                continue
+            for name, wanted in spot.open.items():
+                if (meant := some_values(wanted)) and not isinstance(wanted, ListType):
+                    rows = [{"when": [when], "gives": [meant[0]]}]
+                    yield Candidate(
+                        {cls.kind: {"fields": [path], "variables": [name], "rows": rows, "otherwise": [meant[-1]]}}
+                    )
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"fields": [name], "variables": [spot.name(name)], "rows": [{"when": ["any"], "gives": [0]}]}
 
 
 def _cells(names: Sequence[SourceText]) -> str:

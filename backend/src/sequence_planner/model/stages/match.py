@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, get_args
 
@@ -13,15 +13,10 @@ from sequence_planner.language.records.record import FieldType, ListType, RealTy
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import (
-    Context,
-    GivenValue,
-    MessageField,
-    ModelVariable,
-    Scalar,
-    StageDeclaration,
-)
+from sequence_planner.model.stages.base import Context, StageDeclaration
 from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.marks import GivenValue, MessageField, ModelVariable, Scalar
+from sequence_planner.model.stages.suggestions import Candidate, Spot, some_values
 from sequence_planner.model.stages.support import (
     ImmediateStage,
     candidates,
@@ -92,6 +87,18 @@ class MatchDocument(StageDeclaration):
         ways: tuple[Way, ...] = get_args(Way)
         way, text = next((way, text) for way in ways if (text := getattr(self, way)) is not None)
         return MatchStage(context.place, path, str(self.variable), way, str(text))
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, _ in spot.subjects(is_textual):
+            name = spot.name(f"{path}_is_ready")
+            yield Candidate({cls.kind: {"field": path, "variable": name, "equals": "ready"}}, {name: "bool"})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"field": name, "variable": spot.name(f"{name}_is_ready"), "equals": "ready"}
 
 
 def _names(
@@ -229,6 +236,20 @@ class MemberDocument(StageDeclaration):
             return None
         item = value_of(context, type_.element, self.item, self.field.place)
         return None if item is None else MemberStage(context.place, path, type_, item, str(self.variable))
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects(lambda each: isinstance(each, ListType)):
+            assert isinstance(type_, ListType)
+            for item in some_values(type_.element)[:1]:
+                name = spot.name(f"has_{path}")
+                yield Candidate({cls.kind: {"field": path, "item": item, "variable": name}}, {name: "bool"})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"field": name, "item": 0, "variable": spot.name(f"has_{name}")}
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 import weakref
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import cache
@@ -26,18 +26,13 @@ from pydantic import Field
 
 from sequence_planner.core.late_log import LateLog
 from sequence_planner.language.records.field_paths import REAL, TEXT, FieldPath, fits, is_numeric, is_textual, shown
-from sequence_planner.language.records.record import FieldType, ListType, Record
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import (
-    Context,
-    NameMark,
-    NameUse,
-    NotInvertibleError,
-    StageDeclaration,
-    StageInstance,
-)
+from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration, StageInstance
+from sequence_planner.model.stages.marks import NameMark, NameUse
+from sequence_planner.model.stages.suggestions import Candidate, Spot
 
 # One process that runs a function, as its keeper sees it. All calls may wait, at most for the time they are given.
 
@@ -47,7 +42,7 @@ STARTING = 10.0  # seconds within which a file must have been loaded
 MOST_LINES = 20  # of what is printed during one call, in the log
 LONGEST_LINE = 500
 MOST_ANSWERED = 1_000_000  # characters
-_PROGRAM = Path(__file__).with_name("python_program.py")
+_PROGRAM = Path(__file__).with_name("sandbox") / "program.py"
 _CHUNK = 65_536
 _PASSED = frozenset({"LANG", "TZ", "LD_LIBRARY_PATH", "PATH", "PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV"})
 _PASSED_STARTS = ("LC_", "OMP_", "OPENBLAS_")
@@ -481,6 +476,31 @@ class PythonDocument(StageDeclaration):
             return None
         function = Function(str(self.file), str(self.function), path, path.parent)
         return PythonStage(context.place, function, read, given, self.deadline)
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path in sorted((spot.folder / FOLDER).rglob("*.py")):
+            try:
+                functions = [each for each in ast.parse(path.read_bytes()).body if isinstance(each, ast.FunctionDef)]
+            except (OSError, ValueError, SyntaxError, RecursionError, MemoryError):
+                continue
+            file = f"{FOLDER}/{path.relative_to(spot.folder / FOLDER).as_posix()}"
+            for function in functions:
+                reads = {each.arg: _python_type(spot.fields.get(each.arg)) for each in function.args.args}
+                if not function.name.startswith("_") and all(reads.values()):
+                    name = spot.name(function.name) if spot.is_incoming else next(iter(spot.open), function.name)
+                    settings = {"file": file, "function": function.name, "reads": reads, "gives": {name: "bool"}}
+                    yield Candidate({cls.kind: settings}, {name: "bool"} if spot.is_incoming else {})
+
+    @classmethod
+    def suggest_any(cls, spot: Spot) -> Iterator[Candidate]:
+        """Suggest none without a function that could be called."""
+        return iter(())
+
+
+def _python_type(type_: FieldType | None) -> str | None:
+    return None if type_ is None or isinstance(type_, NestedType) else str(type_)
 
 
 def _file(document: PythonDocument, context: Context) -> Path | None:

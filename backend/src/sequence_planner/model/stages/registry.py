@@ -11,7 +11,8 @@ from sequence_planner.language.types import Place
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages import discretise, expression, map, match, python, rename, timing
-from sequence_planner.model.stages.base import Context, NameUse, Stage, StageDeclaration
+from sequence_planner.model.stages.base import Context, Stage, StageDeclaration
+from sequence_planner.model.stages.marks import NameUse
 
 FAMILIES = (rename, expression, discretise, map, match, timing, python)
 KINDS: dict[str, type[StageDeclaration]] = {}

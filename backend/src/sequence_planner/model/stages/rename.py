@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from sequence_planner.language.records.field_paths import FieldPath, common_type, fits, shown
+from sequence_planner.language.records.field_paths import FieldPath, common_type, feeds, fills, fits, shown
 from sequence_planner.language.records.record import FieldType, Record
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import Type
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import Context, NameMark, NameUse, StageDeclaration
+from sequence_planner.model.stages.base import Context, StageDeclaration
+from sequence_planner.model.stages.marks import NameMark, NameUse
+from sequence_planner.model.stages.suggestions import Candidate, Spot, some_values
 from sequence_planner.model.stages.support import ImmediateStage, plain, wanted_type
 
 # `rename`: fields under other names.
@@ -21,6 +24,7 @@ class RenameDocument(StageDeclaration):
 
     kind: ClassVar[str] = "rename"
     about: ClassVar[str] = "Which field is which variable, where their names differ: `{field: variable}`."
+    gives_open: ClassVar = ("incoming", "outgoing")
     is_bare: ClassVar[bool] = True
 
     names: dict[
@@ -42,6 +46,27 @@ class RenameDocument(StageDeclaration):
         renamings = [Renaming(field[0], str(target), field[1]) for field, target in found if field is not None]
         complete = len(renamings) == len(seen) == len(pairs)
         return RenameStage(context.place, tuple(renamings)) if complete else None
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects():
+            if spot.is_incoming:
+                for name, wanted in spot.open.items():
+                    if name != path and isinstance(wanted, Type) and feeds(type_, wanted):
+                        yield Candidate({cls.kind: {path: name}})
+                if (written := spot.type_name(type_)) is not None:
+                    name = spot.name(path.replace(".", "_"))
+                    yield Candidate({cls.kind: {path: name}}, {name: written})
+            else:
+                for name, wanted in spot.open.items():
+                    if name != path and fills(type_, wanted):
+                        yield Candidate({cls.kind: {name: path}})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {name: spot.target} if spot.is_incoming else {spot.target: name}
 
 
 @dataclass(frozen=True)
@@ -92,6 +117,7 @@ class ConstantDocument(StageDeclaration):
 
     kind: ClassVar[str] = "constant"
     about: ClassVar[str] = "Fields with a fixed value; for outgoing topics."
+    gives_open: ClassVar = ("outgoing",)
     is_bare: ClassVar[bool] = True
     direction: ClassVar = "outgoing"
 
@@ -111,6 +137,17 @@ class ConstantDocument(StageDeclaration):
         for name in self.fields if context.is_incoming else ():
             context.found(name.place, "`constant` is for outgoing topics: an incoming message has its own values")
         return not context.is_incoming
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for name, type_ in spot.open.items():
+            yield from (Candidate({cls.kind: {name: value}}) for value in some_values(type_)[:1])
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {spot.target: 0}
 
 
 def _type(context: Context, name: SourceText, value: object) -> FieldType | None:

@@ -25,16 +25,8 @@ from sequence_planner.language.records.record import FieldType, ListType, RealTy
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import (
-    Context,
-    Marked,
-    NameMark,
-    NameUse,
-    NotInvertibleError,
-    Stage,
-    StageDeclaration,
-    StageInstance,
-)
+from sequence_planner.model.stages.base import Context, NotInvertibleError, Stage, StageDeclaration, StageInstance
+from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
 
 # Stages that remember nothing: what goes on is decided by the record alone, and at once.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
@@ -17,24 +17,23 @@ from sequence_planner.language.records.field_paths import (
     shown,
     written,
 )
-from sequence_planner.language.records.record import FieldType, Record
+from sequence_planner.language.records.record import FieldType, ListType, RealType, Record
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import (
+from sequence_planner.model.stages.base import Context, Override, StageDeclaration, StageInstance
+from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.marks import (
     READ_VALUE,
-    Context,
+    ExampleValue,
     KeptField,
     NameMark,
     NameUse,
-    Override,
     ReadField,
     Scalar,
-    StageDeclaration,
-    StageInstance,
 )
-from sequence_planner.model.stages.map import is_same
+from sequence_planner.model.stages.suggestions import MOST_POINTS, MOST_SUBJECTS, Candidate, Spot, some_values
 from sequence_planner.model.stages.support import (
     Passing,
     PassingDeclaration,
@@ -94,6 +93,20 @@ class RememberDocument(StageDeclaration):
         if None in ignored.values():
             return None
         return RememberStage(context.place, str(self.variable), type_, path, frozenset(ignored.values()))
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path, type_ in spot.subjects():
+            narrow = spot.open.get(path, type_)
+            if (written := spot.type_name(narrow)) is not None:
+                name = spot.name(f"last_{path}")
+                yield Candidate({cls.kind: {"variable": name, "of": path}}, {name: written})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"variable": spot.name(f"last_{name}"), "of": name}
 
 
 @dataclass(frozen=True)
@@ -156,7 +169,7 @@ class DebounceDocument(PassingDeclaration):
 
     fields: KeptFields
     """The fields, which change together."""
-    seconds: Period
+    seconds: Annotated[Period, ExampleValue(0.1)]
     """How long it must have been there."""
 
     def begin(self, stage: PassingStage) -> StageInstance:
@@ -217,7 +230,7 @@ class LimitDocument(PassingDeclaration):
     about: ClassVar[str] = "At most one record per time, the newest."
     is_bare: ClassVar[bool] = True
 
-    period: EveryDocument
+    period: Annotated[EveryDocument, ExampleValue({"every": 1.0})]
 
     def begin(self, stage: PassingStage) -> StageInstance:
         """Begin with the way free."""
@@ -260,7 +273,7 @@ class TickDocument(PassingDeclaration):
     about: ClassVar[str] = "The last record again, every so often."
     is_bare: ClassVar[bool] = True
 
-    period: EveryDocument
+    period: Annotated[EveryDocument, ExampleValue({"every": 1.0})]
 
     def begin(self, stage: PassingStage) -> StageInstance:
         """Begin with no record."""
@@ -345,6 +358,24 @@ class OverrideDocument(PassingDeclaration):
         """Begin with nothing set."""
         assert isinstance(stage, OverrideStage)
         return OverrideCourse(stage)
+
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        among = spot.leaves if spot.is_incoming else [*spot.open.items(), *spot.leaves]
+        for path, type_ in among[:MOST_SUBJECTS]:
+            bounds: dict[str, object] | None = None
+            if isinstance(type_, RealType):
+                bounds = {"between": [0.0, 1.0]}
+            elif not isinstance(type_, ListType) and (values := some_values(type_)):
+                bounds = {"in": values[:MOST_POINTS]}
+            if bounds is not None:
+                yield Candidate({cls.kind: {"name": spot.name(path), "fields": {path: bounds}, "expires": 60}})
+
+    @classmethod
+    def about_field(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field."""
+        return {"name": spot.name(name), "fields": {name: {"in": [0]}}, "expires": 60}
 
 
 def _bounds(context: Context, name: SourceText, document: BoundsDocument, type_: FieldType) -> Bounds | None:
@@ -502,6 +533,13 @@ class FoldDocument(PassingDeclaration):
         """Begin with nothing remembered."""
         return FoldCourse(stage)
 
+    @classmethod
+    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first."""
+        for path in list(spot.fields)[:MOST_SUBJECTS]:
+            yield Candidate({cls.kind: [path]})
+        yield Candidate({cls.kind: []})
+
 
 @dataclass(slots=True)
 class FoldCourse(StageInstance):
@@ -528,7 +566,7 @@ class TimeoutDocument(PassingDeclaration):
 
     fields: KeptFields
     """The fields."""
-    seconds: Period
+    seconds: Annotated[Period, ExampleValue(1.0)]
     """How long they count."""
 
     def begin(self, stage: PassingStage) -> StageInstance:

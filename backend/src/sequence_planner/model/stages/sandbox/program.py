@@ -19,7 +19,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
-from sequence_planner.model.stages.confinement import confine
+from sequence_planner.model.stages.sandbox.confinement import confine
 
 CONFINED = "a stage reads files of its folder alone, writes none, and has neither network nor other programs"
 Function = Callable[..., object]
