@@ -8,7 +8,9 @@ BIN := $(VENV)/bin
 STATION ?= models/bolt_tightening
 FAST_DDS := /usr/include/fastdds/dds/topic/TopicDataType.hpp
 FAST_DDS_PACKAGES := g++ libfastrtps-dev libfoonathan-memory-dev
-PAGE_SOURCES := $(shell find frontend/src frontend/static -type f 2>/dev/null) $(wildcard frontend/*.ts frontend/*.js frontend/*.json)
+GENERATED := frontend/src/lib/api.ts frontend/src/lib/model/documents.ts
+PAGE_SOURCES := $(filter-out $(GENERATED),$(shell find frontend/src frontend/static -type f 2>/dev/null)) \
+  $(wildcard frontend/*.ts frontend/*.js frontend/*.json frontend/scripts/*.ts docs/schemas/*.json)
 LOCK := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
   --no-emit-find-links --no-annotate --custom-compile-command 'make lock'
 
@@ -88,11 +90,11 @@ campaign: install-test page e2e/node_modules/done.stamp chromium ## The long run
 	cd e2e && LONG=yes npx playwright test --project dark --grep-invert @long
 	cd backend && for each in campaigns/*.py; do echo "$$each" && PYTHONPATH=tests .venv/bin/python "$$each" || exit 1; done
 
-types: install frontend/node_modules/done.stamp ## Make the page's types and the editors' schemas again from the models
+types: install frontend/node_modules/done.stamp ## Make the REST interface's document, the page's types of it and the editors' schemas again
 	cd backend && .venv/bin/python -m sequence_planner.model.json_schema ../docs/schemas
 	cd backend && .venv/bin/python -m sequence_planner.server.openapi > ../frontend/openapi.json
 	cd backend && .venv/bin/python -m sequence_planner.controller.alarms.texts ../frontend/src/lib/text/en/alarm-texts.json
-	cd frontend && npm run types
+	cd frontend && npm run generate
 
 golden: install-test ## Write down anew the names on which others rely: commands, settings, alarms, metrics, records of the journal
 	cd backend && PYTHONPATH=tests .venv/bin/python -m golden.surface
@@ -112,7 +114,7 @@ lock: install ## Lock the newest Python packages that pyproject.toml allows
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-client.lock requirements-client.in
 
 clean: ## Remove everything that was installed or built
-	rm -rf $(VENV) .node .client dist .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
+	rm -rf $(VENV) .node .client dist .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules $(GENERATED)
 
 # What the verbs stand on.
 

@@ -4,7 +4,14 @@
  * All types come from `api.ts`, which is generated from the server's OpenAPI document; nothing is declared here
  * that the server does not declare, apart from what JSON schema cannot say (which fields of a delta are maps).
  */
-import type { components } from './api.ts';
+import type { components, paths } from './api.ts';
+
+/** A path of the document with something in place of each of its parameters. */
+type Filled<Path extends string> = Path extends `${infer Before}{${string}}${infer After}`
+	? `${Before}${string}${Filled<After>}`
+	: Path;
+/** The address of a request, with what it asks for behind a question mark. */
+export type Address = Filled<keyof paths & string> | `${Filled<keyof paths & string>}?${string}`;
 
 type Schemas = components['schemas'];
 

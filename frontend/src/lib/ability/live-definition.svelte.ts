@@ -1,5 +1,5 @@
 /** The definition of an ability, read again whenever the state of the station may be another. */
-import type { AbilityDefinition } from '#lib/contract.ts';
+import type { Address, AbilityDefinition } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 
@@ -8,7 +8,7 @@ export class LiveDefinition {
 	value = $state.raw<AbilityDefinition | null>(null);
 	/** Why the last question was not answered; null when it was. */
 	refusal = $state.raw<Refusal | null>(null);
-	readonly #path: string;
+	readonly #path: Address;
 	#asking = false;
 	#again = false;
 

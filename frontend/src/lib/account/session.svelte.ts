@@ -7,7 +7,7 @@
 import { createContext, flushSync } from 'svelte';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request, whenSignedOut, type Answer } from '#lib/rest/request.ts';
-import type { ProviderBegun, ProviderSession, Role, SessionAnswer } from '#lib/contract.ts';
+import type { Address, ProviderBegun, ProviderSession, Role, SessionAnswer } from '#lib/contract.ts';
 import { includes } from './roles.ts';
 import { ASKING, after, type Event, type Standing } from './standing.ts';
 
@@ -180,7 +180,7 @@ export class Session {
 	}
 
 	/** Sends what opens a session; the answer is that session. */
-	async #change(method: 'POST' | 'PUT', path: string, body: object): Promise<Refusal | null> {
+	async #change(method: 'POST' | 'PUT', path: Address, body: object): Promise<Refusal | null> {
 		const asked = ++this.#asked;
 		this.#changing = true;
 		const answer: Answer<SessionAnswer> = await request(method, path, { body, patience: HASHING });

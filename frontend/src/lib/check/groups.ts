@@ -59,7 +59,9 @@ export function addressOf({ file, line }: Pick<Finding, 'file' | 'line'>): strin
 	return `/model?${new URLSearchParams({ file, line: String(line) })}`;
 }
 
+export type RunAddress = `/api/v1/model/check/findings/${string}/run?${string}`;
+
 /** Where the server tells of the run that shows a finding of this check. */
-export function runOf({ number, findings }: Pick<ModelCheck, 'number' | 'findings'>, finding: Finding): string {
+export function runOf({ number, findings }: Pick<ModelCheck, 'number' | 'findings'>, finding: Finding): RunAddress {
 	return `/api/v1/model/check/findings/${findings.indexOf(finding)}/run?number=${number}`;
 }

@@ -101,14 +101,16 @@ export function restoreAlarm(key: string): Promise<Refusal | null> {
 
 /** Takes out of service what is in it, until somebody puts it back. */
 export function takeOut(of: string, name: string, reason: string): Promise<Refusal | null> {
-	const path = `/api/v1/availability/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
-	return command('PUT', path, { body: { in_service: false, reason } });
+	return setAvailability(of, name, { in_service: false, reason });
 }
 
 /** Puts back into service what was taken out of it. */
 export function putBack({ of, name }: Pick<OutOfService, 'of' | 'name'>, reason: string): Promise<Refusal | null> {
-	const path = `/api/v1/availability/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
-	return command('PUT', path, { body: { in_service: true, reason } });
+	return setAvailability(of, name, { in_service: true, reason });
+}
+
+function setAvailability(of: string, name: string, body: { in_service: boolean; reason: string }): Promise<Refusal | null> {
+	return command('PUT', `/api/v1/availability/${encodeURIComponent(of)}/${encodeURIComponent(name)}`, { body });
 }
 
 /** Decides which values outputs shall have that came back from the journal. */
@@ -140,7 +142,7 @@ export function forceVariable(name: string, value: Value, seconds: number, reaso
 	return command('PUT', `/api/v1/forces/${encodeURIComponent(name)}`, { body: { value, seconds, reason } });
 }
 
-const ASKED: Record<ApprovedAct['kind'], string> = { correction: 'corrections', outputs: 'restored-outputs', force: 'forces' };
+const ASKED = { correction: 'corrections', outputs: 'restored-outputs', force: 'forces' } as const;
 
 /** Asks a second person to approve what was looked at in the state of `revision`. */
 export function askForApproval(act: ApprovedAct, revision: number, reason: string): Promise<Refusal | null> {

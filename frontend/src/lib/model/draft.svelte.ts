@@ -4,15 +4,13 @@
  * The stream says what is new; a file is read again when its digest is another one. What this page does itself comes back
  * with the answer, and counts at once.
  */
-import type {
-	DraftChange,
+import type { Address, DraftChange,
 	DraftView,
 	Edit,
 	FileMark,
 	FilesView,
 	FileView,
-	ModelCheck
-} from '#lib/contract.ts';
+	ModelCheck } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { ENDED } from '#lib/stream/connection.ts';
@@ -193,7 +191,7 @@ export class Draft {
 
 	async #load(paths: readonly string[] | null): Promise<boolean> {
 		const query = new URLSearchParams((paths ?? []).map((path) => ['path', path]));
-		const address = paths === null ? `${ADDRESS}/files` : `${ADDRESS}/files?${query}`;
+		const address: Address = paths === null ? `${ADDRESS}/files` : `${ADDRESS}/files?${query}`;
 		const answer = await request<FilesView>('GET', address, { patience: PATIENCE });
 		if (answer.ok) this.#take(answer.value);
 		else this.#refusal = answer.refusal;

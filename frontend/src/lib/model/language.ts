@@ -61,7 +61,7 @@ function here<Found extends Span>(text: string, found: Found): Found {
 /** Milliseconds in which a text is looked at, the first time after a change of a large model. */
 const PATIENCE = 20_000;
 
-async function ask<Value>(what: string, body: object): Promise<Value | null> {
+async function ask<Value>(what: 'check' | 'completion' | 'format' | 'hover', body: object): Promise<Value | null> {
 	const answer = await request<Value>('POST', `/api/v1/model/language/${what}`, { body, patience: PATIENCE });
 	return answer.ok ? answer.value : null;
 }

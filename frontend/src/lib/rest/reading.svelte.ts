@@ -1,4 +1,5 @@
 /** What an address of the server says, read again and again: the last answer, and why the last question failed. */
+import type { Address } from '#lib/contract.ts';
 import type { Refusal } from './refusal.ts';
 import { request } from './request.ts';
 
@@ -9,10 +10,10 @@ export class Reading<Value> {
 	refusal = $state.raw<Refusal | null>(null);
 	/** Seconds by which the server's clock is ahead of this device's. */
 	ahead = $state(0);
-	readonly #path: string;
+	readonly #path: Address;
 	#asked = 0;
 
-	constructor(path: string) {
+	constructor(path: Address) {
 		this.#path = path;
 	}
 

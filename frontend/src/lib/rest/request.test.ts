@@ -22,14 +22,14 @@ test('how far the clock of the server is ahead is known to a second', () => {
 describe('a request', () => {
 	test('sends what it has as JSON, upon the revision that was seen', async () => {
 		const fetch = answers('{"id":"a"}', { headers: { ETag: '"3"' } });
-		expect(await request('PATCH', '/x', { body: { role: 'viewer' }, ifMatch: '"2"' })).toEqual({
+		expect(await request('PATCH', '/api/v1/station', { body: { role: 'viewer' }, ifMatch: '"2"' })).toEqual({
 			ok: true,
 			value: { id: 'a' },
 			etag: '"3"',
 			ahead: 0
 		});
 		expect(fetch).toHaveBeenCalledWith(
-			'/x',
+			'/api/v1/station',
 			expect.objectContaining({
 				method: 'PATCH',
 				body: '{"role":"viewer"}',
@@ -40,27 +40,27 @@ describe('a request', () => {
 
 	test('that is answered without content has no value', async () => {
 		answers(null, { status: 204 });
-		expect(await request('DELETE', '/x')).toMatchObject({ ok: true, value: undefined });
+		expect(await request('DELETE', '/api/v1/station')).toMatchObject({ ok: true, value: undefined });
 	});
 
 	test('that finds nobody signed in tells those who listen; a wrong password does not', async () => {
 		const told = vi.fn();
 		const stop = whenSignedOut(told);
 		answers('{"type":"/problems/wrong-name-or-password"}', { status: 401 });
-		await request('POST', '/x');
+		await request('POST', '/api/v1/station');
 		expect(told).not.toHaveBeenCalled();
 		answers('{"type":"/problems/signed-out"}', { status: 401 });
-		await request('GET', '/x');
+		await request('GET', '/api/v1/station');
 		expect(told).toHaveBeenCalledTimes(1);
 		stop();
 		answers('{"type":"/problems/signed-out"}', { status: 401 });
-		await request('GET', '/x');
+		await request('GET', '/api/v1/station');
 		expect(told).toHaveBeenCalledTimes(1);
 	});
 
 	test('that gets no answer may have acted; one that only reads has changed nothing', async () => {
 		vi.stubGlobal('fetch', () => Promise.reject(new TypeError('refused')));
-		expect(await command('DELETE', '/x')).toMatchObject({ title: 'Not sent', status: null });
-		expect(await request('GET', '/x')).toMatchObject({ ok: false, refusal: { title: 'Not read', status: null } });
+		expect(await command('DELETE', '/api/v1/station')).toMatchObject({ title: 'Not sent', status: null });
+		expect(await request('GET', '/api/v1/station')).toMatchObject({ ok: false, refusal: { title: 'Not read', status: null } });
 	});
 });

@@ -4,6 +4,7 @@
  * The session is a cookie that this page cannot read; the browser sends it. Whoever wants to know that the server has
  * found it ended listens with `whenSignedOut`.
  */
+import type { Address } from '#lib/contract.ts';
 import { refusalOf, unreached, unread, type Refusal } from './refusal.ts';
 
 type Method = 'GET' | 'POST' | 'PUT' | 'PATCH' | 'DELETE';
@@ -51,7 +52,7 @@ export function aheadOf(header: string | null, now: number): number {
 /** Sends one request. `Value` is what the contract says of its answer; undefined where that has no content. */
 export async function request<Value = undefined>(
 	method: Method,
-	path: string,
+	path: Address,
 	{ body, ifMatch, idempotencyKey, patience = PATIENCE, signal = AbortSignal.timeout(patience) }: Rest = {}
 ): Promise<Answer<Value>> {
 	const headers: Record<string, string> = {};
@@ -78,7 +79,7 @@ export async function request<Value = undefined>(
 /** Sends a command of which only the refusal matters; null when it was accepted. */
 export async function command(
 	method: Exclude<Method, 'GET'>,
-	path: string,
+	path: Address,
 	rest: Rest = {}
 ): Promise<Refusal | null> {
 	const answer = await request(method, path, rest);

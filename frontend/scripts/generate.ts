@@ -1,10 +1,12 @@
 /**
- * Writes `src/lib/model/documents.ts`, what the documents of a model may hold, from the JSON Schemas in `docs/schemas`.
+ * Writes what is generated: `src/lib/api.ts`, the types of the REST interface, from `openapi.json`, and
+ * `src/lib/model/documents.ts`, what the documents of a model may hold, from the JSON Schemas in `docs/schemas`.
  *
- * With `--check` nothing is written: it fails where the file is not what it would write.
+ * Builds, checks and tests run it first, also beside one another: a file is replaced whole, and only where it differs.
  */
-import { readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import openapiTS, { astToString, COMMENT_HEADER } from 'openapi-typescript';
 import type { FieldShape, PartShape } from '../src/lib/model/shape.ts';
 
 interface Schema {
@@ -26,9 +28,10 @@ interface Schema {
 }
 
 const FOLDER = join(import.meta.dirname, '../../docs/schemas');
-const TARGET = join(import.meta.dirname, '../src/lib/model/documents.ts');
+const INTERFACE = join(import.meta.dirname, '../openapi.json');
+const LIBRARY = join(import.meta.dirname, '../src/lib');
 const FILES = ['station', 'resource', 'operations', 'specifications', 'work_masters'];
-const HEAD = `/** What the documents of a model may hold. Made by \`scripts/documents.ts\` from \`docs/schemas\`: do not edit. */
+const HEAD = `/** What the documents of a model may hold. Made by \`scripts/generate.ts\` from \`docs/schemas\`: do not edit. */
 import type { PartShape } from './shape.ts';
 
 export const PARTS: Readonly<Record<string, PartShape>> = `;
@@ -129,11 +132,14 @@ const kept = Object.fromEntries(
 			return [name, { about, fields: Object.fromEntries(all) }];
 		})
 );
-const text = `${HEAD}${JSON.stringify(kept, null, '\t')};\n`;
 
-if (process.argv.includes('--check')) {
-	if (readFileSync(TARGET, 'utf8') !== text) {
-		console.error('src/lib/model/documents.ts is not what the schemas say: npm run types');
-		process.exit(1);
-	}
-} else writeFileSync(TARGET, text);
+function put(path: string, text: string): void {
+	const target = join(LIBRARY, path);
+	if (existsSync(target) && readFileSync(target, 'utf8') === text) return;
+	const unfinished = `${target}.${String(process.pid)}`;
+	writeFileSync(unfinished, text);
+	renameSync(unfinished, target);
+}
+
+put('api.ts', COMMENT_HEADER + astToString(await openapiTS(readFileSync(INTERFACE, 'utf8'))));
+put('model/documents.ts', `${HEAD}${JSON.stringify(kept, null, '\t')};\n`);
