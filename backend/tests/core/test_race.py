@@ -140,6 +140,7 @@ def processes() -> list[Child]:
 
 
 def the(lane: str) -> Child:
+    until(lambda: any(child.name == f"planner {lane}" for child in processes()))
     (process,) = (child for child in processes() if child.name == f"planner {lane}")
     return process
 
@@ -228,9 +229,14 @@ def test_a_lane_is_given_time_to_start(worked_example: Automaton, monkeypatch: p
 def test_a_lane_is_given_no_time_for_ever_to_start(worked_example: Automaton, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(racing, "STARTING", 0.1)
     with closing(Asking(worked_example, "Slow")) as asking:
-        first = the("Slow").pid
+        seen: set[int | None] = set()
+
+        def another() -> bool:
+            seen.update(each.pid for each in processes())
+            return len(seen) > 1
+
         assert asking.answer(0.1).verdict is Verdict.LATE
-        until(lambda: [each.pid for each in processes()] not in ([], [first]))
+        until(another)
 
 
 def test_a_lane_that_is_killed_in_mid_search_ends_the_race_at_once_and_is_there_for_the_next(

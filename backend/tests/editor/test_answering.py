@@ -7,11 +7,11 @@ import json
 
 import pytest
 
-from sequence_planner.editor.processes import EditingProcess
+from sequence_planner.editor import processes
+from sequence_planner.editor.processes import DraftProcess
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.model.files import read_files
-from sequence_planner.process import worker
 from support.places import BOLT_TIGHTENING
 from support.waiting import until_async
 
@@ -23,16 +23,16 @@ def living() -> list[Child]:
 def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_question(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(worker, "RESTS_AFTER", 0.2)
+    monkeypatch.setattr(processes, "RESTS_AFTER", 0.2)
     files = read_files(BOLT_TIGHTENING)
 
-    async def shown(editing: EditingProcess) -> object:
+    async def shown(editing: DraftProcess) -> object:
         answer = await editing.ask(files, "shown", 1, None)
         assert isinstance(answer, str)
         return json.loads(answer)
 
     async def scenario() -> None:
-        editing = EditingProcess()
+        editing = DraftProcess("editing_worker")
         try:
             first = await shown(editing)
             (before,) = living()
@@ -41,7 +41,7 @@ def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_que
             await until_async(lambda: not living())
             assert await shown(editing) == first
         finally:
-            await editing.close()
+            editing.close()
         assert living() == []
 
     asyncio.run(scenario())

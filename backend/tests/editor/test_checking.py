@@ -126,7 +126,7 @@ def run(scenario: Callable[[Desk], Awaitable[None]], tmp_path: Path, monkeypatch
             await scenario(desk)
         finally:
             await desk.desk.close()
-            await desk.process.close()
+            desk.process.close()
 
     asyncio.run(live())
     assert list(tmp_path.glob("sequence-planner-*")) == []
@@ -190,8 +190,8 @@ def test_a_process_that_is_not_waited_for_is_ended(tmp_path: Path, monkeypatch: 
             asked.cancel()
             with contextlib.suppress(asyncio.CancelledError):  # a quick machine has answered by then
                 await asked
-            await process.close()
-            assert [each for each in children() if each.name == "answering"] == []
+            process.close()
+            assert [each for each in children() if each.name == "language_worker"] == []
 
     asyncio.run(live())
     assert list(tmp_path.glob("sequence-planner-*")) == []

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
 from collections.abc import Iterator
 
 import pytest
@@ -12,6 +10,7 @@ import pytest
 from history.journalled import worked
 from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import HistoryError
+from sequence_planner.forking.starting import children
 from sequence_planner.history.client import HistoryProcess
 from sequence_planner.history.timeline import LookBack, MomentView
 from support.places import BOLT_TIGHTENING
@@ -34,8 +33,8 @@ def test_one_that_is_late_or_dies_is_replaced(database: Database) -> None:
                 asked = asyncio.create_task(process.ask(LookBack(5), patience))
                 if act == "kill":
                     await asyncio.sleep(0.1)
-                    assert process._running is not None
-                    os.kill(process._running[0].pid or 0, signal.SIGKILL)
+                    (running,) = (each for each in children() if each.name == "looking-back")
+                    running.kill()
                 try:
                     found = await asked
                     assert isinstance(found, MomentView)

@@ -21,7 +21,7 @@ PATIENCE = 60.0  # seconds
 
 def run(scenario: Callable[[Sequencer], Awaitable[None]], late: float = LATE) -> None:
     async def live() -> None:
-        sequencer = Sequencer(asyncio.get_running_loop(), late)
+        sequencer = Sequencer(late)
         try:
             async with asyncio.timeout(PATIENCE):
                 await scenario(sequencer)

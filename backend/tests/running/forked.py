@@ -51,7 +51,6 @@ from sequence_planner.planning.portfolio.worker import Answer, Request
 from sequence_planner.planning.problem import Contract, PlanRequest, WayBackRequest
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.worker import Listener
 from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.simulation.devices import EmulatedDevices
@@ -76,24 +75,17 @@ class NearPlanner:
     """Plans in a thread of this process; better plans, which take longer, it never finds."""
 
     trouble = None
+    away = False
 
-    def __init__(self, planner: Planner, loop: asyncio.AbstractEventLoop, listener: Listener[Request, Answer]) -> None:
-        self._planner, self._loop, self._listener = planner, loop, listener
+    def __init__(self, planner: Planner) -> None:
+        self._planner = planner
         self._thread = ThreadPoolExecutor(1)
-        self.busy = False
 
-    def ask(self, request: Request) -> None:
-        self.busy = True
-        if not isinstance(request, PlanRequest) or request.contract is not Contract.MINIMAL:
-            self._thread.submit(self._work, request)
-
-    def _work(self, request: Request) -> None:
-        answer = self._answer(request)
-        self._loop.call_soon_threadsafe(self._tell, request, answer)
-
-    def _tell(self, request: Request, answer: Answer) -> None:
-        self.busy = False
-        self._listener.answered(request, answer)
+    async def ask(self, request: Request, seconds: float) -> Answer:
+        loop = asyncio.get_running_loop()
+        if isinstance(request, PlanRequest) and request.contract is Contract.MINIMAL:
+            await loop.create_future()
+        return await loop.run_in_executor(self._thread, self._answer, request)
 
     def _answer(self, request: Request) -> Answer:
         match request:
@@ -103,9 +95,6 @@ class NearPlanner:
                 return truck_engine_ways().answer(request, Budget.seconds(request.deadline))
             case DiagnosisRequest():
                 return Diagnosis(None, ())
-
-    def call_off(self) -> None:
-        self.busy = False
 
     def close(self) -> None:
         """There is nothing to end."""
@@ -130,8 +119,7 @@ class Child:
         self._relay = relay
         self._types = {name: each.topic.type_name for name, each in station.pipelines.incoming.items()}
         transport = network.join(station.registry, "sequence_planner", loop)
-        near = lambda automaton, supervisor, loop, listener: NearPlanner(planner, loop, listener)  # noqa: E731
-        with patch.object(planner_client, "PlannerProcess", near):
+        with patch.object(planner_client, "planner_process", lambda automaton, supervisor: NearPlanner(planner)):
             controller = Controller(
                 IDENTITY, station, supervisor, transport, database, what_is_known(database, station.automaton)
             )

@@ -17,18 +17,16 @@ from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.metrics import Answers
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.execution.executor import Executor
-from sequence_planner.planning.diagnoser import DiagnosisModel
 from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
-from sequence_planner.planning.portfolio.worker import Answer, Planning, Request, work
+from sequence_planner.planning.planner import PlannerError
+from sequence_planner.planning.portfolio.worker import Answer, Request, planner_process
 from sequence_planner.planning.problem import Goal, PlanAnswer, PlanRequest, WayBackAnswer, WayBackRequest
-from sequence_planner.planning.recovery.advisor import work as advise
 from sequence_planner.planning.recovery.consultation import Answer as AdvisorAnswer
 from sequence_planner.planning.recovery.consultation import Request as AdvisorRequest
 from sequence_planner.planning.recovery.proposals import Advice, RecoveryProposal
 from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
-from sequence_planner.process.worker import AnsweringWorker, Listener, WorkerTask
-from sequence_planner.process.worker import Listener as AnyListener
-from sequence_planner.synthesis.supervisor import FewerSpecifications
+from sequence_planner.planning.recovery.worker import advisor_process
+from sequence_planner.process.task import WorkerError
 
 # A second planner, for what people ask, so that neither they nor the station ever wait for the other's plan.
 #
@@ -39,14 +37,7 @@ class AdvisorClient:
     """Asks an adviser in another process. Used from one event loop."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        model = DiagnosisModel(automaton, supervisor, FewerSpecifications(automaton, supervisor))
-        serving = WorkerTask[DiagnosisModel, AdvisorRequest]("adviser", advise, model, lambda request: False)
-        self._loop = asyncio.get_running_loop()
-        self._process = AnsweringWorker(
-            serving, self._loop, Listener[AdvisorRequest, AdvisorAnswer](self._answered, self._failed)
-        )
-        self._turn = asyncio.Lock()
-        self._awaited: asyncio.Future[AdvisorAnswer] | None = None
+        self._process = advisor_process(automaton, supervisor)
 
     @property
     def replaced(self) -> int:
@@ -76,37 +67,15 @@ class AdvisorClient:
         Raises `CommandRefused`: `advisor-timeout` (504), `advisor-unavailable` (503).
         """
         try:
-            async with asyncio.timeout(deadline), self._turn:
-                return await self._asked(request)
+            async with asyncio.timeout(deadline):
+                return await self._process.ask(request, request.deadline)
         except TimeoutError:
             detail = "No answer was found in time; nothing was changed by asking. Try again."
             raise CommandRefused("advisor-timeout", "The adviser was too slow", detail, 504) from None
-
-    async def _asked(self, request: AdvisorRequest) -> AdvisorAnswer:
-        process = self._process
-        if process.busy:
-            raise _away(process.trouble or "the adviser is started again")
-        self._awaited = self._loop.create_future()
-        process.ask(request)
-        try:
-            return await self._awaited
-        finally:
-            if self._awaited.cancelled():
-                process.call_off()
-            self._awaited = None
-
-    def _answered(self, request: AdvisorRequest, answer: AdvisorAnswer) -> None:
-        if self._awaited is not None and not self._awaited.done():
-            self._awaited.set_result(answer)
-
-    def _failed(self, request: AdvisorRequest, why: str, again: bool) -> None:
-        if self._awaited is not None and not self._awaited.done():
-            self._awaited.set_exception(_away(why))
-
-
-def _away(why: str) -> CommandRefused:
-    detail = f"{why[:1].upper()}{why[1:]}. Nothing was changed by asking; try again in a moment."
-    return CommandRefused("advisor-unavailable", "The adviser cannot answer", detail, 503)
+        except (PlannerError, WorkerError) as error:
+            why = str(error)
+            detail = f"{why[:1].upper()}{why[1:]}. Nothing was changed by asking; try again in a moment."
+            raise CommandRefused("advisor-unavailable", "The adviser cannot answer", detail, 503) from None
 
 
 # Plans to something that a person wants to hold, as the adviser finds them, and why there is none.
@@ -142,27 +111,6 @@ async def aim(adviser: AdvisorClient, request: ErrandRequest) -> GoalPlan:
     return GoalPlan(None, proven=True, why_not=diagnosis)
 
 
-# The planner's process: it plans for the station, looks for ways back into the safe states, and says why not.
-
-PlannerListener = AnyListener[Request, Answer]
-
-
-class PlannerProcess(AnsweringWorker[Planning, Request, Answer]):
-    """Asks a planner in another process. Used from one event loop."""
-
-    def __init__(
-        self, automaton: Automaton, supervisor: Supervisor, loop: asyncio.AbstractEventLoop, listener: PlannerListener
-    ) -> None:
-        model = DiagnosisModel(automaton, supervisor, FewerSpecifications(automaton, supervisor))
-        serving = WorkerTask("planner", work, Planning(model), _again, Planning(model, cautious=True))
-        super().__init__(serving, loop, listener)
-
-
-def _again(request: Request) -> bool:
-    """Others are only told; a station whose planner it kills again and again would have no plans."""
-    return isinstance(request, PlanRequest)
-
-
 # What a running station asks its planner, in which turn, and where the answers go.
 
 LOG = structlog.get_logger(__name__)
@@ -192,15 +140,13 @@ class PlannerQuestions:
         self._outside = outside
         self._take = take
         self._answers = answers
-        self._asked = 0.0  # when, on the clock
         self._needed: deque[Callable[[], Request | None]] = deque(
             (lambda: execution.request(PLAN_DEADLINE), lambda: outside.request(WAY_BACK_DEADLINE))
         )
         self._spare = False  # what the planner works on is not needed, and can be called off
         self._next_better = 0.0
-        listener = PlannerListener(self._answered, self._failed)
-        loop = asyncio.get_running_loop()
-        self._planner = PlannerProcess(execution.automaton, execution.supervisor, loop, listener)
+        self._planner = planner_process(execution.automaton, execution.supervisor)
+        self._asking: asyncio.Task[None] | None = None
 
     @property
     def trouble(self) -> str | None:
@@ -214,6 +160,8 @@ class PlannerQuestions:
 
     def close(self) -> None:
         """End the planner."""
+        if self._asking is not None:
+            self._asking.cancel()
         self._planner.close()
 
     def ask(self, monotonic: float) -> None:
@@ -222,31 +170,43 @@ class PlannerQuestions:
         A planner that has nothing else to do is asked for a better plan, or why there is none, and called off when
         something is needed.
         """
-        if self._planner.busy and not self._spare:
+        if self._planner.away or (self._asking is not None and not self._spare):
             return
         for question in tuple(self._needed):
             self._needed.rotate(-1)
             if (request := question()) is not None:
-                self._planner.call_off()
+                if self._asking is not None:
+                    self._asking.cancel()
                 self._spare = False
-                self._ask(request)
+                self._asking = asyncio.create_task(self._ask(request))
                 return
-        if self._planner.busy:
+        if self._asking is not None:
             return
         if (request := self._execution.plan.unexplained(DIAGNOSIS_DEADLINE)) is None and monotonic >= self._next_better:
             request = self._execution.better(BETTER_DEADLINE)
             self._next_better = monotonic + BETTER_EVERY if request else self._next_better
         if request is not None:
             self._spare = True
-            self._ask(request)
+            self._asking = asyncio.create_task(self._ask(request))
 
-    def _ask(self, request: Request) -> None:
-        self._asked = time.monotonic()
-        self._planner.ask(request)
+    async def _ask(self, request: Request) -> None:
+        began = time.monotonic()
+        answer: Answer | PlannerError | WorkerError
+        try:
+            answer = await self._planner.ask(request, request.deadline)
+        except (PlannerError, WorkerError) as error:
+            answer = error
+        took, self._asking, self._spare = time.monotonic() - began, None, False
+        if isinstance(answer, Exception):
+            self._answers.note(request, None, took)
+            # Others are only told; a station whose planner it kills again and again would have no plans.
+            again = isinstance(answer, WorkerError) and answer.again and isinstance(request, PlanRequest)
+            self._failed(request, str(answer), again)
+        else:
+            self._answers.note(request, answer, took)
+            self._answered(request, answer)
 
     def _answered(self, request: Request, answer: Answer) -> None:
-        self._spare = False
-        self._answers.note(request, answer, time.monotonic() - self._asked)
         match request, answer:
             case PlanRequest(), PlanAnswer():
                 self._take(lambda: self._adopt(request, answer))
@@ -263,8 +223,6 @@ class PlannerQuestions:
             LOG.info("plan", verdict=str(answer.verdict), engine=answer.engine, starts=starts)
 
     def _failed(self, request: Request, why: str, again: bool) -> None:
-        self._spare = False
-        self._answers.note(request, None, time.monotonic() - self._asked)
         match request:
             case PlanRequest():
                 self._take(lambda: self._execution.unanswered(why, again))

@@ -19,6 +19,10 @@ class LateLog:
         """Say what somebody should look at."""
         self._say("warning", event, values)
 
+    def error(self, event: str, **values: object) -> None:
+        """Say what has failed."""
+        self._say("error", event, values)
+
     def _say(self, level: str, event: str, values: dict[str, object]) -> None:
         from sequence_planner.core.lean_structlog import structlog  # noqa: PLC0415
 

@@ -5,20 +5,18 @@ Whoever stops the station does not wait for any of it. What is shown is told as 
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 from sequence_planner.core.actor import Actor
 from sequence_planner.editor import draft as drafts
 from sequence_planner.editor.draft import ChangeBody, Differences, Draft, DraftChange, DraftProposal, Edit
-from sequence_planner.editor.processes import answered, read_body
+from sequence_planner.editor.processes import encoded, read_body
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.revisions import Revisions, tree_of
 from sequence_planner.editor.schemas.draft import FileReader
 from sequence_planner.model.files import Files
+from sequence_planner.process.budget import Budget
 
 # Files that are others since the last question, none for those that are gone; what is asked, and about what.
 EditingQuestion = tuple[Mapping[str, str | None], str, tuple[object, ...]]
@@ -100,10 +98,7 @@ _ANSWERS: Mapping[str, Callable[..., object]] = {
 }
 
 
-def answering(connection: Connection, folder: Path) -> None:
-    """Answer questions until nobody is there any more."""
+def answering(_: Path) -> Callable[[EditingQuestion, Budget], object]:
+    """Return what answers questions; a process's life."""
     bench = EditingBench()
-    with contextlib.suppress(EOFError, OSError):
-        while True:
-            question: EditingQuestion = connection.recv()
-            connection.send(answered(partial(bench.answer, question)))
+    return lambda question, _: encoded(bench.answer(question))

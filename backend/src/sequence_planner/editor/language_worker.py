@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 from sequence_planner.analysis.report import FindingDocument, error_document
@@ -30,7 +28,7 @@ from sequence_planner.editor.processes import (
     PlaceInText,
     ProblemsView,
     TextAt,
-    answered,
+    encoded,
 )
 from sequence_planner.editor.schemas.check import listed
 from sequence_planner.editor.schemas.draft import UsagesView, UsageView
@@ -216,12 +214,13 @@ _ANSWERS: Mapping[str, Callable[..., object]] = {
 }
 
 
-def answering(connection: Connection, folder: Path) -> None:
-    """Answer questions until nobody is there any more."""
+def answering(folder: Path) -> Callable[[LanguageQuestion, object], object]:
+    """Return what answers questions, in an empty folder; a process's life."""
     draft = LanguageDraft(folder / "draft")
-    with contextlib.suppress(EOFError, OSError):
-        while True:
-            question: LanguageQuestion = connection.recv()
-            changed, name, asked = question
-            draft.take(changed)
-            connection.send(answered(partial(_ANSWERS[name], draft, *asked)))
+
+    def answer(question: LanguageQuestion, _: object) -> object:
+        changed, name, asked = question
+        draft.take(changed)
+        return encoded(_ANSWERS[name](draft, *asked))
+
+    return answer

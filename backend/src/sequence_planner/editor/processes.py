@@ -22,8 +22,8 @@ from sequence_planner.model.files import Files
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
 from sequence_planner.process.memory_limit import memory_limit
-from sequence_planner.process.task import BackgroundTask, WorkerError
-from sequence_planner.process.worker import Answering
+from sequence_planner.process.task import NO_ANSWER, BackgroundTask, WorkerError
+from sequence_planner.process.worker import FOLDER, Worker, WorkerLateError
 
 # Bodies of requests that may be large: each is read by the process that does what it asks for.
 #
@@ -97,6 +97,8 @@ async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> o
 # A process that is asked about the draft again and again, and knows its files from one question to the next.
 
 Changed = Mapping[str, str | None]
+RESTS_AFTER = 60.0  # seconds without a question, after which it ends until there is one
+_ANSWERING = 5  # niceness: ticks come first, then whoever waits for an answer, then checks
 
 
 class Knowing:
@@ -117,62 +119,67 @@ class Knowing:
         return changed
 
 
-def answered(work: Callable[[], object]) -> object:
-    """Return what such a process answers: what `work` gives, views of it as JSON, or why there is nothing."""
-    try:
-        found = work()
-    except (EditError, BodyError) as error:
-        return error
+def encoded(found: object) -> object:
+    """Return what such a process answers: views as JSON."""
     return found.model_dump_json() if isinstance(found, View) else found
 
 
 class DraftAnswering:
-    """Asks `name`, a function of the module, about several versions of a model."""
+    """Asks by `module` of the editor about several versions of a model. Used from one event loop."""
 
-    def __init__(self, module: str, name: str, versions: int) -> None:
-        self._process = Answering(module, name)
+    def __init__(self, module: str, versions: int) -> None:
+        self._process: Worker[object, object] = Worker(
+            f"sequence_planner.editor.{module}:answering",  # named: the server does without what that imports
+            FOLDER,
+            module.rpartition(".")[2],
+            niceness=_ANSWERING,
+            errors=(EditError, BodyError),
+            late=0.0,
+            starting=None,
+            rests_after=RESTS_AFTER,
+            kept=False,
+        )
+        self._turn = asyncio.Lock()
         self._known = [Knowing() for _ in range(versions)]
 
     async def ask(self, question: Callable[..., object], *versions: Files, patience: float) -> object:
-        """The answer to what `question` makes of what has changed in each version.
+        """The answer to what `question` makes of what has changed in each version, within so many seconds from its turn
+        on.
 
         Raises `WorkerError`, and the `EditError` or `BodyError` that was answered.
         """
-
-        def asked() -> object:
+        async with self._turn:
             if not self._process.begun:
                 for known in self._known:
                     known.forget()
-            return question(*(known.news(files) for known, files in zip(self._known, versions, strict=True)))
+            asked = question(*(known.news(files) for known, files in zip(self._known, versions, strict=True)))
+            try:
+                return await self._process.ask(asked, patience)
+            except WorkerLateError:
+                raise WorkerError(f"there was no answer within {patience:g} s") from None
+            except WorkerError:
+                raise WorkerError(NO_ANSWER) from None
 
-        answer = await self._process.ask(asked, patience)
-        if isinstance(answer, EditError | BodyError):
-            raise answer
-        return answer
-
-    async def close(self) -> None:
+    def close(self) -> None:
         """End the process."""
-        await self._process.close()
-
-
-# The process that keeps what it has read of the draft, and answers questions about it at once.
+        self._process.close()
 
 
 class DraftProcess:
-    """Answers questions about a draft, of which it is told only what is new. Used from one event loop."""
+    """Keeps what it has read of the draft, and answers at once what `module` can be asked about it."""
 
-    def __init__(self) -> None:
-        self._process = DraftAnswering("sequence_planner.editor.language_worker", "answering", 1)
+    def __init__(self, module: str = "language_worker") -> None:
+        self._process = DraftAnswering(module, 1)
 
-    async def close(self) -> None:
+    def close(self) -> None:
         """End the process."""
-        await self._process.close()
+        self._process.close()
 
     async def ask(self, files: Files, name: str, *asked: object, patience: float = PATIENCE) -> object:
         """Return what `name` of the answers there are says about these files, within so many seconds once its turn has
         come.
 
-        Views are told as JSON. Raises `EditError` and `WorkerError`.
+        Views are told as JSON. Raises `EditError`, `BodyError` and `WorkerError`.
         """
 
         def question(changed: Changed) -> object:
@@ -181,9 +188,7 @@ class DraftProcess:
         return await self._process.ask(question, files, patience=patience)
 
     async def errors(self, files: Files) -> list[FindingDocument]:
-        """Return what makes these files unusable, as far as it shows before pipelines are built. Raises
-        `WorkerError`.
-        """
+        """Return what makes these files unusable, as far as it shows before pipelines are built; or `WorkerError`."""
         found = await self.ask(files, "errors")
         assert isinstance(found, list)
         return found
@@ -261,31 +266,6 @@ class CheckDesk:
                         break
         except WorkerError as ended:
             self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": str(ended)}))
-
-
-# The process that does what engineers do to the draft, so that nobody who stops the station waits for it.
-
-
-class EditingProcess:
-    """Asked about a draft, of which it is told only what is new. Used from one event loop."""
-
-    def __init__(self) -> None:
-        self._process = DraftAnswering("sequence_planner.editor.editing_worker", "answering", 1)
-
-    async def close(self) -> None:
-        """End the process."""
-        await self._process.close()
-
-    async def ask(self, files: Files, name: str, *asked: object) -> object:
-        """Return what `name` of the answers there are says about these files.
-
-        Raises `EditError`, `BodyError` and `WorkerError`.
-        """
-
-        def question(changed: Changed) -> object:
-            return changed, name, asked
-
-        return await self._process.ask(question, files, patience=PATIENCE)
 
 
 # What is asked about texts of the draft while they are written, and what is answered.

@@ -148,15 +148,8 @@ class TakeBranch(Immutable):
     deadline: float
 
 
-class Refused(Immutable):
-    """The reason why there is no answer: a slug, and what a person is told."""
-
-    slug: str
-    detail: str
-
-
 Question = LookBack | TakeBranch
-Answer = MomentView | BranchView | Refused
+Answer = MomentView | BranchView
 
 
 def record_view(record: RunRecord) -> RunRecordView:

@@ -5,13 +5,10 @@ It keeps the station and its safe states, so that only the first question waits 
 
 from __future__ import annotations
 
-import os
-import signal
+from collections.abc import Callable
 from contextlib import closing
 from functools import cached_property
-from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
 
 import structlog
 
@@ -27,18 +24,17 @@ from sequence_planner.history.timeline import (
     BranchView,
     LookBack,
     Question,
-    Refused,
     TakeBranch,
     record_view,
 )
 from sequence_planner.journal.archive import Archive, ArchiveError
 from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.model.source import ModelError
+from sequence_planner.process.budget import Budget
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import SynthesisError
 
 LOG = structlog.get_logger(__name__)
-_NICENESS = 10  # ticks come first, and plans
 MOST_TOLD = 5000  # records of a branch
 
 
@@ -74,30 +70,25 @@ class _Room:
         )
 
 
-def work(connection: Connection, model: Path, database: str, archive: Path | None) -> None:
-    """Answer questions until the other end is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    os.nice(_NICENESS)
+def work(asked: tuple[Path, str, Path | None]) -> Callable[[Question, Budget], Answer]:
+    """Return what answers questions about a model's folder, with a database and an archive; a process's life."""
+    model, database, archive = asked
     room = _Room(model, database, Archive(archive))
-    while True:
+
+    def answer(question: Question, _: Budget) -> Answer:
         try:
-            question: Any = connection.recv()
-        except EOFError:
-            return
-        connection.send(_answered(room, question))
+            return room.answer(question)
+        except HistoryError:
+            raise
+        except ArchiveError as error:
+            raise HistoryError("archive-unreadable", str(error)) from None
+        except StorageError as error:
+            raise HistoryError("storage-unavailable", str(error)) from None
+        except (ModelError, SynthesisError) as error:
+            why = f"the model as it is now cannot be replayed with: {error}"
+            raise HistoryError("model-changed", why) from None
+        except Exception as error:
+            LOG.exception("a look back failed")
+            raise HistoryError("history-failed", f"the replay failed: {type(error).__name__}: {error}") from None
 
-
-def _answered(room: _Room, question: Question) -> Answer:
-    try:
-        return room.answer(question)
-    except HistoryError as error:
-        return Refused(error.slug, error.detail)
-    except ArchiveError as error:
-        return Refused("archive-unreadable", str(error))
-    except StorageError as error:
-        return Refused("storage-unavailable", str(error))
-    except (ModelError, SynthesisError) as error:
-        return Refused("model-changed", f"the model as it is now cannot be replayed with: {error}")
-    except Exception as error:
-        LOG.exception("a look back failed")
-        return Refused("history-failed", f"the replay failed: {type(error).__name__}: {error}")
+    return answer

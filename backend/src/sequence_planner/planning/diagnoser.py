@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-from collections.abc import Callable, Iterator
-from multiprocessing.connection import Connection
-from queue import Empty, SimpleQueue
+from collections.abc import Callable
+from concurrent.futures import CancelledError
+from math import inf
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
@@ -14,15 +12,8 @@ from sequence_planner.core.immutable import Immutable
 from sequence_planner.planning.diagnosis import Diagnosis, SupervisorFor, diagnose
 from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.worker import (
-    Companion,
-    Ended,
-    Word,
-    WorkerAnswered,
-    WorkerFinished,
-    WorkerQuestion,
-    stand_by,
-)
+from sequence_planner.process.task import WorkerError
+from sequence_planner.process.worker import Worker, WorkerLoop
 
 _NICENESS = 5  # what to do comes before why nothing can be done by itself
 _PROCESS_SHARE = 0.9  # of the time, for the process: it says what it has found before nobody listens any more
@@ -36,16 +27,11 @@ class DiagnosisModel(Immutable):
     supervisor_for: SupervisorFor
 
 
-def work(connection: Connection) -> None:
-    """The life of the process."""
-    stand_by(connection, _prepared)
+def work(model: DiagnosisModel) -> Callable[[PlanningTask, Budget], Diagnosis]:
+    """Return what answers; a process's life."""
 
-
-def _prepared(model: DiagnosisModel) -> Callable[[PlanningTask, Budget], Iterator[Diagnosis]]:
-    os.nice(_NICENESS)
-
-    def answer(task: PlanningTask, budget: Budget) -> Iterator[Diagnosis]:
-        yield diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget)
+    def answer(task: PlanningTask, budget: Budget) -> Diagnosis:
+        return diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget.part(_PROCESS_SHARE))
 
     return answer
 
@@ -55,34 +41,27 @@ class Diagnoser:
 
     def __init__(self, model: DiagnosisModel) -> None:
         self._model = model
-        self._companion: Companion[DiagnosisModel, PlanningTask] | None = None
-        self._heard: SimpleQueue[Word | None] = SimpleQueue()
-        self._number = 0
+        self._asking: tuple[WorkerLoop, Worker[PlanningTask, Diagnosis]] | None = None
 
     def diagnose(self, task: PlanningTask, budget: Budget) -> Diagnosis:
         """Return what is found before the budget is spent; as soon as it is called off, nothing."""
-        if self._companion is None:
-            self._heard = SimpleQueue()
-            self._companion = Companion(work, self._model, self._heard.put, "diagnosis")
-        self._number += 1
-        self._companion.ask(WorkerQuestion(self._number, _PROCESS_SHARE * budget.remaining, task))
-        heard = self._heard
-        with budget.interrupting(lambda: heard.put(None)):
-            while not budget.spent:
-                with contextlib.suppress(Empty):
-                    match heard.get(timeout=budget.remaining):
-                        case WorkerAnswered(number, diagnosis) if number == self._number:
-                            found: Diagnosis = diagnosis
-                            return found
-                        case Ended():
-                            break
-                        case WorkerFinished(number, trouble) if trouble and number == self._number:
-                            break
-        self.close()
-        return Diagnosis(None, ())
+        if self._asking is None:
+            worker: Worker[PlanningTask, Diagnosis] = Worker(
+                work, self._model, "diagnosis", niceness=_NICENESS, late=0.0, starting=None, rests_after=inf, kept=False
+            )
+            self._asking = WorkerLoop(), worker
+        loop, worker = self._asking
+        asked = loop.submit(worker.ask(task, budget.remaining))
+        with budget.interrupting(asked.cancel):
+            try:
+                return asked.result()
+            except (CancelledError, WorkerError):
+                self.close()
+                return Diagnosis(None, ())
 
     def close(self) -> None:
         """End the process."""
-        if self._companion is not None:
-            self._companion.close()
-        self._companion = None
+        if self._asking is not None:
+            loop, worker = self._asking
+            loop.close(worker)
+        self._asking = None

@@ -14,7 +14,7 @@ from collections.abc import AsyncIterator, Callable, Generator, Iterator
 from contextlib import AbstractContextManager, asynccontextmanager, nullcontext
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, Pipe
-from typing import Any, Generic, TypeVar
+from typing import Any, Final, Generic, TypeVar
 
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.copying import Copy, can_be_copied
@@ -22,10 +22,18 @@ from sequence_planner.forking.starting import start
 from sequence_planner.process.memory_limit import LOOK, MemoryLimit
 
 Found = TypeVar("Found")
+NO_ANSWER: Final = "the process has ended without an answer; is memory short?"
 
 
 class WorkerError(Exception):
-    """A process has ended, or was late, and has not done what it was asked for; the text says why."""
+    """A process has ended, or was late, and has not done what it was asked for; the text says why.
+
+    It may be asked `again` where that is no fault of what it was asked.
+    """
+
+    def __init__(self, why: str, *, again: bool = False) -> None:
+        super().__init__(why)
+        self.again = again
 
 
 class TooLargeError(WorkerError):
@@ -128,7 +136,7 @@ def _next(connection: Connection, limit: MemoryLimit | None) -> tuple[bool, Any]
     except (EOFError, OSError):
         if limit is not None and limit.reached:
             raise TooLargeError(str(limit)) from None
-        raise WorkerError("the process has ended without an answer; is memory short?") from None
+        raise WorkerError(NO_ANSWER) from None
     if isinstance(content, Exception) and is_last:
         raise content
     return is_last, content

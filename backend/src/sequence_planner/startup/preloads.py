@@ -23,7 +23,7 @@ LATER: Final = tuple(
         "planning.portfolio.worker",
         "planning.portfolio.race",
         "analysis.mutual_exclusion",
-        "planning.recovery.advisor",
+        "planning.recovery.worker",
         "planning.diagnoser",
         "mes.scheduling.scheduler",
         "history.worker",

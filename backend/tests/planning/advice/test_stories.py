@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
-from queue import SimpleQueue
 
 import pytest
 
@@ -22,13 +21,14 @@ from sequence_planner.planning.diagnoser import DiagnosisModel
 from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.problem import Circumstances, Goal, PlanAnswer, PlanRequest, goals_of
-from sequence_planner.planning.recovery.advisor import Advisor, work
+from sequence_planner.planning.recovery.advisor import Advisor
 from sequence_planner.planning.recovery.consultation import Answer, Request
 from sequence_planner.planning.recovery.manual_plans import stalled_effects, stalling, stalls
 from sequence_planner.planning.recovery.proposals import Advice, OfferKind, RecoveryProposal, ValueChange
 from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.recovery.worker import advising
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.worker import Companion, Word, WorkerAnswered, WorkerQuestion
+from sequence_planner.process.worker import Worker, WorkerLoop
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
 from support.places import BOLT_TIGHTENING
@@ -223,25 +223,18 @@ class Asked:
     """The advisor's process."""
 
     def __init__(self, model: DiagnosisModel) -> None:
-        self._words: SimpleQueue[Word] = SimpleQueue()
-        self.companion: Companion[DiagnosisModel, Request] = Companion(work, model, self._words.put, "advice")
-        self._number = 0
+        self.loop = WorkerLoop()
+        self.worker: Worker[Request, Answer] = Worker(advising, model, "advice")
 
-    def answer(self, request: Request) -> Answer | str:
-        self._number += 1
-        self.companion.ask(WorkerQuestion(self._number, request.deadline, request))
-        while True:
-            match self._words.get(timeout=120):
-                case WorkerAnswered(number, content) if number == self._number:
-                    answer: Answer | str = content
-                    return answer
+    def answer(self, request: Request) -> Answer:
+        return self.loop.submit(self.worker.ask(request, request.deadline)).result(120)
 
 
 @pytest.fixture
 def asked(station: Automaton, supervisor: Supervisor) -> Iterator[Asked]:
     process = Asked(DiagnosisModel(station, supervisor, FewerSpecifications(station, supervisor)))
     yield process
-    process.companion.close()
+    process.loop.close(process.worker)
 
 
 def test_the_process_answers_all_that_it_can_be_asked(station: Automaton, asked: Asked) -> None:

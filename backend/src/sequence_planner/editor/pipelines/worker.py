@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-from functools import cached_property, partial
-from multiprocessing.connection import Connection
+from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 
 from sequence_planner.editor.pipelines.examples import preview, recorded, run_examples, run_trial
@@ -22,8 +21,9 @@ from sequence_planner.editor.pipelines.schemas import (
     Trial,
 )
 from sequence_planner.editor.pipelines.suggestions import fits
-from sequence_planner.editor.processes import Changed, answered, read_body
+from sequence_planner.editor.processes import Changed, encoded, read_body
 from sequence_planner.model.files import STAGES
+from sequence_planner.process.budget import Budget
 from sequence_planner.process.gc_tuning import collection_put_off
 
 
@@ -101,10 +101,7 @@ class PipelineService:
         )
 
 
-def answering(connection: Connection, folder: Path) -> None:
-    """Answer questions until nobody is there any more."""
+def answering(folder: Path) -> Callable[[DraftQuestion, Budget], object]:
+    """Return what answers questions, in an empty folder; a process's life."""
     pipelines = PipelineService(folder)
-    with contextlib.suppress(EOFError, OSError):
-        while True:
-            asked: DraftQuestion = connection.recv()
-            connection.send(answered(partial(pipelines.told, asked)))
+    return lambda question, _: encoded(pipelines.told(question))

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from multiprocessing.connection import Connection
 from typing import Final, TypeAlias
 
 import structlog
@@ -34,8 +32,8 @@ from sequence_planner.mes.scheduling.problem import (
     job_end,
 )
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.worker import AnsweringWorker, Listener, stand_by
-from sequence_planner.process.worker import WorkerTask as ProcessWork
+from sequence_planner.process.task import WorkerError
+from sequence_planner.process.worker import Worker
 
 # The order of work: the best of the dispatch rules' schedules, improved by search within a limit of work.
 #
@@ -177,9 +175,6 @@ def _begin(work: JobWork, problem: Instance, times: Times, job: int) -> tuple[bo
 # The order of work, answered in time: by a process of its own that can be killed, or else by rule.
 
 LOG = structlog.get_logger(__name__)
-Nothing: TypeAlias = tuple[()]
-"""What the process begins with: each question says all."""
-
 _NICENESS = 5  # ticks come first
 _ANSWERING: Final = 0.2  # of the time, for what is around the search
 LATE: Final = 8.0  # seconds; on a busy machine the best that was found comes later than it was asked for
@@ -198,13 +193,12 @@ class SchedulingQuestion:
 class Sequencer:
     """Has works put into an order. Used from one event loop; one question at a time, the others wait for their turn."""
 
-    def __init__(self, loop: asyncio.AbstractEventLoop, late: float = LATE) -> None:
+    def __init__(self, late: float = LATE) -> None:
         self._late = late
-        work = ProcessWork[Nothing, SchedulingQuestion]("order of work", serve, (), lambda question: False)
-        listener: Listener[SchedulingQuestion, Schedule] = Listener(self._answered, self._failed)
-        self._waiting: asyncio.Future[Schedule | str] | None = None
         self._turn = asyncio.Lock()
-        self._process: AnsweringWorker[Nothing, SchedulingQuestion, Schedule] = AnsweringWorker(work, loop, listener)
+        self._process: Worker[SchedulingQuestion, Schedule] = Worker(
+            scheduling, None, "order of work", niceness=_NICENESS, errors=(ValueError,)
+        )
 
     async def sequence(
         self, works: Sequence[JobWork], exclusive: Collection[frozenset[str]], now: float, limit: float
@@ -213,57 +207,30 @@ class Sequencer:
         seconds longer, as it is better than none; when there is none by then, the order by rule, which says why in
         `fallback`. Raises `ValueError` for works that cannot be worked.
         """
+        question = SchedulingQuestion(tuple(works), tuple(exclusive), now, limit)
         async with self._turn:
-            answer = await self._ask(SchedulingQuestion(tuple(works), tuple(exclusive), now, limit))
-        if isinstance(answer, Schedule):
-            return answer
-        LOG.warning("the order of work is by rule", why=answer, jobs=len(works))
-        return await asyncio.to_thread(by_rule, works, exclusive, now, answer)
+            try:
+                async with asyncio.timeout(limit + self._late):
+                    return await self._process.ask(question, limit)
+            except TimeoutError:
+                why = f"no order was found within {limit + self._late:g} s"
+            except (ValueError, WorkerError) as error:
+                why = str(error)
+        LOG.warning("the order of work is by rule", why=why, jobs=len(works))
+        return await asyncio.to_thread(by_rule, works, exclusive, now, why)
 
     def close(self) -> None:
         """End the process. Whoever waits has the order by rule."""
         self._process.close()
-        self._settle("the order of work is not looked for any more")
-
-    async def _ask(self, question: SchedulingQuestion) -> Schedule | str:
-        if self._process.busy:
-            return self._process.trouble or "the process that looks for the order of work has not started yet"
-        self._waiting = asyncio.get_running_loop().create_future()
-        self._process.ask(question)
-        try:
-            return await asyncio.wait_for(self._waiting, question.deadline + self._late)
-        except TimeoutError:
-            return f"no order was found within {question.deadline + self._late:g} s"
-        finally:
-            self._waiting = None
-            self._process.call_off()
-
-    def _answered(self, question: SchedulingQuestion, schedule: Schedule) -> None:
-        self._settle(schedule)
-
-    def _failed(self, question: SchedulingQuestion, why: str, again: bool) -> None:
-        self._settle(why)
-
-    def _settle(self, answer: Schedule | str) -> None:
-        if self._waiting is not None and not self._waiting.done():
-            self._waiting.set_result(answer)
 
 
-def serve(connection: Connection) -> None:
-    """The life of the process. Each question has one answer, or the text of an error that says why there is none."""
-    os.nice(_NICENESS)
-    stand_by(connection, _prepared)
-
-
-def _prepared(model: Nothing) -> Callable[[SchedulingQuestion, Budget], Iterator[Schedule | str]]:
+def scheduling(model: None) -> Callable[[SchedulingQuestion, Budget], Schedule]:
+    """Return what answers each question, which raises `ValueError`; a process's life."""
     from sequence_planner.mes.scheduling import cp_sat as windows  # noqa: F401, PLC0415 - imported before the first question
 
-    def answer(question: SchedulingQuestion, budget: Budget) -> Iterator[Schedule | str]:
-        try:
-            late = _ANSWERING * question.deadline
-            remaining = lambda: budget.remaining - late  # noqa: E731
-            yield sequence(question.works, question.exclusive, question.now, question.deadline, remaining)
-        except ValueError as error:
-            yield str(error)
+    def answer(question: SchedulingQuestion, budget: Budget) -> Schedule:
+        late = _ANSWERING * question.deadline
+        remaining = lambda: budget.remaining - late  # noqa: E731
+        return sequence(question.works, question.exclusive, question.now, question.deadline, remaining)
 
     return answer

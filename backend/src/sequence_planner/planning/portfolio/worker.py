@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
-from multiprocessing.connection import Connection
 
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.planning.diagnoser import Diagnoser, DiagnosisModel
 from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
@@ -16,7 +17,8 @@ from sequence_planner.planning.portfolio.race import MEMORY, Portfolio, stand_ba
 from sequence_planner.planning.problem import PlanAnswer, PlanRequest, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.worker import stand_by
+from sequence_planner.process.worker import Worker
+from sequence_planner.synthesis.supervisor import FewerSpecifications
 
 # All that the planner's process can be asked, and what it answers.
 
@@ -36,12 +38,14 @@ class Planning(Immutable):
     cautious: bool = False
 
 
-def work(connection: Connection) -> None:
-    """The life of the process. Each request has one answer, or the text of an error that says why there is none."""
-    stand_by(connection, _prepared)
+def planner_process(automaton: Automaton, supervisor: Supervisor) -> Worker[Request, Answer]:
+    """Return the process, which may raise `PlannerError`."""
+    model = DiagnosisModel(automaton, supervisor, FewerSpecifications(automaton, supervisor))
+    return Worker(work, Planning(model), "planner", cautious=Planning(model, cautious=True), errors=(PlannerError,))
 
 
-def _prepared(planning: Planning) -> Callable[[Request, Budget], Iterator[Answer | str]]:
+def work(planning: Planning) -> Callable[[Request, Budget], Answer]:
+    """Return what answers each request, which raises `PlannerError`."""
     stand_back(ALONE.niceness, MEMORY)
     model = planning.model
     engines = None if planning.cautious else Engines(model.automaton, model.supervisor, ALONE)
@@ -50,16 +54,13 @@ def _prepared(planning: Planning) -> Callable[[Request, Budget], Iterator[Answer
     diagnoser = Diagnoser(model)
     ways = WaysBack(model.automaton, model.supervisor.safe)
 
-    def answer(request: Request, budget: Budget) -> Iterator[Answer | str]:
-        try:
-            match request:
-                case PlanRequest():
-                    yield planner.answer(request, budget)
-                case WayBackRequest():
-                    yield ways.answer(request, budget)
-                case DiagnosisRequest(task=task):
-                    yield diagnoser.diagnose(task, budget)
-        except PlannerError as error:
-            yield str(error)
+    def answer(request: Request, budget: Budget) -> Answer:
+        match request:
+            case PlanRequest():
+                return planner.answer(request, budget)
+            case WayBackRequest():
+                return ways.answer(request, budget)
+            case DiagnosisRequest(task=task):
+                return diagnoser.diagnose(task, budget)
 
     return answer

@@ -5,18 +5,15 @@ from __future__ import annotations
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
-from multiprocessing.connection import Connection
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.core.immutable import replace
-from sequence_planner.planning.diagnoser import Diagnoser, DiagnosisModel
-from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
-from sequence_planner.planning.planner import Planner, PlannerError
+from sequence_planner.planning.diagnosis import Diagnosis
 from sequence_planner.planning.portfolio.engine import PlanningTask
-from sequence_planner.planning.problem import ORDINARY, PlanRequest
-from sequence_planner.planning.recovery.consultation import Answer, RecoverySearch, Request, WarmStation
+from sequence_planner.planning.problem import ORDINARY
+from sequence_planner.planning.recovery.consultation import RecoverySearch, WarmStation
 from sequence_planner.planning.recovery.manual_plans import Stall, only_written, stalling, stalls, written_by
 from sequence_planner.planning.recovery.proposals import Advice, Changes, OfferKind, Options, RecoveryProposal
 from sequence_planner.planning.recovery.prover import Prover
@@ -25,7 +22,6 @@ from sequence_planner.planning.recovery.search import MOST_OFFERS, FewestActs, b
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget, SpentError
-from sequence_planner.process.worker import stand_by
 
 # The restart advisor: proven ways back to work, what is done before what is only said.
 
@@ -167,37 +163,3 @@ def _share_left(request: AdviceRequest, now: float) -> float:
     if late <= 0.0:
         return 1.0
     return max(1.0 - late / request.deadline, _LEAST) if request.deadline else _LEAST
-
-
-# The advisor in a process of its own: requests in, answers out. It can be killed at any time, and loses nothing.
-
-
-def work(connection: Connection) -> None:
-    """The life of the process. Each request has one answer, or the text of an error that says why there is none.
-
-    It is no daemon: why there is no plan is found out by a process of its own.
-    """
-    stand_by(connection, _prepared)
-
-
-def _prepared(model: DiagnosisModel) -> Callable[[Request, Budget], Iterator[Answer | str]]:
-    diagnoser = Diagnoser(model)
-    advisor = Advisor(model.automaton, model.supervisor, diagnoser.diagnose)
-    advisor.prepare()
-    planner = Planner(model.automaton, model.supervisor)
-
-    def answer(request: Request, budget: Budget) -> Iterator[Answer | str]:
-        try:
-            match request:
-                case AdviceRequest():
-                    yield advisor.advise(request, budget)
-                case ErrandRequest():
-                    yield advisor.errand(request, budget)
-                case PlanRequest():
-                    yield planner.answer(request, budget)
-                case DiagnosisRequest(task=task):
-                    yield diagnoser.diagnose(task, budget)
-        except PlannerError as error:
-            yield str(error)
-
-    return answer

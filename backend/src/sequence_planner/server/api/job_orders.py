@@ -647,7 +647,7 @@ class OrderOfWorkDesk:
         if not again or now - self._asked_at < ASK_EVERY:
             return
         if self._sequencer is None:
-            self._sequencer = Sequencer(asyncio.get_running_loop())
+            self._sequencer = Sequencer()
         self._asked, self._asked_at = question, now
         schedule = await self._sequencer.sequence(question.works, question.exclusive, self._office.now(), LIMIT)
         self.found, self._answered = (self._office.now(), schedule), question

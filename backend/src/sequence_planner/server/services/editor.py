@@ -39,7 +39,6 @@ from sequence_planner.editor.processes import (
     CheckDesk,
     DraftAnswering,
     DraftProcess,
-    EditingProcess,
     LanguageQuestionKind,
     TextAt,
     worked,
@@ -82,12 +81,10 @@ class Workshop:
         self._files = FolderReader(model)
         self._identity = identity
         self._revisions = revisions
-        self._editing = EditingProcess()
+        self._editing = DraftProcess("editing_worker")
         self._process = DraftProcess()
         self._desk = CheckDesk(model, start, self._process, self._found)
-        self._pipelines = DraftAnswering(
-            "sequence_planner.editor.pipelines.worker", "answering", 2
-        )  # the draft, and what runs
+        self._pipelines = DraftAnswering("pipelines.worker", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
@@ -100,9 +97,8 @@ class Workshop:
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
-        await self._editing.close()
-        await self._process.close()
-        await self._pipelines.close()
+        for each in (self._editing, self._process, self._pipelines):
+            each.close()
 
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since.
