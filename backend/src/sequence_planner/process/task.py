@@ -111,8 +111,8 @@ class BackgroundTask(Generic[Found]):
                 process.join()
 
     def _forked(self, connection: Connection) -> Child:
-        module = self.work.partition(":")[0] if isinstance(self.work, str) else self.work.__module__
-        return start(_carry_out, self, name=self.name, connection=connection, modules=(module,), leads=self.leads)
+        modules = (module_of(self.work),)
+        return start(_carry_out, self, name=self.name, connection=connection, modules=modules, leads=self.leads)
 
     async def _heard(self, connection: Connection, limit: MemoryLimit | None) -> AsyncIterator[Found]:
         heard, loop = asyncio.Event(), asyncio.get_running_loop()
@@ -155,6 +155,11 @@ def _carry_out(connection: Connection, task: BackgroundTask[Any]) -> None:
         tell(None, is_last=True)
     except task.errors as error:
         tell(error, is_last=True)
+
+
+def module_of(function: Callable[..., Any] | str) -> str:
+    """Return where a function is that may be named: what it imports is imported once for all processes."""
+    return function.partition(":")[0] if isinstance(function, str) else function.__module__
 
 
 def begun(function: Callable[..., Any] | str, niceness: int) -> Callable[..., Any]:

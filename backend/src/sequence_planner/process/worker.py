@@ -25,7 +25,7 @@ from sequence_planner.core.late_log import LateLog
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.process.budget import Budget
-from sequence_planner.process.task import WorkerError, begun
+from sequence_planner.process.task import WorkerError, begun, module_of
 
 LOG = LateLog(__name__)
 
@@ -360,7 +360,7 @@ class _Process:
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._words: SimpleQueue[object] = SimpleQueue()
         self._connection, theirs = Pipe()
-        modules = (prepare.partition(":")[0],) if isinstance(prepare, str) else ()
+        modules = (module_of(prepare),)
         forking = partial(start, _live, prepare, niceness, errors, name=name, connection=theirs, modules=modules)
         self._child: Child | None = None
         self._writer = threading.Thread(target=self._write, args=(forking,), daemon=True, name=name)
