@@ -16,11 +16,15 @@ from sequence_planner.model.documents import FlowDocument, ResourceDocument, Top
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.base import Patient
-from sequence_planner.model.stages.marks import NameUse
-from sequence_planner.model.stages.registry import StageDocument
-from sequence_planner.model.stages.timing import OverrideDocument
 from sequence_planner.pipelines.chain_runtime import first_message
-from sequence_planner.pipelines.chains import ChainBuilding, PipelineFindings, names_of_constants
+from sequence_planner.pipelines.chains import (
+    ChainBuilding,
+    PipelineFindings,
+    check_override_names,
+    names_of_constants,
+    renamed_in,
+    used_up,
+)
 from sequence_planner.pipelines.client_builder import client_of, is_part, parts
 from sequence_planner.pipelines.graph import (
     ActionUse,
@@ -275,7 +279,7 @@ def incoming_pipeline(
         numbers = names_of_constants(constants, variable)
         if building.is_sound and isinstance(field, IntegerRange) and numbers is not None and name not in ignored:
             building.map_constants(name, name, numbers, building.name.place)
-    renamed = {str(field) for stage in document.pipeline for field in stage.named(True, NameUse.RENAMED)}
+    renamed = renamed_in(document.pipeline)
     names = set(building.chain.end) - ((ignored | renamed) - set(building.given))
     return IncomingPipeline(topic, document.deadline, building.chain, writings(resource, building, names))
 
@@ -348,38 +352,12 @@ def _is_set(resource: Resource, building: ChainBuilding, name: str) -> bool:
 
 def _check_ignored(document: TopicDocument, building: ChainBuilding, message: RecordType) -> None:
     given = set(building.given)
-    used = {field for stage in document.pipeline for field in stage.named(True, NameUse.CONSUMED, NameUse.RENAMED)}
+    used = used_up(document.pipeline)
     for field in document.ignore:
         if field not in message:
             building.findings.add(field.place, f"the message has no field `{field}`{suggestion(field, message)}")
         elif field in (used if building.is_incoming else given):
             building.findings.add(field.place, f"`{field}` is used by a stage: it cannot be ignored as well")
-
-
-# The names of overrides: a person sets them by resource and name, so a resource has each name once.
-
-
-def check_override_names(resources: Iterable[ResourceDocument], findings: PipelineFindings) -> None:
-    """Note names that a resource gives to several overrides."""
-    for resource in resources:
-        known: dict[str, SourceText] = {}
-        for name in _names(resource):
-            if name in known:
-                first = known[name].place
-                message = (
-                    f"`{name}` is the name of another override of this resource (line {first.line}): choose another"
-                )
-                findings.add(name.place, message)
-            known.setdefault(name, name)
-
-
-def _names(resource: ResourceDocument) -> Iterator[SourceText]:
-    pipelines: list[list[StageDocument]] = [topic.pipeline for topic in resource.topics.values()]
-    pipelines += [flow.pipeline for flow in resource.flows.values()]
-    for pipeline in pipelines:
-        for stage in pipeline:
-            if isinstance(stage.content, OverrideDocument):
-                yield stage.content.name
 
 
 # Pipelines from documents: the whole graph of a station, checked, with everything that is wrong with it at once.

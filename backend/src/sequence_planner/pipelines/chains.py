@@ -9,6 +9,7 @@ from pathlib import Path
 from sequence_planner.language.records.field_paths import NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.types import EnumerationType, Place
+from sequence_planner.model.documents import ResourceDocument
 from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.model.stages.base import Context, Stage
 from sequence_planner.model.stages.discretise import DiscretiseDocument
@@ -16,7 +17,7 @@ from sequence_planner.model.stages.map import MapDocument
 from sequence_planner.model.stages.marks import NameUse, Scalar
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.stages.support import PassingStage
-from sequence_planner.model.stages.timing import FoldDocument
+from sequence_planner.model.stages.timing import FoldDocument, OverrideDocument
 from sequence_planner.pipelines.graph import Chain
 
 
@@ -164,6 +165,31 @@ class ChainBuilding:
                 own = isinstance(stage, PassingStage) and name in come
                 come[name] = come[name] if own else together
         return come
+
+
+def used_up(stages: Iterable[StageDocument]) -> set[str]:
+    """The fields of an incoming message that stages make something else of: they are no variables themselves."""
+    return {str(field) for stage in stages for field in stage.named(True, NameUse.CONSUMED, NameUse.RENAMED)}
+
+
+def renamed_in(stages: Iterable[StageDocument]) -> set[str]:
+    """Those of them that go on under another name."""
+    return {str(field) for stage in stages for field in stage.named(True, NameUse.RENAMED)}
+
+
+def check_override_names(resources: Iterable[ResourceDocument], findings: PipelineFindings) -> None:
+    """Note names that a resource gives to several overrides: a person sets them by resource and name."""
+    for resource in resources:
+        known: dict[str, SourceText] = {}
+        pipelines = (
+            *(each.pipeline for each in resource.topics.values()),
+            *(each.pipeline for each in resource.flows.values()),
+        )
+        overrides = [each.content for pipeline in pipelines for each in pipeline]
+        for name in (each.name for each in overrides if isinstance(each, OverrideDocument)):
+            if (first := known.setdefault(name, name)) is not name:
+                other = f"another override of this resource (line {first.place.line})"
+                findings.add(name.place, f"`{name}` is the name of {other}: choose another")
 
 
 def is_field(fields: RecordType, name: str) -> bool:

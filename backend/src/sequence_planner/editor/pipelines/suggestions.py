@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import islice
 
 from pydantic import JsonValue, ValidationError
 
@@ -201,8 +200,6 @@ def _bare(message: str) -> str:
 
 # What could be put at an edge of a draft's pipelines, as the builder of pipelines says.
 
-MOST_TRIED = 10  # stages of one kind
-
 
 def fits(number: int, graph: DraftPipelines, question: Fitting) -> FitsView:
     """Return what could be put there. Raises `EditError` where nobody can say."""
@@ -247,8 +244,7 @@ def _spot(graph: DraftPipelines, view: DraftPipelineView, fields: RecordType, wa
 
 def _offer(kind: str, spot: Spot, index: int, view: DraftPipelineView, trying: Trying) -> StageOfferView:
     reason: str | None = None
-    declaration = KINDS[kind]
-    if not (tried := list(islice(declaration.suggest(spot), MOST_TRIED)) or list(declaration.suggest_any(spot))):
+    if not (tried := KINDS[kind].suggest(spot)):
         reason = _nothing_left(kind, spot)
     for candidate in tried:
         why = trying.with_stage(index, candidate.stage, candidate.declares)

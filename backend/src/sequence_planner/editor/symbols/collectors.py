@@ -361,7 +361,7 @@ class Names:
         self.resource = resource
         self.incoming = incoming
         self.fields = fields
-        self._given = given
+        self.given = given
         self._kinds = kinds or {}
 
     def read(
@@ -417,7 +417,7 @@ class Names:
                 start = key.rfind(".") + 1
                 return self.fields[key], start, key[start:]
         match = _NAME.match(text)
-        if match is None or (self.incoming and (is_message or match[0] in self._given)):
+        if match is None or (self.incoming and (is_message or match[0] in self.given)):
             return None
         part = variable_of(self.resource, match[0])
         variable = self.naming.declared.variables.get(part.full)

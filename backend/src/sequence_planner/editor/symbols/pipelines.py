@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from sequence_planner.editor.symbols.collectors import (
     Fields,
@@ -52,12 +52,16 @@ def bind(stages: Stages, pipeline: Pipeline, file: str) -> None:
     """Note the variables that are bound to fields of a message by their names, at the end of a pipeline."""
     names = stages.names
     declared = names.naming.declared
-    read = named_in(pipeline.stages, pipeline.incoming, NameUse.CONSUMED, NameUse.RENAMED)
+    is_unknown = pipeline.fields is None
+    read = named_in(pipeline.stages, pipeline.incoming, NameUse.CONSUMED, NameUse.RENAMED) if is_unknown else set()
+    made: Collection[str] = set(names.fields)
+    if pipeline.incoming:
+        made = names.given | named_in(pipeline.stages, True, NameUse.RENAMED)
     for section in ("measured",) if pipeline.incoming else ("measured", "output", "estimated"):
         for name, variable in declared.own(names.resource, section):
             part = variable_of(names.resource, name)
             enumeration = declared.enumeration(names.resource, name)
-            if not _is_bound(name, variable, stages, pipeline, read):
+            if name in made or not _is_bound(name, variable, stages, pipeline, read):
                 continue
             where = f"of the messages of {pipeline.called}"
             gathered = names.naming.gathered
@@ -87,14 +91,8 @@ def _is_of_constants(name: str, enumeration: str | None, pipeline: Pipeline) -> 
 
 
 def _is_bound(name: str, variable: DeclaredVariable, stages: Stages, pipeline: Pipeline, read: set[str]) -> bool:
-    """Return whether a variable is a field of the message, or may be one where nobody knows the message."""
+    """Return whether a variable that no stage makes is a field of the message, or may be one where nobody knows it."""
     if name in pipeline.ignored or variable.parameters:
-        return False
-    if pipeline.incoming:
-        is_made = name in given_by(pipeline.stages) or name in named_in(pipeline.stages, True, NameUse.RENAMED)
-    else:
-        is_made = name in stages.names.fields
-    if is_made:
         return False
     if pipeline.fields is None:
         may_be_one = variable.section == ("measured" if pipeline.incoming else "output")

@@ -15,6 +15,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from typing import (
     ClassVar,
@@ -35,11 +36,12 @@ from sequence_planner.model.stages.marks import (
     NameMark,
     NameUse,
     Steps,
+    ValueMark,
     Within,
     marks_of,
     texts_at,
 )
-from sequence_planner.model.stages.suggestions import Candidate, Spot
+from sequence_planner.model.stages.suggestions import MOST_SUGGESTED, Candidate, Spot
 
 # What a stage is: as written, as checked, and as it runs.
 
@@ -74,24 +76,19 @@ class Context:
             return None
 
 
-Direction = Literal["incoming", "outgoing"]
-
-
 class StageDeclaration(DocumentPart, ABC):
     """One kind of stage: what is written of it, and what is made of that.
 
     `kind` is the key by which documents name it, and `about` says under that key what it is for. It is `bare` when what
     is written is what its only field holds. `direction` is that of the topics it is for, if it is not for all, and
-    `instead` the kind for the others. Where it `gives_open`, it is suggested only for what
-    nothing gives yet.
+    `instead` the kind for the others.
     """
 
     kind: ClassVar[str]
     about: ClassVar[str]
     is_bare: ClassVar[bool] = False
-    direction: ClassVar[Direction | None] = None
+    direction: ClassVar[Literal["incoming", "outgoing"] | None] = None
     instead: ClassVar[str] = ""
-    gives_open: ClassVar[tuple[Direction, ...]] = ()
 
     @abstractmethod
     def check(self, context: Context) -> Stage | None:
@@ -99,7 +96,7 @@ class StageDeclaration(DocumentPart, ABC):
 
     def is_for(self, context: Context) -> bool:
         """Check whether the stage is of the right direction; a finding when it is not."""
-        is_right = self.direction in (None, _direction(context.is_incoming))
+        is_right = self.direction in (None, "incoming" if context.is_incoming else "outgoing")
         if not is_right:
             of_message = self.named(self, True, NameUse.CONSUMED)
             first = (of_message or self.named(self, True, *NameUse))[0]
@@ -108,33 +105,35 @@ class StageDeclaration(DocumentPart, ABC):
         return is_right
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first: one about each field that fits."""
+    def suggest(cls, spot: Spot) -> list[Candidate]:
+        """Stages of this kind that the record suggests, the likeliest first; without any, one about some field, so that
+        its check says why not. None where nothing is left that it could give.
+        """
+        if found := list(islice(cls._suggested(spot), MOST_SUGGESTED)):
+            return found
+        content = cls._about(next((path for path, _ in spot.leaves), "field"), spot)
+        return [] if content is None else [Candidate({cls.kind: content})]
+
+    @classmethod
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
+        """By default one about each field that fits."""
         names = [mark for _, mark in cls.marks() if isinstance(mark, NameMark)]
         fits = next((mark.fits for mark in names if mark.fits is not None), None)
         paths = [path for path, _ in spot.subjects(fits)] if names else [""]
-        return (Candidate({cls.kind: cls.about_field(path, spot)}) for path in paths)
+        return (Candidate({cls.kind: cls._about(path, spot)}) for path in paths)
 
     @classmethod
-    def suggest_any(cls, spot: Spot) -> Iterator[Candidate]:
-        """A stage about any field, where none suggests one, so that its check says why not; none if nothing is open."""
-        if not spot.open and _direction(spot.is_incoming) in cls.gives_open:
-            return iter(())
-        name = next((path for path, _ in spot.leaves), "field")
-        return iter([Candidate({cls.kind: cls.about_field(name, spot)})])
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field: its name, a free one for what is given, and examples of all else."""
-        marks = dict(marks_of(cls))
+    def _about(cls, name: str, spot: Spot) -> object:
+        """What could be written about a field: its name, free ones for what is given, and examples of all else."""
         content: dict[str, object] = {}
+        marks = dict(marks_of(cls))
         for field, info in cls.model_fields.items():
             key = info.alias or field
             mark = marks.get((key,)) or marks.get((key, Within.ENTRIES))
             if (example := next((each for each in info.metadata if isinstance(each, ExampleValue)), None)) is not None:
                 content[key] = example.value
-            elif isinstance(mark, NameMark):
-                given = mark.use(spot.is_incoming) is NameUse.GIVEN
+            elif mark is not None and not isinstance(mark, ValueMark):
+                given = isinstance(mark, NameMark) and mark.use(spot.is_incoming) is NameUse.GIVEN
                 text = spot.name(f"{name}_{cls.kind}") if given else name
                 content[key] = text if (key,) in marks else [text]
         return next(iter(content.values())) if cls.is_bare else content
@@ -157,10 +156,6 @@ class StageDeclaration(DocumentPart, ABC):
         """The names of which a stage makes one of these uses."""
         found = cls.marked(content)
         return [text for text, _, mark in found if isinstance(mark, NameMark) and mark.use(is_incoming) in uses]
-
-
-def _direction(is_incoming: bool) -> Direction:
-    return "incoming" if is_incoming else "outgoing"
 
 
 class StageInstance(ABC):

@@ -16,7 +16,7 @@ from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration, StageInstance
-from sequence_planner.model.stages.marks import GivenValue, MessageField, ModelVariable, ReadValue
+from sequence_planner.model.stages.marks import ExampleValue, GivenValue, MessageField, ModelVariable, ReadValue
 from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, has_numbers
 from sequence_planner.model.stages.support import ImmediateStage, wanted_type
 
@@ -173,7 +173,9 @@ class DiscretiseDocument(StageDeclaration):
     """What gets the name of the point."""
     values: Given[dict[GivenValue, Point]] = None
     """The coordinates of each named point."""
-    ranges: Given[dict[GivenValue, Annotated[Bounds, Field(strict=False)]]] = None
+    ranges: Annotated[
+        Given[dict[GivenValue, Annotated[Bounds, Field(strict=False)]]], ExampleValue({"low": [None, 0]})
+    ] = None
     """For a single number: the least and the greatest of each value, `null` where there is no bound."""
     tolerance: Given[Annotated[float, Field(gt=0)]] = None
     """How far from a point each number may be."""
@@ -212,8 +214,7 @@ class DiscretiseDocument(StageDeclaration):
         return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, field)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects(has_numbers):
             for name, values, declares in _named(path, spot):
                 made: dict[str, object] = {"field": path, "variable": name}
@@ -225,11 +226,6 @@ class DiscretiseDocument(StageDeclaration):
                     bounds = [None, *(float(low + index) for index in range(1, len(values))), None]
                     made["ranges"] = {value: [bounds[index], bounds[index + 1]] for index, value in enumerate(values)}
                 yield Candidate({cls.kind: made}, declares)
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"field": name, "variable": spot.name(f"{name}_name"), "ranges": {"low": [None, 0]}}
 
 
 def _regions(document: DiscretiseDocument, field: FieldType, context: Context) -> Regions | None:
@@ -398,7 +394,6 @@ class UndiscretiseDocument(StageDeclaration):
 
     kind: ClassVar[str] = "undiscretise"
     about: ClassVar[str] = "From the name of a point to its numbers; for outgoing topics."
-    gives_open: ClassVar = ("outgoing",)
     direction: ClassVar = "outgoing"
     instead: ClassVar[str] = "discretise"
 
@@ -430,8 +425,7 @@ class UndiscretiseDocument(StageDeclaration):
         return UndiscretiseStage(context.place, path, str(self.field), field, known) if known == points else None
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects(lambda each: isinstance(each, EnumerationType)):
             assert isinstance(type_, EnumerationType)
             for name, wanted in spot.open.items():
@@ -441,9 +435,9 @@ class UndiscretiseDocument(StageDeclaration):
                     yield Candidate({cls.kind: {"variable": path, "field": name, "values": values}})
 
     @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"variable": name, "field": spot.target, "values": {"low": [0.0]}}
+    def _about(cls, name: str, spot: Spot) -> object:
+        content = {"variable": name, "field": spot.target, "values": {"low": [0.0]}}
+        return content if spot.open or spot.is_incoming else None
 
 
 def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_: FieldType) -> Numbers | None:

@@ -38,8 +38,7 @@ class ExpressionDocument(StageDeclaration):
         return ExpressionStage(context.place, known) if len(known) == len(read) else None
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         conditions = [(path, truth(path, type_)) for path, type_ in spot.subjects()]
         if spot.is_incoming:
             for path, condition in conditions:
@@ -56,8 +55,7 @@ class ExpressionDocument(StageDeclaration):
                 yield from (Candidate({cls.kind: {name: each}}) for each in (*numbers, "0"))
 
     @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
+    def _about(cls, name: str, spot: Spot) -> object:
         return {spot.name(f"{name}_again"): name}
 
 
@@ -113,17 +111,11 @@ class FilterDocument(StageDeclaration):
         return None if condition is None else FilterStage(context.place, condition)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects():
             if (condition := truth(path, type_)) is not None:
                 yield Candidate({cls.kind: condition})
         yield Candidate({cls.kind: True})
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return name
 
 
 @dataclass(frozen=True)

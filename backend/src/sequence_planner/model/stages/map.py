@@ -16,6 +16,7 @@ from sequence_planner.model.stages.base import Context, NotInvertibleError, Stag
 from sequence_planner.model.stages.marks import (
     GIVEN_VALUE,
     CombinedField,
+    ExampleValue,
     GivenField,
     MessageField,
     ModelVariable,
@@ -49,7 +50,6 @@ class MapDocument(StageDeclaration):
 
     kind: ClassVar[str] = "map"
     about: ClassVar[str] = "From each value to another."
-    gives_open: ClassVar = ("incoming", "outgoing")
 
     field: MessageField
     """The field of the message."""
@@ -83,8 +83,7 @@ class MapDocument(StageDeclaration):
         return MapStage(context.place, path, source_type, str(target), target_type, pairs, otherwise)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects(lambda each: is_textual(each) or domain(each) is not None or is_numeric(each)):
             given = some_values(type_)[:MOST_POINTS]
             if not given:
@@ -102,9 +101,8 @@ class MapDocument(StageDeclaration):
                     yield Candidate({cls.kind: {"field": name, "variable": path, "values": values_out}})
 
     @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"field": name, "variable": spot.target, "values": {"0": 0}}
+    def _about(cls, name: str, spot: Spot) -> object:
+        return {"field": name, "variable": spot.target, "values": {"0": 0}} if spot.open else None
 
 
 def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
@@ -192,7 +190,7 @@ class TableDocument(StageDeclaration):
     """What is looked at."""
     variables: Annotated[list[GivenField], Field(min_length=1)]
     """What it gives."""
-    rows: Annotated[list[TableRowDocument], Field(min_length=1)]
+    rows: Annotated[list[TableRowDocument], Field(min_length=1), ExampleValue([{"when": [ANY], "gives": [0]}])]
     """The rows, in order."""
     otherwise: Given[list[Annotated[Scalar, GIVEN_VALUE]]] = None
     """What it gives when no row fits; without it the variables are unknown."""
@@ -228,8 +226,7 @@ class TableDocument(StageDeclaration):
         return TableStage(context.place, paths, kinds, gives, known, otherwise)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects(lambda each: not isinstance(each, ListType) and bool(some_values(each))):
             when = some_values(type_)[0]
             if spot.is_incoming:
@@ -244,11 +241,6 @@ class TableDocument(StageDeclaration):
                     yield Candidate(
                         {cls.kind: {"fields": [path], "variables": [name], "rows": rows, "otherwise": [meant[-1]]}}
                     )
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"fields": [name], "variables": [spot.name(name)], "rows": [{"when": ["any"], "gives": [0]}]}
 
 
 def _cells(names: Sequence[SourceText]) -> str:

@@ -137,18 +137,18 @@ def texts_at(content: object, steps: Steps, path: EntryPath = ()) -> Iterator[tu
             yield content, path
         return
     step, rest = steps[0], steps[1:]
-    match step, content:
-        case Within.KEYS, Mapping():
+    match content:
+        case dict() if step is Within.KEYS:
             yield from ((key, (*path, str(key))) for key in content if isinstance(key, SourceText))
-        case Within.ENTRIES, Mapping():
+        case dict() if step is Within.ENTRIES:
             for key, each in content.items():
                 yield from texts_at(each, rest, (*path, str(key)))
-        case Within.ENTRIES, list():
+        case dict() if step in content and isinstance(step, str):
+            yield from texts_at(content[step], rest, (*path, step))
+        case list() if step is Within.ENTRIES:
             for index, each in enumerate(content):
                 yield from texts_at(each, rest, (*path, index))
-        case str(), Mapping():
-            yield from texts_at(content.get(step), rest, (*path, step))
-        case str(), BaseModel():
+        case BaseModel() if isinstance(step, str):
             fields = type(content).model_fields
             name = next(name for name, info in fields.items() if (info.alias or name) == step)
             yield from texts_at(getattr(content, name), rest, (*path, step))

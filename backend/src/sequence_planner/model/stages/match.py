@@ -15,7 +15,7 @@ from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, StageDeclaration
 from sequence_planner.model.stages.map import is_same
-from sequence_planner.model.stages.marks import GivenValue, MessageField, ModelVariable, Scalar
+from sequence_planner.model.stages.marks import ExampleValue, GivenValue, MessageField, ModelVariable, Scalar
 from sequence_planner.model.stages.suggestions import Candidate, Spot, some_values
 from sequence_planner.model.stages.support import (
     ImmediateStage,
@@ -55,7 +55,7 @@ class MatchDocument(StageDeclaration):
     """True for texts that begin so."""
     ends: Given[SourceText] = None
     """True for texts that end so."""
-    equals: Given[SourceText] = None
+    equals: Annotated[Given[SourceText], ExampleValue("ready")] = None
     """True for exactly this text."""
     values: Given[Annotated[dict[GivenValue, list[SourceText]], Field(min_length=1)]] = None
     """The texts that mean each value."""
@@ -89,16 +89,10 @@ class MatchDocument(StageDeclaration):
         return MatchStage(context.place, path, str(self.variable), way, str(text))
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, _ in spot.subjects(is_textual):
             name = spot.name(f"{path}_is_ready")
             yield Candidate({cls.kind: {"field": path, "variable": name, "equals": "ready"}}, {name: "bool"})
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"field": name, "variable": spot.name(f"{name}_is_ready"), "equals": "ready"}
 
 
 def _names(
@@ -218,7 +212,7 @@ class MemberDocument(StageDeclaration):
 
     field: MessageField
     """A list of the message."""
-    item: Scalar
+    item: Annotated[Scalar, ExampleValue(0)]
     """What is looked for."""
     variable: ModelVariable
     """True when it is there."""
@@ -238,18 +232,12 @@ class MemberDocument(StageDeclaration):
         return None if item is None else MemberStage(context.place, path, type_, item, str(self.variable))
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects(lambda each: isinstance(each, ListType)):
             assert isinstance(type_, ListType)
             for item in some_values(type_.element)[:1]:
                 name = spot.name(f"has_{path}")
                 yield Candidate({cls.kind: {"field": path, "item": item, "variable": name}}, {name: "bool"})
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"field": name, "item": 0, "variable": spot.name(f"has_{name}")}
 
 
 @dataclass(frozen=True)

@@ -478,8 +478,7 @@ class PythonDocument(StageDeclaration):
         return PythonStage(context.place, function, read, given, self.deadline)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path in sorted((spot.folder / FOLDER).rglob("*.py")):
             try:
                 functions = [each for each in ast.parse(path.read_bytes()).body if isinstance(each, ast.FunctionDef)]
@@ -494,9 +493,8 @@ class PythonDocument(StageDeclaration):
                     yield Candidate({cls.kind: settings}, {name: "bool"} if spot.is_incoming else {})
 
     @classmethod
-    def suggest_any(cls, spot: Spot) -> Iterator[Candidate]:
-        """Suggest none without a function that could be called."""
-        return iter(())
+    def _about(cls, name: str, spot: Spot) -> object:
+        return None  # without a function that could be called there is none
 
 
 def _python_type(type_: FieldType | None) -> str | None:

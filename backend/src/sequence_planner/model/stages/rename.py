@@ -24,7 +24,6 @@ class RenameDocument(StageDeclaration):
 
     kind: ClassVar[str] = "rename"
     about: ClassVar[str] = "Which field is which variable, where their names differ: `{field: variable}`."
-    gives_open: ClassVar = ("incoming", "outgoing")
     is_bare: ClassVar[bool] = True
 
     names: dict[
@@ -48,8 +47,7 @@ class RenameDocument(StageDeclaration):
         return RenameStage(context.place, tuple(renamings)) if complete else None
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects():
             if spot.is_incoming:
                 for name, wanted in spot.open.items():
@@ -64,8 +62,9 @@ class RenameDocument(StageDeclaration):
                         yield Candidate({cls.kind: {name: path}})
 
     @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
+    def _about(cls, name: str, spot: Spot) -> object:
+        if not spot.open:
+            return None
         return {name: spot.target} if spot.is_incoming else {spot.target: name}
 
 
@@ -117,7 +116,6 @@ class ConstantDocument(StageDeclaration):
 
     kind: ClassVar[str] = "constant"
     about: ClassVar[str] = "Fields with a fixed value; for outgoing topics."
-    gives_open: ClassVar = ("outgoing",)
     is_bare: ClassVar[bool] = True
     direction: ClassVar = "outgoing"
 
@@ -139,15 +137,13 @@ class ConstantDocument(StageDeclaration):
         return not context.is_incoming
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for name, type_ in spot.open.items():
             yield from (Candidate({cls.kind: {name: value}}) for value in some_values(type_)[:1])
 
     @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {spot.target: 0}
+    def _about(cls, name: str, spot: Spot) -> object:
+        return {spot.target: 0} if spot.open or spot.is_incoming else None
 
 
 def _type(context: Context, name: SourceText, value: object) -> FieldType | None:

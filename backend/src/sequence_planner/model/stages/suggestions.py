@@ -13,6 +13,7 @@ from sequence_planner.language.types import BooleanType, EnumerationType, Intege
 
 DEEPEST = 3  # messages within messages
 MOST_SUBJECTS = 12  # fields that are tried for a kind of stage
+MOST_SUGGESTED = 10  # stages of one kind
 MOST_POINTS = 40  # values that are written out
 
 

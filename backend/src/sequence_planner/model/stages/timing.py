@@ -95,18 +95,12 @@ class RememberDocument(StageDeclaration):
         return RememberStage(context.place, str(self.variable), type_, path, frozenset(ignored.values()))
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path, type_ in spot.subjects():
             narrow = spot.open.get(path, type_)
             if (written := spot.type_name(narrow)) is not None:
                 name = spot.name(f"last_{path}")
                 yield Candidate({cls.kind: {"variable": name, "of": path}}, {name: written})
-
-    @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
-        return {"variable": spot.name(f"last_{name}"), "of": name}
 
 
 @dataclass(frozen=True)
@@ -360,8 +354,7 @@ class OverrideDocument(PassingDeclaration):
         return OverrideCourse(stage)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         among = spot.leaves if spot.is_incoming else [*spot.open.items(), *spot.leaves]
         for path, type_ in among[:MOST_SUBJECTS]:
             bounds: dict[str, object] | None = None
@@ -373,8 +366,7 @@ class OverrideDocument(PassingDeclaration):
                 yield Candidate({cls.kind: {"name": spot.name(path), "fields": {path: bounds}, "expires": 60}})
 
     @classmethod
-    def about_field(cls, name: str, spot: Spot) -> object:
-        """What could be written about a field."""
+    def _about(cls, name: str, spot: Spot) -> object:
         return {"name": spot.name(name), "fields": {name: {"in": [0]}}, "expires": 60}
 
 
@@ -534,8 +526,7 @@ class FoldDocument(PassingDeclaration):
         return FoldCourse(stage)
 
     @classmethod
-    def suggest(cls, spot: Spot) -> Iterator[Candidate]:
-        """Stages of this kind that the record suggests, the likeliest first."""
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
         for path in list(spot.fields)[:MOST_SUBJECTS]:
             yield Candidate({cls.kind: [path]})
         yield Candidate({cls.kind: []})
