@@ -19,7 +19,6 @@ from queue import SimpleQueue
 
 import pytest
 
-from controller.bench import cell
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.controller.planner_client import PlannerListener, PlannerProcess
 from sequence_planner.forking.child import Child
@@ -33,6 +32,7 @@ from sequence_planner.planning.problem import Circumstances, Goal, PlanAnswer, P
 from sequence_planner.process import worker
 from sequence_planner.process.budget import Budget
 from sequence_planner.process.worker import Companion, Ended, Word, WorkerQuestion, WorkerReady, stand_by
+from support.cell import cell
 from support.places import CELL
 from support.waiting import until_async
 
