@@ -13,7 +13,7 @@ import pytest
 from support.network import DOMAIN
 from support.places import TESTS
 
-pytest_plugins = ["db.databases"]
+pytest_plugins = ["support.databases"]
 
 # What runs a station, or measures how long something takes, would be disturbed by many tests beside it.
 HEAVY = (

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import finished
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
@@ -33,6 +32,7 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
 from support.places import DOCS, REPOSITORY
+from support.station import finished
 
 TEXT = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))
 BLOCKS = re.findall(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from controller.rig import Rig
 from sequence_planner.cli.main import app
 from sequence_planner.execution.vocabulary import PlanStatus
 from sequence_planner.language.parser import parse
@@ -19,6 +18,7 @@ from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import Supervision, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
 from support.places import DOCS, MODELS, REPOSITORY
+from support.simulated import Rig
 
 TEXT = (DOCS / "tutorial.md").read_text(encoding="utf-8")
 FIRST_PART, SECOND_PART = TEXT.split("\n# Part 2")

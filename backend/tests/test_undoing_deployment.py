@@ -13,7 +13,6 @@ from typing import cast
 
 import pytest
 
-from core.actors import EVA
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.deployment_folder import (
@@ -32,6 +31,7 @@ from sequence_planner.process.parent_watch import DEPLOYED, OVERTAKEN
 from sequence_planner.startup import deployment
 from sequence_planner.startup.deployment import LONGEST_START, UnderWay
 from sequence_planner.startup.station_process import Executed, StationProcess
+from support.people import EVA
 from support.places import SINGLE_BOLT
 
 NOTE = DeploymentNote(revision="1" * 40, name="Repaired", by="anna", time=1.0)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from core.building import Does, automaton
 from sequence_planner.analysis.report import trace_document
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.synthesis.reachability import Tracer
 from sequence_planner.synthesis.supervisor import relevant
 from sequence_planner.synthesis.traces import Trace
 from sequence_planner.synthesis.transition_relation import Plant
+from support.automata import Does, automaton
 
 OFF = (BOOLEAN, False)
 

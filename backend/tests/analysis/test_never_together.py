@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from core.explicit import Explicit, Key
 from core.random_expressions import actions
@@ -19,6 +18,7 @@ from sequence_planner.language.types import Value
 from sequence_planner.process.budget import Budget
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
+from support.examples import examples
 from support.places import BOLT_TIGHTENING, MODELS
 
 PATIENCE = 60.0

@@ -8,9 +8,6 @@ from itertools import pairwise
 
 import pytest
 
-from controller.bench import cell
-from controller.rig import truck_engine
-from core.building import automaton
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.finding import analyses
 from sequence_planner.analysis.worker import analysing
@@ -19,6 +16,9 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.process.task import WorkerError
+from support.automata import automaton
+from support.cell import cell
+from support.simulated import truck_engine
 from support.waiting import until_async
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from core.building import Does, automaton
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.cache import MOST_KEPT, cache, remember, remembered, supervisor_of
 from sequence_planner.analysis.finding import analyses
@@ -16,6 +15,7 @@ from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.synthesis import supervisor
+from support.automata import Does, automaton
 
 
 def lamp(goal: str) -> Automaton:

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import cell
-from controller.rig import truck_engine
 from sequence_planner.analysis import store
 from sequence_planner.analysis.finding import analyses
 from sequence_planner.analysis.report import document_of, read_supervisor, supervisor_document
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.syntax import TRUE
+from support.cell import cell
+from support.simulated import truck_engine
 
 
 @pytest.fixture

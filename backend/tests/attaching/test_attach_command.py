@@ -9,14 +9,12 @@ from pathlib import Path
 import httpx
 import pytest
 
-from cli.commands import as_json, command
 from sequence_planner.auth.roles import Role
 from sequence_planner.journal.audit import read
 from sequence_planner.model.files import read_files
-from sequence_planner.server.settings import Settings
 from sequence_planner.station import prepare_station
-from server.running import Loop, Server
-from support.network import free_port
+from support.commands import as_json, command
+from support.server import serving, settings_in
 
 from .pressing import DOMAIN, press, station
 
@@ -83,19 +81,9 @@ def test_the_topics_of_the_network_are_a_table_and_a_document() -> None:
 
 def test_the_same_is_done_over_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
-    cell, loop = station(tmp_path), Loop()
-    page = tmp_path / "page"
-    page.mkdir()
+    cell = station(tmp_path)
     before = read_files(cell)
-    settings = Settings(
-        controller_socket=tmp_path / "no.sock",
-        page=page,
-        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
-        port=free_port(),
-    )
-    server = Server(loop, replace(settings, model=cell, transport="cyclonedds"))
-    server.start()
-    try:
+    with serving(replace(settings_in(tmp_path), model=cell, transport="cyclonedds")) as server:
         with server.client(Role.ENGINEER) as client:
             client.timeout = httpx.Timeout(60)
             body = {"topic": "/press/state", "resource": "press"}
@@ -117,7 +105,4 @@ def test_the_same_is_done_over_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         with server.identity.database.reading() as connection:
             done, asked = read(connection, action="attach-topic")
         assert (asked.entry.outcome, done.entry.outcome, done.entry.about) == ("requested", "done", asked.number)
-    finally:
-        server.stop()
-        loop.close()
     assert read_files(cell) == before  # the station itself is not touched

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from db.servers import Server
+from support.postgresql import Server
 
 
 @pytest.fixture

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import select
 
-from auth.cheap import CHEAP
 from sequence_planner.auth import sessions, users
 from sequence_planner.auth.roles import Role
 from sequence_planner.auth.sessions import SignedIn
@@ -15,6 +14,7 @@ from sequence_planner.db.database import Database
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry
+from support.people import CHEAP
 
 NOW = 1_800_000_000.0
 HERE, AGENT = "127.0.0.1", "Browser 1.0"

@@ -21,7 +21,6 @@ from hypothesis.stateful import (
 from sqlalchemy import Connection, delete
 
 from auth.situations import ADA, AGENT, BOTH, HERE, NOW
-from core.budget import examples
 from sequence_planner.auth import api_keys, sessions, users, watches
 from sequence_planner.auth import watches as pairing
 from sequence_planner.auth.login import clear
@@ -31,6 +30,7 @@ from sequence_planner.auth.users import Person
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.db.database import Database
 from sequence_planner.journal import audit
+from support.examples import examples
 
 MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0
 PAUSES = (1.0, 1.0, MINUTE, MINUTE, 2 * MINUTE, 59 * MINUTE, HOUR, 11 * HOUR, DAY, 89 * DAY)

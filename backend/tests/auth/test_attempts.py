@@ -9,13 +9,13 @@ from hypothesis import HealthCheck, given, settings
 from sqlalchemy import delete
 
 from auth.situations import BOTH, NOW
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.auth import rate_limit
 from sequence_planner.auth.login import clear
 from sequence_planner.auth.rate_limit import AttemptKind, Counter, of_address, of_name
 from sequence_planner.auth.tables import ATTEMPTS
 from sequence_planner.db.database import Database
+from support.examples import examples
 
 
 def wrong(database: Database, counters: tuple[Counter, ...], now: float) -> float:

@@ -6,13 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from auth.cheap import CHEAP
 from auth.situations import BOTH, HERE, NOW, PASSWORD, add, entries, everything_kept
 from sequence_planner.auth import first_start, users
 from sequence_planner.auth.roles import IdentityRefused, Role
 from sequence_planner.auth.users import Person
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
+from support.people import CHEAP
 
 HASH = CHEAP.hash(PASSWORD)
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.auth.tokens import LONGEST_NAME, clean_name, name_key, name_shape, short
+from support.examples import examples
 
 
 def usable(text: str) -> str | None:

@@ -10,9 +10,9 @@ from typing import Literal
 import pytest
 from argon2 import PasswordHasher, extract_parameters
 
-from auth.cheap import CHEAP, cheap_passwords
 from sequence_planner.auth.passwords import LONGEST, Passwords, check_password
 from sequence_planner.auth.roles import IdentityRefused
+from support.people import CHEAP, cheap_passwords
 
 
 @pytest.fixture

@@ -6,13 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from auth.cheap import CHEAP
 from auth.situations import ADA, BOTH, HERE, NOW, PASSWORD, add, entries, is_good, signed_in
 from sequence_planner.auth import sessions, users
 from sequence_planner.auth.roles import IdentityRefused, Role
 from sequence_planner.auth.users import DEMONSTRATOR, Person
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.db.database import Database
+from support.people import CHEAP
 
 
 def change(

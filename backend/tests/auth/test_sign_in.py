@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import pytest
 from argon2 import PasswordHasher
 
-from auth.cheap import CHEAP
 from auth.situations import ADA, AGENT, BOTH, HERE, NOW, PASSWORD, add, entries, everything_kept, is_good
 from sequence_planner.auth import sessions, users
 from sequence_planner.auth.login import SignIn
@@ -20,6 +19,7 @@ from sequence_planner.auth.users import DEMONSTRATOR
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.db.database import Database
 from sequence_planner.journal.entry import Outcome
+from support.people import CHEAP
 
 ANOTHER = "another fine password"
 

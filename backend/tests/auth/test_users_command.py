@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 from auth.situations import PASSWORD, entries, everything_kept
-from cli.commands import as_json, command
 from sequence_planner.auth import first_start
 from sequence_planner.auth.users import find_password
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
+from support.commands import as_json, command
 from support.places import CELL
 
 TEMPORARY = "a fine temporary one"

@@ -14,8 +14,6 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
-from db.servers import Server
 from journal.acts import act, filled
 from journal.happened import happened
 from sequence_planner.auth import users
@@ -32,7 +30,9 @@ from sequence_planner.journal import audit, checkpoints, run_journal
 from sequence_planner.journal.checkpoints import key_file
 from sequence_planner.journal.verify import verify
 from sequence_planner.model.files import read_files
+from support.commands import command
 from support.places import CELL
+from support.postgresql import Server
 
 Anew = Callable[[], str]
 

@@ -10,7 +10,6 @@ from hypothesis import assume, given
 from hypothesis.errors import UnsatisfiedAssumption
 
 from checks.test_supervised import Expected, with_operations
-from core.budget import examples
 from core.choices import Choices, made_by
 from core.random_expressions import equality
 from core.replaying import replay
@@ -29,6 +28,7 @@ from sequence_planner.synthesis.approximation import around, composed
 from sequence_planner.synthesis.reachability import reachable, reaching
 from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, alike, supervised, supervisor
 from sequence_planner.synthesis.transition_relation import NodeLimit, Plant, together
+from support.examples import examples
 
 
 def asked(made: Automaton, known: Evidence | None = None) -> FarAnswers:

@@ -10,7 +10,6 @@ from itertools import combinations, product
 from hypothesis import assume, given
 
 from core import random_stations
-from core.budget import examples
 from core.choices import made_by
 from sequence_planner.analysis.checks.guards import MOST_REPORTED, check_conflicts
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
@@ -27,6 +26,7 @@ from sequence_planner.automaton.tick import (
 )
 from sequence_planner.automaton.transitions import Phase, transitions
 from sequence_planner.language.evaluator import holds
+from support.examples import examples
 
 PAIR = re.compile(r"the finishes of `(\w+)` and `(\w+)` would write different values to `(\w+)`.* They (\w+) ")
 

@@ -6,10 +6,10 @@ import time
 from pathlib import Path
 
 from checks.large import write_large_station
-from core.budget import TIMED
 from sequence_planner.analysis.checks.rules import check_automaton
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.model.loader import load_station
+from support.examples import TIMED
 
 
 def test_a_thousand_abilities(tmp_path: Path) -> None:

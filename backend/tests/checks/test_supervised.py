@@ -13,8 +13,6 @@ import pytest
 from hypothesis import assume, given
 
 from checks.small import station
-from core.budget import examples
-from core.building import Does, automaton
 from core.choices import Choices, made_by
 from core.explicit import Explicit, Key, outcomes
 from core.plain_questions import meant, read
@@ -33,6 +31,8 @@ from sequence_planner.language.syntax import Expression, Variable
 from sequence_planner.language.types import BOOLEAN, IntegerRange
 from sequence_planner.synthesis.supervisor import supervised, supervisor
 from sequence_planner.synthesis.traces import StepKind
+from support.automata import Does, automaton
+from support.examples import examples
 
 OFF = (BOOLEAN, False)
 

@@ -6,7 +6,7 @@ import json
 import shutil
 from pathlib import Path
 
-from cli.commands import as_json, command, plain
+from support.commands import as_json, command, plain
 from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
 from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.store import folder
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.cli.analysing import Found, Limits, checked
 from sequence_planner.cli.model import check as module
+from support.commands import command
 from support.places import MODELS
 
 

@@ -11,12 +11,12 @@ from shutil import copytree
 import pytest
 
 from checks.large import write_large_station
-from cli.commands import as_json, command
 from sequence_planner.analysis.worker import telling
 from sequence_planner.cli.analysing import Limits, checked
 from sequence_planner.cli.loading import load_model
 from sequence_planner.process.memory_limit import MemoryLimitError, memory_limit
 from sequence_planner.process.task import WorkerError
+from support.commands import as_json, command
 from support.places import BOLT_TIGHTENING
 
 COUNTS = """

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
+from support.commands import command
 from support.places import BOLT_TIGHTENING
 
 

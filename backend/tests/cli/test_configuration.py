@@ -13,9 +13,8 @@ from sequence_planner.cli.station.run import run
 from sequence_planner.core.logging import LogFormat
 from sequence_planner.launcher import Launch
 from sequence_planner.settings import Configuration
+from support.commands import as_json, command
 from support.places import CELL
-
-from .commands import as_json, command
 
 SECRET = "postgresql://press:s3cret@127.0.0.1/press"
 SECRETS = (SECRET, "postgresql://press@127.0.0.1/press?password=s3cret")  # both are ways that PostgreSQL knows

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from cli.commands import as_json, command, plain
 from sequence_planner.cli.loading import load_model
+from support.commands import as_json, command, plain
 from support.places import BOLT_TIGHTENING, CELL, TESTS, WORKED_EXAMPLE
 
 SCHEMA = TESTS.parents[1] / "docs" / "schemas" / "efa.schema.json"

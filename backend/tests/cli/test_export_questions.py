@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command, plain
+from support.commands import command, plain
 from support.places import BOLT_TIGHTENING, WORKED_EXAMPLE
 
 

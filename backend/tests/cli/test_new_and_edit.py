@@ -15,9 +15,9 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
-from cli.commands import as_json, command
-from running.signing_in import signed_in
+from support.commands import as_json, command
 from support.network import DOMAIN
+from support.station import signed_in
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from pytest import MonkeyPatch
 
-from cli.commands import as_json, command, plain
 from sequence_planner.export.unified import installed
+from support.commands import as_json, command, plain
 from support.places import WORKED_EXAMPLE
 
 PLACED = json.dumps({"state": {"bolts": "placed"}})

@@ -7,9 +7,9 @@ from shutil import copytree
 
 import pytest
 
-from cli.commands import as_json, command, plain
 from sequence_planner.analysis.store import kept
 from sequence_planner.cli.loading import load_model
+from support.commands import as_json, command, plain
 from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from cli.commands import as_json, command, plain
+from support.commands import as_json, command, plain
 from support.places import BOLT_TIGHTENING, WORKED_EXAMPLE
 
 UNMEETABLE: dict[str, Any] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from cli.commands import as_json, command, plain
+from support.commands import as_json, command, plain
 from support.places import WORKED_EXAMPLE
 
 ABOVE = "robot.move(above)"

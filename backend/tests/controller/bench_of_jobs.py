@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from controller.carrying_out import carry_out
-from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Automaton, WorkMaster
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.commands.command import Command
@@ -34,6 +33,7 @@ from sequence_planner.language.syntax import TRUE
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Plan, PlanTick
+from support.automata import Does, automaton, predicate_of
 
 CONTENT = EnumerationType(("empty", "full"))
 _WRITTEN = automaton(

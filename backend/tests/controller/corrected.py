@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from controller.carrying_out import carry_out
-from core.actors import EVA
 from sequence_planner.analysis.mutual_exclusion import NeverTogether, never_together
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.recovery import CorrectEstimates
@@ -17,8 +16,8 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import PlanAnswer, PlanRequest
 from sequence_planner.process.budget import Budget
-
-from .rig import truck_engine
+from support.people import EVA
+from support.simulated import truck_engine
 
 NOW = Timestamp(1000.0, 10.0)
 WHY = "seen with my own eyes"

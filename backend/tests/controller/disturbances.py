@@ -15,8 +15,6 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from controller.journalling import journal
-from controller.rig import truck_engine
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import StartProduction
@@ -32,6 +30,8 @@ from sequence_planner.planning.validation.replay import Replay
 from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.simulation.devices import EmulatedDevices
+from support.databases import journal
+from support.simulated import truck_engine
 
 LONGEST_TICK = 20.0  # milliseconds, of 99 in 100 ticks
 STEPS = (1, 2, 5, 10, 20)  # milliseconds, in which the length of ticks is told

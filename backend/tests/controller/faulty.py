@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Callable
 from functools import cache
 
-from controller.rig import Rig, truck_engine
 from sequence_planner.controller.io.inputs import LastKnown
 from sequence_planner.execution.timeouts import overdue
 from sequence_planner.language.types import Value
@@ -17,6 +16,7 @@ from sequence_planner.planning.recovery.manual_plans import stalled_effects
 from sequence_planner.planning.recovery.proposals import Advice
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind, FaultyDevices
+from support.simulated import Rig, truck_engine
 
 KINDS = (FaultKind.SILENT, FaultKind.STUCK, FaultKind.WRONG, FaultKind.OFFLINE, FaultKind.RESTARTED)
 RESOURCES = ("robot", "nutrunner")

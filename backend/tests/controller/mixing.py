@@ -11,7 +11,6 @@ from collections.abc import Awaitable, Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from functools import cache
 
-from controller.journalling import journal
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.controller import Controller
@@ -25,6 +24,7 @@ from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.servers import serve_clients
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.databases import journal
 from support.network import DOMAIN
 from support.places import MIXER
 

@@ -10,8 +10,6 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from controller.bench import cell
-from core.building import predicate_of
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.planner_client import AdvisorClient
@@ -19,6 +17,8 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.planning.problem import Contract, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from support.automata import predicate_of
+from support.cell import cell
 from support.waiting import until_async
 
 

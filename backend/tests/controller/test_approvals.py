@@ -17,10 +17,6 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from controller.bench import IDENTITY
-from controller.journalling import journal
-from core.actors import ADAM, EVA, person
-from core.budget import examples
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.approvals import (
     Act,
@@ -50,6 +46,10 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.cell import IDENTITY
+from support.databases import journal
+from support.examples import examples
+from support.people import ADAM, EVA, person
 from support.places import CELL
 
 WHY = "seen with my own eyes"

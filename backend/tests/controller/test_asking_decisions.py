@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from hypothesis import given
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.controller.io.clients import CallCourse, Do, GoalCourse
 from sequence_planner.pipelines.graph import GoalState
 from sequence_planner.ros.actions import GoalStatus
+from support.examples import examples
 
 Event = tuple[str, object]
 

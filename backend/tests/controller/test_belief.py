@@ -12,9 +12,9 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import InitialState
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
+from support.simulated import PAIRS, Rig, truck_engine
 
 from .corrected import NOW, WHY, Station
-from .rig import PAIRS, Rig, truck_engine
 
 BOLT = "bolts[bolt_pair_2]"
 

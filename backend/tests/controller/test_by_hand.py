@@ -10,7 +10,6 @@ import pytest
 from pydantic import JsonValue
 
 from controller.mixing import mixer
-from controller.rig import Rig
 from sequence_planner.automaton.automaton import State, target
 from sequence_planner.automaton.reactions import Reactions
 from sequence_planner.automaton.tick import apply_effects, initial_state
@@ -19,6 +18,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
 from support.places import BOLT_TIGHTENING, MODELS
+from support.simulated import Rig
 
 STATIONS = sorted(each.name for each in MODELS.iterdir() if (each / "station.yaml").exists())
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import pytest
 
-from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Automaton, Operation, Timeouts
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.core.clock import Timestamp
@@ -19,6 +18,7 @@ from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Contract, Goal, Plan, PlanRequest
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton, predicate_of
 
 SAFE = Supervisor(StateSet((), ()), {})
 PLACES = EnumerationType(("home", "aside", "work"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from hypothesis import given
 
-from core.budget import examples
 from core.choices import made_by
 from core.random_stations import automaton as random_station
 from sequence_planner.analysis.mutual_exclusion import MOST_BITS, NeverTogether, never_together
@@ -14,8 +13,8 @@ from sequence_planner.controller.recovery.consistency import contradictions, que
 from sequence_planner.language.types import Value
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
-
-from .rig import truck_engine
+from support.examples import examples
+from support.simulated import truck_engine
 
 PATIENCE = 60.0
 

@@ -9,9 +9,6 @@ from typing import NoReturn
 
 import pytest
 
-from controller.bench import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell
-from controller.journalling import journal
-from core.building import Does, automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.commands.command import CommandRefused
@@ -28,6 +25,9 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.station import ReadyStation
+from support.automata import Does, automaton
+from support.cell import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell
+from support.databases import journal
 from support.waiting import until_async
 
 

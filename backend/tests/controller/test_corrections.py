@@ -8,7 +8,6 @@ from collections.abc import Callable
 import pytest
 
 from controller.carrying_out import carry_out
-from core.actors import ADAM, EVA
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, UndoCorrection
@@ -18,6 +17,7 @@ from sequence_planner.execution.state import ErrandKind, OperatorPlan
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Plan, PlanRequest
+from support.people import ADAM, EVA
 
 from .corrected import WHY, Station, what_is_never_together
 

@@ -6,15 +6,15 @@ import asyncio
 import contextlib
 import time
 
-from core.building import Does, automaton
 from sequence_planner.analysis.mutual_exclusion import MOST_BITS, NeverTogether, find_never_together
 from sequence_planner.controller.recovery.consistency import SETTLED, ConsistencyMonitor
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton
+from support.simulated import Rig, truck_engine
 
 from .corrected import WHY, Station, what_is_never_together
-from .rig import Rig, truck_engine
 
 BOLT = "bolts[bolt_pair_2]"
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import COMMAND, COMMAND_TYPE, POSES, STATE, STATE_TYPE, cell
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.ros import exclusivity
 from sequence_planner.ros.qos import QualityOfService
@@ -29,6 +28,7 @@ from sequence_planner.simulation.manual_interface import (
 from sequence_planner.simulation.messages import spoken
 from sequence_planner.simulation.service import Emulation, emulate
 from sequence_planner.station import prepare_station
+from support.cell import COMMAND, COMMAND_TYPE, POSES, STATE, STATE_TYPE, cell
 from support.places import BOLT_TIGHTENING
 from support.waiting import until_async
 

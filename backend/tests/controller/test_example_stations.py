@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from controller.rig import Acknowledging, Rig, at_once, never
 from sequence_planner.execution.vocabulary import PlanStatus
 from support.places import MODELS
+from support.simulated import Acknowledging, Rig, at_once, never
 
 BUFFER, AGV = MODELS / "robots_with_buffer", MODELS / "docking_agv"
 

@@ -7,12 +7,12 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from controller.bench import COMMAND, COMMAND_TYPE, Arm, cell
 from sequence_planner.ros import exclusivity
 from sequence_planner.ros.exclusivity import require_sole_publisher
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Transport, TransportError
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.cell import COMMAND, COMMAND_TYPE, Arm, cell
 
 Scenario = Callable[[MemoryNetwork, Transport], Awaitable[None]]
 

@@ -6,12 +6,12 @@ from collections import Counter
 
 import pytest
 
-from controller.rig import PAIRS, Rig, at_once, never
 from sequence_planner.controller.features.tasks import WaitingTask
 from sequence_planner.controller.recovery.explain import waits_for
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode, PlanStatus
 from sequence_planner.pipelines.chain_runtime import first_message
+from support.simulated import PAIRS, Rig, at_once, never
 
 MOVES = [f"robot.move_to_position({p})" for p in ("home", "above_engine", *PAIRS)]
 

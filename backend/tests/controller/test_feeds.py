@@ -8,10 +8,10 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.bench import POSES, STATE, STATE_TYPE, cell
 from pipelines.station_writing import station_with
 from sequence_planner.controller.io.inputs import Inputs, one_per_topic
 from sequence_planner.ros.transport import Sample
+from support.cell import POSES, STATE, STATE_TYPE, cell
 
 UNKNOWN = {"arm.pose": None, "arm.moving": None, "arm.last": None}
 

@@ -8,7 +8,6 @@ from functools import cache
 import pytest
 
 from controller.carrying_out import carry_out
-from core.actors import EVA
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
@@ -19,6 +18,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.people import EVA
 from support.places import WORKED_EXAMPLE
 
 NOW = Timestamp(1000.0, 10.0)

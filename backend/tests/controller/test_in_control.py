@@ -9,8 +9,6 @@ from functools import partial
 import pytest
 from hypothesis import given
 
-from core.actors import ADAM, EVA, person
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.execution import (
@@ -26,8 +24,9 @@ from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.core.actor import SYSTEM, Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode, Production
-
-from .bench import Arm, Bench, bench
+from support.cell import Arm, Bench, bench
+from support.examples import examples
+from support.people import ADAM, EVA, person
 
 NOW = Timestamp(1000.0, 10.0)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.controller.io.inputs import AGAIN, Inbox, InputErrors
 from sequence_planner.ros.transport import Sample
+from support.examples import examples
 
 HEARD = st.lists(st.tuples(st.sampled_from("ab"), st.sampled_from([b"on", b"off"]), st.integers(0, 30)), max_size=20)
 

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from controller.bench_of_jobs import FOR_JOBS, MASTERS, STATION, Bench
-from core.budget import examples
 from sequence_planner.controller import restore
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.core.clock import Timestamp
@@ -19,6 +18,7 @@ from sequence_planner.execution.record.codec import BEGUN, SNAPSHOT
 from sequence_planner.execution.record.replay import Player
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
+from support.examples import examples
 
 MEASURED = ("flows", "level", "checked", "labelled", "packed", "swept")
 NUMBERS = st.integers(0, 11)  # picks one of what there is

@@ -9,8 +9,6 @@ import pytest
 from controller.alarming.causes import cause
 from controller.bench_of_jobs import Bench
 from controller.carrying_out import carry_out
-from controller.rig import Rig, never
-from core.actors import EVA
 from sequence_planner.controller.alarms.alarm import Alarm
 from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.commands.jobs import SetByOrder, TakeJob
@@ -22,6 +20,8 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.simulation.devices import EmulatedDevices
+from support.people import EVA
+from support.simulated import Rig, never
 
 
 def alarm(text: str, priority: Priority, ended: float | None = None, kind: str = "a") -> AlarmView:

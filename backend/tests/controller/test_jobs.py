@@ -10,8 +10,6 @@ from pydantic import TypeAdapter
 
 from controller.bench_of_jobs import STATION, Bench
 from controller.test_why_not import Inquirer, found
-from core.actors import EVA, person
-from core.building import predicate_of
 from sequence_planner.automaton.automaton import Automaton, Specification
 from sequence_planner.controller import restore
 from sequence_planner.controller.commands.command import Command, CommandRefused
@@ -32,6 +30,8 @@ from sequence_planner.core.actor import SYSTEM, ActorKind
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import predicate_of
+from support.people import EVA, person
 
 BOTTLE = ("fill_it", "check_it", "label_it")
 

@@ -9,9 +9,6 @@ from contextlib import contextmanager
 
 import pytest
 
-from controller.bench import Arm, Bench, bench, cell
-from controller.journalling import journal
-from core.actors import EVA
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, TakeControl, TakeStep
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, DecideOutputs
@@ -23,6 +20,9 @@ from sequence_planner.db.location import SqliteFile
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.journal import run_journal
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.cell import Arm, Bench, bench, cell
+from support.databases import journal
+from support.people import EVA
 from support.waiting import until_async
 
 

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import MODEL, RunningStation, command, descendants, environment, finished, foreign_node, station
 from sequence_planner.core.secrets import CLIENT_SECRET, PASSWORD
 from sequence_planner.core.secrets import environment as with_secrets
 from sequence_planner.core.storage_error import DATABASE
@@ -23,6 +22,7 @@ from sequence_planner.startup import station_process as parts
 from sequence_planner.startup.station_process import UNUSABLE, Executed, StationProcess
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import MODEL, RunningStation, command, descendants, environment, finished, foreign_node, station
 from support.waiting import until
 
 

@@ -9,10 +9,7 @@ from pathlib import Path
 from hypothesis import given
 
 from controller.alarming.scene import alarms
-from controller.rig import Rig
 from controller.test_ticks import EVERYTHING_IS_SAFE, NOW
-from core.budget import examples
-from core.building import Does, automaton
 from core.choices import Choices, made_by
 from core.random_problems import Problem, problem
 from sequence_planner.automaton.automaton import Automaton, Kind, State
@@ -33,7 +30,10 @@ from sequence_planner.language.syntax import TRUE
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import PlanAnswer
+from support.automata import Does, automaton
+from support.examples import examples
 from support.places import CELL
+from support.simulated import Rig
 
 PLACES = EnumerationType(("home", "scanner", "out"))
 

@@ -12,13 +12,13 @@ from statistics import median
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.bench import COMMAND, STATE, STATE_TYPE, Arm, bench, cell
-from core.budget import TIMED
 from sequence_planner.controller.io.network import NetworkWatch, network_steps, network_view, uses
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.service import show_network
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.ros.transport import NetworkEndpoint, ServiceEnd
+from support.cell import COMMAND, STATE, STATE_TYPE, Arm, bench, cell
+from support.examples import TIMED
 from support.waiting import until_async
 
 from .test_network_watch import OBEYS, REPORTS

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from controller.bench import COMMAND, COMMAND_TYPE, STATE, STATE_TYPE, cell
 from controller.mixing import FLUSH, FLUSH_TYPE, STIR, STIR_TYPE, mixer
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.ros.transport import NetworkEndpoint, ServiceEnd
+from support.cell import COMMAND, COMMAND_TYPE, STATE, STATE_TYPE, cell
 
 REPORTS = NetworkEndpoint(
     topic=STATE,

@@ -9,8 +9,6 @@ from functools import partial
 
 import pytest
 
-from core.actors import EVA
-from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Operation
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue
 from sequence_planner.controller.commands.recovery import TakeErrand
@@ -29,6 +27,8 @@ from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.recovery.proposals import Advice
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton, predicate_of
+from support.people import EVA
 
 PLACES = EnumerationType(("home", "work"))
 RESTING = "at == target and not jammed"

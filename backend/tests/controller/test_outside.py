@@ -5,8 +5,6 @@ from __future__ import annotations
 import asyncio
 from functools import cache
 
-from controller.bench import Arm, bench
-from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
@@ -19,6 +17,8 @@ from sequence_planner.execution.vocabulary import PlanStatus
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton
+from support.cell import Arm, bench
 
 PLACES = EnumerationType(("back", "between", "out"))
 UNSAFE = "unsafe-state"

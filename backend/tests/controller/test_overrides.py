@@ -8,9 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import IDENTITY
-from controller.journalling import journal
-from core.actors import EVA
 from pipelines.station_writing import station_with
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import ClearOverride, SetOverride, StartProduction, TakeControl
@@ -31,6 +28,9 @@ from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.station import ReadyStation
 from sequence_planner.synthesis.supervisor import synthesise
+from support.cell import IDENTITY
+from support.databases import journal
+from support.people import EVA
 from support.waiting import until_async
 
 TANK = """

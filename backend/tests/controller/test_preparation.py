@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from controller.bench import cell
 from sequence_planner.cli.analysing import Limits, checked, supervisor_of
 from sequence_planner.controller.preparation import Preparation, analyse
 from sequence_planner.process.task import TooLargeError, WorkerError
+from support.cell import cell
 
 
 def test_a_process_that_cannot_be_started_is_said(tmp_path: Path) -> None:

@@ -7,11 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from controller.bench import Arm, bench
-from controller.rig import PAIRS, Rig
 from controller.test_local_formulas import beginning
 from controller.test_ticks import NOW
-from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, PlanStatus
@@ -25,6 +22,9 @@ from sequence_planner.planning.problem import (
     PlanTick,
     Verdict,
 )
+from support.automata import Does, automaton
+from support.cell import Arm, bench
+from support.simulated import PAIRS, Rig
 
 PLACES = EnumerationType(("here", "detour", "there"))
 

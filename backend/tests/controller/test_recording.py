@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from core.actors import ADAM, EVA
 from sequence_planner.controller.commands.audit import CommandAudit
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, StartProduction, TakeControl
@@ -19,8 +18,8 @@ from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.journal.audit import read
 from sequence_planner.journal.entry import Outcome, Record
-
-from .bench import Bench, bench
+from support.cell import Bench, bench
+from support.people import ADAM, EVA
 
 TASK = TaskView(
     revision=1,

@@ -8,7 +8,6 @@ from itertools import islice, product
 
 from hypothesis import given
 
-from core.building import Does, automaton, predicate_of
 from core.choices import Choices, made_by
 from core.random_expressions import predicate
 from core.random_stations import automaton as random_station
@@ -20,6 +19,7 @@ from sequence_planner.controller.recovery.explain import changers, responsible, 
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import Expression, Variable
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
+from support.automata import Does, automaton, predicate_of
 
 BOLT = EnumerationType(("empty", "placed", "tightened"))
 STATION = automaton(

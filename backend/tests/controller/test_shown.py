@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sequence_planner.controller.views.builder import Shown
-from server.example_view import example_view
+from support.example_view import example_view
 
 
 def test_only_times_and_counts_are_no_news() -> None:

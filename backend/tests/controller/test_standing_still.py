@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Timeouts
 from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
 from sequence_planner.controller.io.inputs import Inputs
@@ -14,6 +13,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton
 from support.places import BOLT_TIGHTENING
 
 PLACES = EnumerationType(("home", "between", "work"))

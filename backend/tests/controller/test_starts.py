@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 import pytest
 
 from controller.test_ticks import EVERYTHING_IS_SAFE, NOW
-from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.planner import Planner
+from support.automata import Does, automaton
 
 # What `a` needs is seen only at the position after a start, and so is what it forbids.
 EXCLUSIVE = automaton(

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from controller.rig import PAIRS, Rig, never, truck_engine
-from core.actors import EVA
 from sequence_planner.automaton.automaton import State
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
 from sequence_planner.controller.features.tasks import TaskHandler, TaskProblem, WaitingTask
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
+from support.people import EVA
+from support.simulated import PAIRS, Rig, never, truck_engine
 
 PLACE_1, PLACE_2 = (f"operator.place_bolt_pair({pair})" for pair in PAIRS[:2])
 ACKNOWLEDGED = "operator.acknowledged"

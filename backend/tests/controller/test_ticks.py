@@ -7,8 +7,6 @@ from typing import NoReturn
 
 import pytest
 
-from controller.rig import PAIRS, Rig, never
-from core.building import Does, automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
@@ -17,6 +15,8 @@ from sequence_planner.execution.vocabulary import PlanStatus
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.planning.diagnosis import Diagnosis
 from sequence_planner.planning.problem import Plan, PlanAnswer, PlanTick, Verdict
+from support.automata import Does, automaton
+from support.simulated import PAIRS, Rig, never
 
 EVERYTHING_IS_SAFE = Supervisor(StateSet((), ()), {})
 NOW = Timestamp(1000.0, 10.0)

@@ -8,7 +8,6 @@ import pytest
 
 from controller.test_local_formulas import beginning
 from controller.test_receding_horizon import asked, ticks
-from core.building import Does, automaton
 from sequence_planner.automaton.automaton import Automaton, HumanTask, Timeouts
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -17,6 +16,7 @@ from sequence_planner.execution.forecast import Forecast, waiting_for_people
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import EnumerationType, Value
 from sequence_planner.planning.problem import Plan, PlanAnswer, PlanTick, Verdict
+from support.automata import Does, automaton
 
 PLACES = EnumerationType(("here", "detour", "there", "back"))
 AT_REST: dict[str, Value] = {"at": "here"}

@@ -8,8 +8,6 @@ from collections.abc import Mapping, Sequence
 import pytest
 
 from controller.carrying_out import carry_out
-from core.actors import EVA
-from core.building import Does, automaton, predicate_of
 from sequence_planner.automaton.automaton import Operation, Timeouts
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.query_handler import Definitions
@@ -31,6 +29,8 @@ from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.synthesis.guards import SupervisorGuard, shown_guards
 from sequence_planner.synthesis.supervisor import supervised, supervisor
+from support.automata import Does, automaton, predicate_of
+from support.people import EVA
 
 PLACES = EnumerationType(("up", "between", "down"))
 LATE = Timeouts(react=1.0, finish=5.0)

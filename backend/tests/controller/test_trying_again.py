@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from controller.rig import Rig
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.simulation.devices import EmulatedDevices
 from support.places import MODELS
+from support.simulated import Rig
 
 BUFFER = MODELS / "robots_with_buffer"
 PICK = "robot_1.pick"

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import pytest
 
 from controller.carrying_out import carry_out
-from core.actors import EVA
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.recovery import DecideOutputs
@@ -16,9 +15,10 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import InitialState
 from sequence_planner.language.types import Value
+from support.people import EVA
+from support.simulated import truck_engine
 
 from .corrected import Station, corrections
-from .rig import truck_engine
 
 NOW = Timestamp(1000.0, 10.0)
 WHY = "it stays where it is"

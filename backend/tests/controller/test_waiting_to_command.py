@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from controller.bench import COMMAND, COMMAND_TYPE, Arm, cell
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.ipc import ControllerClient
@@ -19,6 +18,7 @@ from sequence_planner.ros import exclusivity
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.cell import COMMAND, COMMAND_TYPE, Arm, cell
 from support.places import CELL
 from support.waiting import until_async
 

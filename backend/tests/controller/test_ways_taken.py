@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from controller.ways import Taken, after_a_fault, errand_of, execution_in
-from core.building import predicate_of
 from planning.advice.rules import station
 from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise, update_operations
@@ -22,6 +21,7 @@ from sequence_planner.planning.problem import ORDINARY, Plan, PlanTick, goals_of
 from sequence_planner.planning.recovery.proposals import OfferKind
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.station import prepare_station
+from support.automata import predicate_of
 from support.places import MODELS
 
 NAME = "bolt_tightening"

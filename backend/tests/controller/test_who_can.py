@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from controller.faulty import FaultyRig
-from controller.rig import Rig, never
 from sequence_planner.controller.alarms.alarm import Consequences
 from sequence_planner.controller.recovery.who_can import WhoCan, at_once
 from sequence_planner.controller.views.station import WhoCanView
@@ -13,6 +12,7 @@ from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.simulation.faults import Fault, FaultKind
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.simulated import HallRig
+from support.simulated import Rig, never
 
 TIGHTEN = "tighten_bolt_pair"
 

@@ -10,7 +10,6 @@ from dataclasses import replace
 import pytest
 
 from controller.test_offers import Desk, made
-from core.building import Does, automaton, predicate_of
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskWhyNot
 from sequence_planner.controller.planner_client import AdvisorClient
@@ -26,6 +25,7 @@ from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import PlanRequest
 from sequence_planner.synthesis.guards import shown_guards
 from sequence_planner.synthesis.supervisor import supervised, supervisor
+from support.automata import Does, automaton, predicate_of
 
 
 class Inquirer:

@@ -12,8 +12,8 @@ from sequence_planner.planning.problem import Plan, PlanRequest, PlanTick
 from sequence_planner.planning.validation.acceptance import Acceptance, tightened
 from sequence_planner.planning.validation.replay import Replay, missing
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 

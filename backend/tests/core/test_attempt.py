@@ -7,8 +7,7 @@ from sequence_planner.language.types import IntegerRange
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Contract, PlanRequest, Verdict, goals_of
 from sequence_planner.synthesis.supervisor import synthesise
-
-from .building import Does, automaton
+from support.automata import Does, automaton
 
 
 def test_by_the_minimal_contract_too_a_plan_is_found_that_is_longer_than_what_is_proven() -> None:

@@ -25,10 +25,10 @@ from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
 from sequence_planner.planning.problem import Contract, Goal, Plan, goals_of
 from sequence_planner.planning.sat.bmc import BoundedModelChecking
 from sequence_planner.process.budget import Budget
+from support.automata import Does, automaton
+from support.examples import examples
 
 from .breadth_first import Shortest, may_start, permitted, shortest
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of

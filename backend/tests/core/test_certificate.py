@@ -16,8 +16,8 @@ from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.problem import Clause, Literal, Proof
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .exhaustive import alike, can_reach
 from .random_problems import Problem, problem

@@ -25,9 +25,9 @@ from sequence_planner.language.syntax import (
     Variable,
 )
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import made_by
 from .random_ticks import compare, compare_by_seed
 

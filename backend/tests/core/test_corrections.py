@@ -13,8 +13,8 @@ from sequence_planner.planning.diagnosis import CorrectedValue, corrections
 from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.validation.replay import Replay, missing
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .exhaustive import can_reach
 from .random_problems import Problem, problem

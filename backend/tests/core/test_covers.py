@@ -18,8 +18,8 @@ from sequence_planner.synthesis.bdd import Diagrams, Function
 from sequence_planner.synthesis.guards import Cube, count_literals, cover, single, worded
 from sequence_planner.synthesis.hitting import least_hitting
 from sequence_planner.synthesis.transition_relation import NodeLimit
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 
 TYPES: tuple[Type, ...] = (

@@ -24,9 +24,9 @@ from sequence_planner.planning.portfolio.race import Portfolio
 from sequence_planner.planning.problem import Contract, PlanAnswer, PlanRequest, Verdict, goals_of
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.examples import examples
 from support.waiting import until
 
-from .budget import examples
 from .choices import made_by
 from .random_problems import Problem, problem
 from .test_race import GOAL, OWN, Engine, lanes, processes, shape

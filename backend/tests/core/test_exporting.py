@@ -33,9 +33,9 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.supervisor import Supervision
 from sequence_planner.synthesis.transition_relation import Plant
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .explicit import Explicit, Key
 from .explicit_plain import ExplicitPlain

@@ -19,8 +19,8 @@ from sequence_planner.language.evaluator import holds
 from sequence_planner.language.types import Value
 from sequence_planner.model.efa_document import read_plain
 from sequence_planner.model.source import ModelError
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .cif_reader import Specification, read_cif
 from .random_devices import device_station

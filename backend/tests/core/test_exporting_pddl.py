@@ -22,10 +22,10 @@ from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.problem import Circumstances, Goal, goals_of
 from sequence_planner.planning.single.derived import for_planning
 from sequence_planner.planning.validation.replay import Replay
+from support.automata import Does, automaton
+from support.examples import examples
 
 from .breadth_first import shortest
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .pddl_reader import PddlProblem
 from .random_expressions import actions, guard

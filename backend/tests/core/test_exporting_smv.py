@@ -11,9 +11,9 @@ from sequence_planner.language.syntax import Variable
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.problem import Goal
+from support.examples import examples
 
 from .breadth_first import shortest
-from .budget import examples
 from .choices import made_by
 from .random_problems import Problem, problem
 from .smv_reader import Module

@@ -25,8 +25,8 @@ from sequence_planner.language.syntax import (
     variables,
 )
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .random_expressions import actions, predicate
 

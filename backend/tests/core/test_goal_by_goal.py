@@ -17,9 +17,9 @@ from sequence_planner.planning.problem import Contract, Plan, PlanTick, goals_of
 from sequence_planner.planning.sat.bmc import BoundedModelChecking
 from sequence_planner.planning.validation.replay import Replay
 from sequence_planner.process.budget import Budget
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .test_bounded import open_goals, valid

@@ -25,9 +25,9 @@ from sequence_planner.synthesis import guards as saying
 from sequence_planner.synthesis.guards import Restrictions, SupervisorGuard, shown_guards
 from sequence_planner.synthesis.supervisor import Supervision, relevant
 from sequence_planner.synthesis.transition_relation import Plant
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .explicit import Explicit
 from .explicit_plain import ExplicitPlain

@@ -27,10 +27,10 @@ from sequence_planner.planning.single.derived import for_planning
 from sequence_planner.planning.validation.acceptance import Acceptance
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
+from support import automata
+from support.examples import TIMED, examples
 
-from . import building
 from .breadth_first import Shortest, shortest
-from .budget import TIMED, examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 
@@ -189,10 +189,10 @@ def _at(automaton: Automaton, place: str) -> Expression:
 def test_what_is_needless_only_where_a_device_tarries_stays() -> None:
     """A part that nobody holds slips away soon, and would have to wait until it is drilled."""
     off = (BOOLEAN, False)
-    station = building.automaton(
+    station = automata.automaton(
         {
-            "hold": building.Does(start=("held := true",), enabled="not held"),
-            "drill": building.Does(start=("drilling := true",), enabled="not drilling"),
+            "hold": automata.Does(start=("held := true",), enabled="not held"),
+            "drill": automata.Does(start=("drilling := true",), enabled="not drilling"),
         },
         measured={"there": (BOOLEAN, True), "turning": off, "deep": off},
         output={"held": off, "drilling": off},

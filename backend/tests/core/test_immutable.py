@@ -17,8 +17,8 @@ from sequence_planner.core.immutable import Immutable, replace, uncompared
 from sequence_planner.language.syntax import And, Constant, Not, Span, Variable
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.planning.problem import Goal, PlanTick
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 
 Fields = tuple[tuple[Any, ...], dict[str, Any]]

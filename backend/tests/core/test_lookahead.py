@@ -14,8 +14,8 @@ from sequence_planner.automaton.tick import apply_effects, finish, supervised_st
 from sequence_planner.planning.problem import PlanTick
 from sequence_planner.planning.validation.lookahead import Lookahead
 from sequence_planner.planning.validation.replay import Replay
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of

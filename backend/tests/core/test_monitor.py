@@ -17,8 +17,7 @@ from sequence_planner.language.types import BOOLEAN, Value
 from sequence_planner.planning.goals.monitor import MOST_STATES, Monitor, TooManyStatesError, monitor_of
 from sequence_planner.planning.goals.pursuit import moved, settled
 from sequence_planner.planning.problem import Goal
-
-from .budget import examples
+from support.examples import examples
 
 SCOPE = NameScope(dict.fromkeys("pqr", BOOLEAN))
 

@@ -20,8 +20,8 @@ from sequence_planner.planning.problem import DEPTH, Circumstances, Contract, Pl
 from sequence_planner.planning.validation.acceptance import Acceptance
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
+from support.automata import Does, automaton
 
-from .building import Does, automaton
 from .choices import Choices
 from .random_problems import problem
 from .test_bounded import open_goals

@@ -16,8 +16,8 @@ from sequence_planner.planning.single.derived import as_station, without_flags
 from sequence_planner.planning.single.pairs import PairProver
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.examples import examples
 
-from .budget import examples
 from .choices import made_by
 from .explicit_plain import ExplicitPlain
 from .random_plain import document

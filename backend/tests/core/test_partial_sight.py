@@ -16,10 +16,10 @@ from sequence_planner.planning.sat.bmc import PartialSight
 from sequence_planner.planning.validation.replay import Replay, missing
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton
+from support.examples import examples
 
 from .breadth_first import shortest
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of

@@ -14,10 +14,10 @@ from sequence_planner.planning.problem import goals_of
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import Supervision, relevant, supervisor, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
+from support.automata import Does, automaton
+from support.examples import examples
 
 from .breadth_first import shortest
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 
 OFF = (BOOLEAN, False)

@@ -13,8 +13,8 @@ from sequence_planner.automaton.transitions import Phase, Transition
 from sequence_planner.language.syntax import TRUE, Assignment, Constant, Variable
 from sequence_planner.language.types import BOOLEAN, Value
 from sequence_planner.planning.heuristic.relaxation import Permission
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .test_state_set import Domains, Member, a_set, diagram
 

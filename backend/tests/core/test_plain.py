@@ -16,8 +16,8 @@ from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, relevant, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
+from support.examples import examples
 
-from .budget import examples
 from .choices import made_by
 from .explicit_plain import Key
 from .plain_questions import distance, document_with_goals, meant, reaches

@@ -17,8 +17,8 @@ from sequence_planner.planning.single.sums import Sums
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.examples import examples
 
-from .budget import examples
 from .choices import made_by
 from .plain_questions import distance, document_with_goals, meant, reaches, read
 

@@ -11,9 +11,9 @@ from sequence_planner.planning.heuristic import relaxation
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Goal, PlanRequest, Verdict
 from sequence_planner.planning.validation.replay import Replay
+from support.examples import examples
 
 from .breadth_first import Shortest, shortest
-from .budget import examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of

@@ -14,8 +14,7 @@ from sequence_planner.planning.problem import Circumstances, PlanAnswer, PlanReq
 from sequence_planner.planning.sat.start_order import sweep_order
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
-
-from .building import Does, automaton
+from support.automata import Does, automaton
 
 LONGEST = 7
 NONE = (Verdict.NONE_UP_TO, Verdict.NONE_AT_ALL)  # no plan, whether or not that is proven in time

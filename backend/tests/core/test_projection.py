@@ -13,9 +13,9 @@ from sequence_planner.planning.heuristic.relaxed_plan import Relevance
 from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
 from sequence_planner.planning.problem import Circumstances, Contract, goals_of
 from sequence_planner.process.budget import Budget
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import made_by
 from .random_problems import Problem, problem
 from .test_bounded import open_goals, valid

@@ -34,9 +34,9 @@ from sequence_planner.planning.problem import (
 )
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.examples import ONLY_TIMED, examples
 from support.waiting import until
 
-from .budget import ONLY_TIMED, examples
 from .choices import made_by
 from .random_problems import Problem, problem
 

@@ -12,8 +12,8 @@ from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.problem import Circumstances, Contract, goals_of
 from sequence_planner.planning.validation.replay import Replay, missing
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .exhaustive import alike, can_reach
 from .random_problems import Problem, problem

@@ -12,8 +12,8 @@ from sequence_planner.planning.sat.solver import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol
 from sequence_planner.synthesis.bdd import Diagrams
 from sequence_planner.synthesis.transition_relation import ExpressionReader
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .random_expressions import actions, predicate
 

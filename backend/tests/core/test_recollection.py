@@ -17,9 +17,9 @@ from sequence_planner.planning.sat.bmc import BoundedModelChecking
 from sequence_planner.planning.validation.acceptance import Acceptance
 from sequence_planner.planning.validation.replay import Replay, missing
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
 from .breadth_first import Shortest, shortest
-from .budget import examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of

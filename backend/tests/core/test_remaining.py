@@ -12,8 +12,8 @@ from sequence_planner.automaton.tick import start, start_guard_holds, synchronis
 from sequence_planner.core.immutable import replace
 from sequence_planner.language.evaluator import holds
 from sequence_planner.planning.heuristic.still_possible import Absent, Remaining
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .explicit import outcomes
 from .random_problems import problem

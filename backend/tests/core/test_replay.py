@@ -22,10 +22,10 @@ from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Plan, PlanRequest, PlanTick, goals_of
 from sequence_planner.planning.validation.replay import Replay
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton
+from support.examples import examples
 
 from .breadth_first import shortest
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 

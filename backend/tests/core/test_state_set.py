@@ -10,8 +10,8 @@ from hypothesis import given
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, Builder, StateSet
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 from sequence_planner.synthesis.bdd import Diagrams
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 
 TYPES: tuple[Type, ...] = (BOOLEAN, EnumerationType(("p", "q", "r")), IntegerRange(0, 1), IntegerRange(-1, 1))

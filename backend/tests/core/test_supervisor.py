@@ -12,9 +12,9 @@ from sequence_planner.language.types import BOOLEAN, EnumerationType
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, relevant, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .explicit import Explicit, Key
 from .random_devices import device_station

@@ -20,9 +20,9 @@ from sequence_planner.planning.sat.bmc import BoundedModelChecking
 from sequence_planner.planning.sat.start_order import StartPairs, Sweep, circles, linear
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .order_comparison import compare_orders, compare_pairs, ends
 from .random_problems import Problem, problem

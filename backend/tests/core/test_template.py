@@ -16,8 +16,8 @@ from sequence_planner.planning.sat.solver import Circuit, Solver
 from sequence_planner.planning.sat.start_order import sweep_order
 from sequence_planner.planning.sat.unrolling import Recorder, Unrolling
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .explicit import outcomes
 from .random_problems import Problem, problem

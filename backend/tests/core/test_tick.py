@@ -21,8 +21,7 @@ from sequence_planner.automaton.tick import (
 )
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 from sequence_planner.synthesis.supervisor import synthesise
-
-from .building import Does, automaton
+from support.automata import Does, automaton
 
 OFF = (BOOLEAN, False)
 BOLTS = EnumerationType(("empty", "placed", "tightened"))

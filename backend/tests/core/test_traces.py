@@ -19,9 +19,9 @@ from sequence_planner.synthesis.reachability import Tracer
 from sequence_planner.synthesis.supervisor import Supervision, SynthesisError, supervised
 from sequence_planner.synthesis.traces import StepKind
 from sequence_planner.synthesis.transition_relation import Plant
+from support.automata import Does, automaton
+from support.examples import examples
 
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .explicit import Explicit, Key
 from .explicit_plain import ExplicitPlain

@@ -24,10 +24,10 @@ from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.problem import PlanTick, RecoveryPath, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import WaysBack, deciding
 from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
+from support.automata import Does, automaton
+from support.examples import examples
 
 from .breadth_first import Shortest
-from .budget import examples
-from .building import Does, automaton
 from .choices import Choices, made_by
 from .explicit import outcomes
 from .random_devices import device_station

@@ -20,8 +20,8 @@ from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.problem import Circumstances
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import SynthesisError, synthesise
+from support.examples import examples
 
-from .budget import examples
 from .choices import Choices, made_by
 from .exhaustive import alike, can_reach
 from .explicit import outcomes

@@ -14,12 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import text
 
-from core.budget import examples
-from db.servers import PASSWORD, USER, Server
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db import postgresql as postgresql_storage
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import PostgresqlServer, address
+from support.examples import examples
+from support.postgresql import PASSWORD, USER, Server
 
 
 @pytest.fixture

@@ -12,13 +12,13 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import text
 
-from db.servers import PASSWORD
 from sequence_planner import auth, editor, journal, mes, standby
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.db.upgrade import NEWEST
 from sequence_planner.mes import webhooks
+from support.postgresql import PASSWORD
 
 UPGRADE = """
 import sys

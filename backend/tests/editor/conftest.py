@@ -1,5 +1,5 @@
 """Databases for the draft."""
 
-from db.databases import database, database_url, postgresql
+from support.databases import database, database_url, postgresql
 
 __all__ = ["database", "database_url", "postgresql"]

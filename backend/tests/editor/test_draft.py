@@ -7,12 +7,12 @@ from collections.abc import Callable
 import pytest
 from sqlalchemy import Connection
 
-from core.actors import ADAM, EVA
 from sequence_planner.core.actor import Actor
 from sequence_planner.db.database import Database
 from sequence_planner.editor import draft as drafts
 from sequence_planner.editor.draft import ChangeKind, Draft, DraftProposal, PartChangedError, SetEntry, WriteText
 from sequence_planner.model.paths import EditError
+from support.people import ADAM, EVA
 
 STATION, OPERATIONS = "station.yaml", "operations.yaml"
 FILES = {STATION: "name: cell\ntitle: Cell\nrest: true\n", OPERATIONS: "drill:\n  goal: done\n"}

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.editor.merging import MergeConflictError, merged
+from support.examples import examples
 
 LINES = st.lists(st.sampled_from("abc"), max_size=8).map(lambda lines: "".join(f"{line}\n" for line in lines))
 

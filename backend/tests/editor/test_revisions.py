@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from core.actors import ADAM, EVA
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.editor.revisions import BEFORE, Revisions, tree_of
 from sequence_planner.model.paths import EditError
+from support.people import ADAM, EVA
 
 FILES = {"station.yaml": "name: cell\n", "resources/robot.yaml": "title: Robot ü\n"}
 CHANGED = {**FILES, "station.yaml": "name: cell\ntitle: Cell\n"}

@@ -11,7 +11,7 @@ import pytest
 
 from foreign.genuine import lacking
 from foreign.test_genuine import OURS
-from running.stations import MODEL, process, station
+from support.station import MODEL, process, station
 from support.waiting import until
 
 PACKAGE = "truck_engine_msgs"

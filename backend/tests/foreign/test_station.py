@@ -6,8 +6,8 @@ import asyncio
 from pathlib import Path
 
 from foreign.peers import FAST_DDS, built, running
-from running.stations import RunningStation, process
 from support.network import DOMAIN, free_port
+from support.station import RunningStation, process
 from support.waiting import until
 
 MODEL = Path("models") / "robots_with_buffer"

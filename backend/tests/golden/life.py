@@ -12,7 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import Final, Literal
 
-from core.actors import EVA
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.approvals import ForceVariable
 from sequence_planner.controller.commands.command import CommandRefused
@@ -42,6 +41,7 @@ from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.faults import Fault, FaultKind, FaultyDevices
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.people import EVA
 
 SPEED: Final = 6.0  # of the devices
 DEVICE_STEP: Final = 0.05  # seconds between two reports of a device

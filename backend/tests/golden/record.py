@@ -18,7 +18,6 @@ from pathlib import Path
 
 import structlog
 
-from controller.journalling import journal
 from golden.journals import JOURNALS, MODELS, MOST_BYTES, keep, model_of, names, records, replayed, write
 from golden.life import devices, life, ready
 from golden.scenarios import SCENARIOS, Scenario
@@ -26,6 +25,7 @@ from sequence_planner.db.database import Database
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.journal import run_journal
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.databases import journal
 
 
 def record(name: str) -> None:

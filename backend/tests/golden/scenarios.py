@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from core.actors import EVA
 from golden.life import WHY, Life
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.approvals import ReleaseForce
@@ -18,6 +17,7 @@ from sequence_planner.controller.commands.recovery import ConfirmEstimates, Stop
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.simulation.faults import FaultKind
+from support.people import EVA
 from support.places import MODELS
 
 STATIONS: Final = MODELS

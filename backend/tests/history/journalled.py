@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from controller.journalling import journal
-from controller.rig import ready
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
 from sequence_planner.execution.executor import Executor
@@ -16,7 +14,9 @@ from sequence_planner.execution.record.recorder import RunRecorder, model_digest
 from sequence_planner.execution.state import InitialState
 from sequence_planner.history.simulation import SimulatedStation
 from sequence_planner.journal.writer import RunWriter
+from support.databases import journal
 from support.places import BOLT_TIGHTENING
+from support.simulated import ready
 
 NOW = Timestamp(1_800_000_000.0, 500.0)
 

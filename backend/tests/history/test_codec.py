@@ -9,8 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
-from core.building import Does, automaton
 from history.happened import HAPPENINGS, happening, value
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.core.clock import Timestamp
@@ -22,6 +20,8 @@ from sequence_planner.journal.run_journal import LONGEST_KIND
 from sequence_planner.language.syntax import Comparison, Constant, Variable
 from sequence_planner.language.types import BOOLEAN, EnumerationType
 from sequence_planner.planning.problem import Plan, PlanTick
+from support.automata import Does, automaton
+from support.examples import examples
 
 STATION = automaton({"go": Does(start=("bell := true",))}, output={"bell": (BOOLEAN, False)})
 NOW = Timestamp(1_700_000_000.25, 12.5)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
 from history.journalled import worked
+from support.commands import command
 from support.places import BOLT_TIGHTENING
 
 

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import asyncio
 
-from controller.bench import Arm, bench, cell
-from controller.journalling import journal
-from core.actors import EVA
 from sequence_planner.controller.commands.execution import SetMode, TakeControl
 from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import BEGUN
@@ -14,6 +11,9 @@ from sequence_planner.execution.record.replay import replay
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.ros.transports.memory import MemoryNetwork
+from support.cell import Arm, bench, cell
+from support.databases import journal
+from support.people import EVA
 
 
 async def life(network: MemoryNetwork, database: Database) -> None:

@@ -15,9 +15,6 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from cli.commands import command
-from controller.journalling import journal
-from controller.rig import ready
 from history.journalled import NOW, life, worked
 from sequence_planner.automaton.automaton import Kind, VariableDeclaration
 from sequence_planner.controller.restore import beginning
@@ -39,7 +36,10 @@ from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.journal.retention import trim
 from sequence_planner.language.types import EnumerationType
 from sequence_planner.version import VERSION
+from support.commands import command
+from support.databases import journal
 from support.places import BOLT_TIGHTENING, TESTS
+from support.simulated import ready
 
 Worked = tuple[Database, Executor]
 STATION, SUPERVISOR, _ = ready(BOLT_TIGHTENING)
@@ -95,7 +95,8 @@ def test_another_process_replays_it_too(past: Worked) -> None:
     database, _ = past
     code = (
         "import sys\n"
-        "from controller.rig import BOLT_TIGHTENING, ready\n"
+        "from support.places import BOLT_TIGHTENING\n"
+        "from support.simulated import ready\n"
         "from sequence_planner.execution.record.replay import replay\n"
         "from sequence_planner.journal.full_run import WholeRun\n"
         "from sequence_planner.db.database import Database\n"

@@ -6,7 +6,6 @@ import json
 
 from hypothesis import given
 
-from core.budget import examples
 from core.choices import made_by
 from history.lives import Life, life
 from sequence_planner.execution.executor import Executor
@@ -14,6 +13,7 @@ from sequence_planner.execution.plan_tracker import PlanCursor, PlanTracker
 from sequence_planner.execution.record.codec import BEGUN, KINDS, SNAPSHOT, Codec
 from sequence_planner.execution.record.recorder import DERIVED, EXECUTION, ORDER, PLAN, Memory
 from sequence_planner.execution.record.replay import Player
+from support.examples import examples
 
 
 def played(lived: Life, first: int = 0) -> Player:

@@ -5,22 +5,21 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
-from controller.rig import ready
 from history.journalled import life
 from sequence_planner.auth.roles import Role
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.journal import checkpoints, run_journal
-from sequence_planner.server.settings import Settings
-from server.running import Loop, Server
 from server.test_acting import problem
-from support.network import free_port
 from support.places import BOLT_TIGHTENING
+from support.server import Server, serving, settings_in
+from support.simulated import ready
 
 HISTORY = "/api/v1/history"
 AUTOMATON = ready(BOLT_TIGHTENING)[0].automaton
@@ -31,20 +30,9 @@ PATIENCE = 120.0  # seconds; the process that looks back prepares the station fi
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """A server over the journal of twelve seconds of work."""
     folder: Path = tmp_path_factory.mktemp("history")
-    loop = Loop()
-    settings = Settings(
-        controller_socket=folder / "controller.sock",
-        page=folder,
-        database=f"sqlite:///{folder / 'station.sqlite'}",
-        port=free_port(),
-        model=BOLT_TIGHTENING,
-    )
-    server = Server(loop, settings)
-    server.start()
-    asyncio.run(life(server.identity.database, BOLT_TIGHTENING, 12.0))
-    yield server
-    server.stop()
-    loop.close()
+    with serving(replace(settings_in(folder), model=BOLT_TIGHTENING)) as server:
+        asyncio.run(life(server.identity.database, BOLT_TIGHTENING, 12.0))
+        yield server
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import text
 
-from cli.commands import command
-from core.budget import examples
 from journal.acts import EVA
 from journal.happened import content, happened, kind
 from sequence_planner.core.storage_error import StorageError
@@ -29,6 +27,8 @@ from sequence_planner.journal.hash_chain import broken_at as chain_broken_at
 from sequence_planner.journal.retention import trim
 from sequence_planner.journal.run_journal import RecordQuery, RunRecord
 from sequence_planner.journal.verify import verify
+from support.commands import command
+from support.examples import examples
 
 
 @pytest.fixture

@@ -14,14 +14,14 @@ import pytest
 from sqlalchemy import make_url, text
 from sqlalchemy.exc import IntegrityError
 
-from cli.commands import command
-from db.servers import PASSWORD, USER, Server, binaries
 from journal.acts import EVA, act, filled
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import SqliteFile
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Outcome
+from support.commands import command
 from support.places import DOCS
+from support.postgresql import PASSWORD, USER, Server, binaries
 
 TEXT = (DOCS / "database.md").read_text(encoding="utf-8")
 SHIFT_BEGINS = 1772431092.25  # 2026-03-02 05:58:12.25 UTC

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
 from journal.acts import EVA
 from journal.happened import happened
 from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.retention import trim
+from support.commands import command
 from support.places import DOCS
 
 TEXT = (DOCS / "journal.md").read_text(encoding="utf-8")

@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from cli.commands import command
-from db.servers import PASSWORD
 from journal.acts import EVA, filled
 from sequence_planner.core.storage_error import DATABASE
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import default_url
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Outcome
+from support.commands import command
+from support.postgresql import PASSWORD
 
 
 def test_lines_for_people_the_newest_last(database: Database, database_url: str) -> None:

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from sqlalchemy import text
 
-from cli.commands import command
 from journal.acts import filled
 from journal.happened import happened
 from sequence_planner.db.database import Database
 from sequence_planner.journal import audit, run_journal
+from support.commands import command
 
 
 def test_all_that_happened_as_json_lines(database: Database, database_url: str) -> None:

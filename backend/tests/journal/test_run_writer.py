@@ -11,7 +11,6 @@ import pytest
 from sqlalchemy import Connection, event, text
 from structlog.testing import capture_logs
 
-from db.servers import Server
 from journal.happened import content, durable, happened, kind, troubled, with_writer
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db import postgresql as storage_postgresql
@@ -20,6 +19,7 @@ from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal
 from sequence_planner.journal import writer as group_commit
 from sequence_planner.journal.writer import RunWriter
+from support.postgresql import Server
 
 
 def _numbers(database: Database) -> list[int]:

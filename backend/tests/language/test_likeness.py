@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.language.suggestions import beginning_with, nearest, nearest_of
+from support.examples import examples
 
 WORDS = st.text("abc_.", min_size=1, max_size=8)
 NAMES = st.lists(st.one_of(WORDS, st.sampled_from(["robot.pose", "robot.moving", "pose", "poses"])), max_size=12)

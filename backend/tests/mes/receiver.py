@@ -16,7 +16,7 @@ from hashlib import sha256
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
-from server.certificates import Certified
+from support.certificates import Certified
 
 Answer = Callable[["Handler"], None]
 """How a request is answered, whose body has been read."""

@@ -8,7 +8,6 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from journal.happened import with_writer
 from sequence_planner.controller.views.details import (
     WorkAbilityView,
@@ -23,6 +22,7 @@ from sequence_planner.journal.writer import RunWriter
 from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.order import OrderCommand, OrderContent, OrderState
 from sequence_planner.mes.tracker import MOST_DEVIATIONS, Ledger, OrderTracker, read
+from support.examples import examples
 
 JOBS = ("a", "b", "c")
 

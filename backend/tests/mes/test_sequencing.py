@@ -12,7 +12,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis.strategies import integers
 
-from core.budget import TIMED
 from mes.works import NOW, RESOURCES, Exclusive, best, check, objective, questions, shop
 from sequence_planner.controller.commands.jobs import JobOperation, JobWait, SequenceJobs
 from sequence_planner.controller.ipc import LONGEST_COMMAND, CommandMessage, encode
@@ -20,6 +19,7 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.mes.scheduling.dispatch import waits_among
 from sequence_planner.mes.scheduling.problem import JobWork, Schedule, WorkOperation
 from sequence_planner.mes.scheduling.scheduler import by_rule, sequence
+from support.examples import TIMED
 
 ARM = frozenset({"arm"})
 

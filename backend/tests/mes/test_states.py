@@ -19,7 +19,6 @@ from hypothesis.stateful import (
 )
 from sqlalchemy import Connection, delete, select
 
-from core.budget import examples
 from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.db.database import Database
@@ -29,6 +28,7 @@ from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.order import JobOrder, OrderCommand, OrderContent, OrderRefused, OrderState, Wish, allowed
 from sequence_planner.mes.tables import JOB_EVENTS, JOB_ORDERS, JOB_RESPONSES
 from sequence_planner.mes.tracker import JobMade, News, response, update_order
+from support.examples import examples
 
 MES = Actor(kind=ActorKind.KEY, id="mes", name="MES")
 WAITING, READY, RUNNING, INTERRUPTED = "NotAllowedToStart", "AllowedToStart", "Running", "Interrupted"

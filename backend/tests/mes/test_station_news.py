@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from journal.happened import with_writer
 from mes.test_ledger import MASTERS, job
 from sequence_planner.controller.commands.audit import StandingNotes
@@ -23,6 +22,7 @@ from sequence_planner.mes import events, orders
 from sequence_planner.mes.events import JobEvent
 from sequence_planner.mes.order import OrderContent
 from sequence_planner.mes.tracker import OrderTracker, StationStanding
+from support.examples import examples
 
 BEGUN: dict[str, Any] = {"values": {}, "senses": {}, "memory": {}, "jobs": {}, "mode": "automatic"}
 Written = tuple[str, dict[str, Any]]

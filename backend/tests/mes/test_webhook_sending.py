@@ -14,7 +14,7 @@ import pytest
 from mes.receiver import Answer, Receiver, breaks_off, drips, floods, hangs, receiving, status, talks_nonsense
 from sequence_planner.mes.webhooks.delivery import Patience, Sender, Undelivered
 from sequence_planner.mes.webhooks.targets import Targets, network
-from server.certificates import certify
+from support.certificates import certify
 
 OVER = threading.Event()
 PATIENCE = Patience()

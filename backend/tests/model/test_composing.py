@@ -9,11 +9,11 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 from yaml import YAMLError
 
-from core.budget import examples
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.source import ModelError, SourceText
 from sequence_planner.model.yaml import reader
 from sequence_planner.model.yaml.reader import Node, compose_slowly, read_text
+from support.examples import examples
 from support.places import REPOSITORY
 
 FILES = sorted(

@@ -9,9 +9,9 @@ import re
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
 from sequence_planner.model.yaml.reader import EntryPath, read_text
+from support.examples import examples
 from support.places import BOLT_TIGHTENING
 
 TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(BOLT_TIGHTENING.glob("**/*.yaml"))}

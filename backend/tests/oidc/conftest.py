@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +17,8 @@ from sequence_planner.auth.rate_limit import RefusalLog
 from sequence_planner.auth.tables import ATTEMPTS, PEOPLE, PROVIDER_FLOWS, SESSIONS
 from sequence_planner.journal.audit import read
 from sequence_planner.journal.entry import Entry
-from sequence_planner.server.settings import Settings
-from server.running import Loop, Server
 from support.network import free_port
+from support.server import Server, serving, settings_in
 
 SESSION = "/api/v1/session"
 
@@ -62,24 +61,12 @@ class Scene:
 @pytest.fixture(scope="session")
 def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Server, RealProvider]]:
     folder: Path = tmp_path_factory.mktemp("station")
-    (page := folder / "page").mkdir()
-    port, other = free_port(), free_port()
-    loop = Loop()
-    provider = RealProvider(other, [f"http://127.0.0.1:{port}", f"http://localhost:{port}"])
+    settings = settings_in(folder)
+    provider = RealProvider(free_port(), [f"http://127.0.0.1:{settings.port}", f"http://localhost:{settings.port}"])
     provider.start()
-    settings = Settings(
-        controller_socket=folder / "controller.sock",
-        page=page,
-        database=f"sqlite:///{folder / 'station.sqlite'}",
-        port=port,
-        provider=provider.settings(),
-    )
-    server = Server(loop, settings)
-    server.start()
-    yield server, provider
-    server.stop()
+    with serving(replace(settings, provider=provider.settings())) as server:
+        yield server, provider
     provider.stop()
-    loop.close()
 
 
 @pytest.fixture

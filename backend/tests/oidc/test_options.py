@@ -9,8 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cli.commands import command
-from core.budget import examples
 from sequence_planner.auth.oidc.addresses import is_safe
 from sequence_planner.auth.oidc.flow import SignInFlow
 from sequence_planner.auth.oidc.options import ProviderOptionError, ProviderOptions
@@ -18,6 +16,8 @@ from sequence_planner.auth.oidc.settings import ProviderSettings
 from sequence_planner.auth.roles import Role
 from sequence_planner.cli.station.run import server as server_command
 from sequence_planner.core.secrets import CLIENT_SECRET
+from support.commands import command
+from support.examples import examples
 from support.places import BOLT_TIGHTENING
 
 ISSUER = "https://id.example/realms/works"

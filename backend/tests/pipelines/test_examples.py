@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
 from sequence_planner.testing import examples
+from support.commands import command
 
 from .station_writing import write_station
 

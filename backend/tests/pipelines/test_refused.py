@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cli.commands import command
 from sequence_planner.model.source import ModelError
+from support.commands import command
 
 from .stage_texts import findings
 from .station_writing import station_with, write_station

@@ -9,10 +9,10 @@ from statistics import median
 
 import pytest
 
-from core.budget import ONLY_TIMED
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.ros.transport import Sample
 from sequence_planner.station import ReadyStation
+from support.examples import ONLY_TIMED
 
 from .station_writing import station_with
 

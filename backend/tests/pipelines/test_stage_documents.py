@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import BYTE, MESSAGE, MODE, POSE, VARIABLES, build, findings, stage
 from sequence_planner.language.records.field_paths import REAL, TEXT, find_field
 from sequence_planner.language.records.record import Record, RecordType
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 from sequence_planner.model.source import ModelError
+from support.examples import examples
 
 POINTS = "{home: [0, 0], out: [1, 1]}"
 REST = "tolerance: 0.1, otherwise: unknown"

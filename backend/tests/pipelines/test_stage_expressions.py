@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, MODE
 from sequence_planner.language.evaluator import evaluate
@@ -20,6 +19,7 @@ from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
+from support.examples import examples
 
 RECORD: Mapping[str, object] = {
     "joints": [0.5, -1.0],

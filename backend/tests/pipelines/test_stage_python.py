@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 from structlog.testing import capture_logs
 
-from core.budget import TIMED
 from pipelines.stage_texts import MESSAGE, VARIABLES, build, findings
 from pipelines.station_writing import Heard, write_station
 from sequence_planner.core.secrets import CLIENT_SECRET, PASSWORD
@@ -22,6 +21,7 @@ from sequence_planner.model.stages.python import PythonCourse, PythonStage
 from sequence_planner.model.stages.sandbox.confinement import missing
 from sequence_planner.pipelines.examples import failures, loading_failures
 from sequence_planner.station import prepare_station
+from support.examples import TIMED
 from support.waiting import PATIENCE, until
 
 FORCE = """

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import outgoing, stage, take
 from sequence_planner.language.records.record import Record
 from sequence_planner.model.stages.base import Overriding, StageInstance
+from support.examples import examples
 
 
 @dataclass(frozen=True)

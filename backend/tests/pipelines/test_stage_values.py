@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given as tried_with
 from hypothesis import strategies as st
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, POSE, given, outgoing, stage, take, unchanged
 from sequence_planner.language.records.field_paths import TEXT
 from sequence_planner.language.records.record import Record
 from sequence_planner.language.types import BOOLEAN, IntegerRange
 from sequence_planner.model.stages.base import NotInvertibleError, Stage
+from support.examples import examples
 
 POINTS = """
 discretise: {field: joints, variable: at, values: {home: [0, 0], out: [1, 0.5]}, tolerance: 0.1, otherwise: unknown}

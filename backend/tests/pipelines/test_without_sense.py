@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given as for_all
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.language.records.field_paths import REAL, fits
 from sequence_planner.language.records.record import Record
 from sequence_planner.ros.transport import Sample
+from support.examples import examples
 
 from .stage_texts import given, stage
 from .station_writing import Heard, station_with

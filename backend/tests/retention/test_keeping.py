@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import func, insert, select
 
-from core.budget import examples
 from journal.acts import EVA
 from journal.happened import happened
 from sequence_planner.core.storage_error import StorageError
@@ -25,6 +24,7 @@ from sequence_planner.mes.tables import JOB_LEDGER
 from sequence_planner.retention import retention
 from sequence_planner.retention.retention import Blocks, Done, RetentionTask, run_blocks
 from sequence_planner.retention.settings import MOST_DAYS, Retention
+from support.examples import examples
 
 KB = 1e-6  # GB
 Pass = Callable[..., Done]

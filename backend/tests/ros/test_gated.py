@@ -6,11 +6,11 @@ import asyncio
 
 import pytest
 
-from controller.bench import cell
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Sample, TellsServices, TransportError
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.ros.transports.routing import gated
+from support.cell import cell
 
 TOPIC, TYPE = "/arm/command", "std_msgs/msg/String"
 TRIGGER = "std_srvs/srv/Trigger"

@@ -19,12 +19,12 @@ from hypothesis import strategies as st
 from jazzy_facts import Announced, announced
 from ros_networks import Network, play, standard
 
-from core.budget import examples
 from sequence_planner.ros import names
 from sequence_planner.ros.actions import ActionClient, ActionServer, GoalOutcome, GoalStatus, GoalWork
 from sequence_planner.ros.call_header import CallHeader, split_header, with_header
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.cyclonedds_network import RawSample, raw_types, take_all
+from support.examples import examples
 from support.network import DOMAIN
 from support.waiting import until_async
 

@@ -10,7 +10,6 @@ from hypothesis import given
 from ros_networks import Network, play, standard
 from ros_processes import peer
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport
@@ -25,6 +24,7 @@ from sequence_planner.ros.types.type_description import (
     read_description,
 )
 from sequence_planner.ros.types.type_discovery import TypeNotFoundError, find_type, serve_types
+from support.examples import examples
 from support.waiting import until_async
 
 KINDS = ["memory", "cyclonedds"]

@@ -16,13 +16,13 @@ import pytest
 from hypothesis import given
 from ros_networks import standard
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.ros.delivery import CAPACITY, Delivery
 from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.types.definitions import FieldType
 from sequence_planner.ros.types.errors import MalformedMessageError, MessageDefinitionError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.examples import examples
 from support.waiting import until_async
 
 SERVICES = [standard().service(name) for name in standard().service_names()]

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ros_networks import Network, play, settle, standard
 
-from core.budget import examples
 from sequence_planner.ros.qos import QualityEvent, QualityOfService, disagreements
 from sequence_planner.ros.transport import Sample
+from support.examples import examples
 from support.waiting import until_async
 
 NO_RCLPY = pytest.mark.skipif(

@@ -8,13 +8,13 @@ from xml.etree import ElementTree
 
 import pytest
 
-from cli.commands import command
 from sequence_planner.controller import service as controller_process
 from sequence_planner.export.sros2 import policy
 from sequence_planner.ros import environment
 from sequence_planner.ros.actions import ActionNames
 from sequence_planner.simulation import manual_interface as emulated_devices
 from sequence_planner.station import ReadyStation, prepare_station
+from support.commands import command
 from support.places import TESTS
 
 MODELS = TESTS.parents[1] / "models"

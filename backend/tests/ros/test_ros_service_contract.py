@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from ros_networks import Network, play, standard
 from structlog.testing import capture_logs
 
-from core.budget import examples
 from sequence_planner.ros.call_header import CallHeader, split_header, with_header
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport, TransportError
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.examples import examples
 
 NO_RCLPY = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,

@@ -15,7 +15,6 @@ import pytest
 from hypothesis import given
 from structlog.testing import capture_logs
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from rosbridge.server import RosbridgeServer
 from sequence_planner.ros.exclusivity import require_sole_publisher
@@ -25,6 +24,7 @@ from sequence_planner.ros.transports.rosbridge import PING_EVERY, SILENCE, Rosbr
 from sequence_planner.ros.types.definitions import FieldType
 from sequence_planner.ros.types.errors import MalformedMessageError, MessageValueError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.examples import examples
 from support.waiting import until_async
 
 TEXT, NUMBER, JOINTS = "std_msgs/msg/String", "std_msgs/msg/Int32", "sensor_msgs/msg/JointState"

@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 
 from rosbridge.server import RosbridgeServer
-from running.stations import RunningStation, finished, process
 from sequence_planner.model.source import ModelError
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Sample, Transport, TransportError
@@ -24,6 +23,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.station import prepare_station
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import RunningStation, finished, process
 from support.waiting import until
 
 TEXT = "std_msgs/msg/String"

@@ -18,9 +18,9 @@ import httpx
 from running.back_to_work.engine import DEVICE_OF, NODE_OF, SPEED, HallHands
 from running.back_to_work.person import Person
 from running.mortal import PARTS, Mortal, mortal, standing
-from running.stations import command, environment
 from stations.disturbing import Trouble, summed
 from stations.hall import MODEL, Hall, hall
+from support.station import command, environment
 from support.waiting import until
 
 BOLT_FAULTS = ("nutrunner silent for 3 s", "robot silent for 2 s", "robot slow 3 for 5 s", "nutrunner stuck for 3 s")

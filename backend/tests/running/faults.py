@@ -16,12 +16,12 @@ from typing import Any
 
 from running.back_to_work.floor import Floor, floor
 from running.back_to_work.person import Person
-from running.stations import RunningStation, process
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.station import prepare_station
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import RunningStation, process
 from support.waiting import PATIENCE, until
 
 TRUCK = REPOSITORY / "models" / "truck_engine_station"

@@ -30,7 +30,6 @@ from unittest.mock import patch
 
 import structlog
 
-from controller.rig import truck_engine
 from running.judging import Judge, Kept
 from running.wire import Wire
 from sequence_planner.controller import planner_client
@@ -54,6 +53,7 @@ from sequence_planner.process.budget import Budget
 from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.simulation.devices import EmulatedDevices
+from support.simulated import truck_engine
 
 SPEED = 20.0  # of the devices
 STEP, REPORT_EVERY = 0.01, 0.1  # seconds

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import httpx
 
-from auth.cheap import CHEAP
-from running.stations import MODEL, RunningStation, process
 from sequence_planner.auth import users
 from sequence_planner.auth.roles import Role
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import default_url
 from support.network import free_port
+from support.people import CHEAP
 from support.places import REPOSITORY
+from support.station import MODEL, RunningStation, process
 from support.waiting import until
 
 PEOPLE = {"Ada": Role.ADMINISTRATOR, "Bo": Role.OPERATOR}

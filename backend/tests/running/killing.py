@@ -11,10 +11,10 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from controller.rig import truck_engine
 from running.judging import Judge
 from running.mortal import Mortal, mortal
 from running.wire import Wire, listening
+from support.simulated import truck_engine
 
 UNTIL_KILLED = 1.5  # seconds for which it works at most, until it is killed
 AT_WORK, AT_ONCE = "while it worked", "while it started"

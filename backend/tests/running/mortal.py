@@ -15,13 +15,12 @@ from pathlib import Path
 import httpx
 
 from running.judging import Kept
-from running.signing_in import signed_in
-from running.stations import MODEL, command, descendants, environment
 from sequence_planner.core.storage_error import DATABASE
 from sequence_planner.db.database import Database
 from sequence_planner.journal.run_journal import RunRecord
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import MODEL, command, descendants, environment, signed_in
 from support.waiting import until
 
 SPEED = 10.0  # of the devices

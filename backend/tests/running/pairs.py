@@ -12,15 +12,15 @@ from pathlib import Path
 
 import httpx
 
-from controller.rig import truck_engine
-from db.servers import Server
 from running.judging import Judge
 from running.mortal import Mortal
 from running.relay import Relay, relay
-from running.stations import MODEL
 from running.wire import Wire, listening
 from sequence_planner.db.database import Database
 from sequence_planner.ros.transport import Sample
+from support.postgresql import Server
+from support.simulated import truck_engine
+from support.station import MODEL
 
 NAMES = ("press-a", "press-b")
 SOON = 5.0  # seconds within which the other has taken over

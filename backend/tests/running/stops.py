@@ -15,7 +15,6 @@ from pathlib import Path
 
 import httpx
 
-from db.servers import binaries, running_server
 from running.mortal import Mortal, mortal
 from running.pairs import Pair, pair, standby
 from running.takeovers import automatic
@@ -23,6 +22,7 @@ from sequence_planner.db.database import Database
 from sequence_planner.execution.record.codec import TICKED
 from sequence_planner.journal import run_journal
 from sequence_planner.process.parent_watch import OVERTAKEN
+from support.postgresql import binaries, running_server
 from support.waiting import until
 
 MILLISECONDS = 0.005  # until a controller is killed after the answer, at most

@@ -9,12 +9,12 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from db.servers import binaries, running_server
 from running.mortal import Mortal
 from running.pairs import Pair, pair, standby, takes_over
-from running.stations import MODEL
 from sequence_planner.process.parent_watch import OVERTAKEN
 from support.places import REPOSITORY
+from support.postgresql import binaries, running_server
+from support.station import MODEL
 from support.waiting import until
 
 SOON = 5.0  # seconds in which the other has to command

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from core.budget import SHARE
-from running.stations import finished, process
 from running.workshops import EditedStation, edited
 from sequence_planner.db.location import SqliteFile, address, default_url
 from sequence_planner.startup.station_process import UNUSABLE
+from support.examples import SHARE
 from support.network import free_port
+from support.station import finished, process
 from support.waiting import until
 
 # That a last word counts only beside its own journal is tested in `journal/test_last_word.py`, too.

@@ -11,11 +11,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from running.stations import finished, foreign_node
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.startup.station_process import UNUSABLE
 from support.network import free_port
+from support.station import finished, foreign_node
 from support.waiting import PATIENCE, until
 
 TITLED = (STATION, "title: A single bolt", "title: Another title")

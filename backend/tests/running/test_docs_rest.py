@@ -9,12 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from running.signing_in import signed_in
-from running.stations import command, environment, process
 from running.workshops import EditedStation
 from server.test_docs_curl import typed
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import command, environment, process, signed_in
 from support.waiting import until
 
 PAGE = REPOSITORY / "docs" / "rest.md"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from running.stations import MODEL, finished, process
+from support.station import MODEL, finished, process
 from support.waiting import until
 
 BEGINS = "robot silent for 5 s"

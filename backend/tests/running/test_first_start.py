@@ -15,10 +15,10 @@ from pathlib import Path
 import httpx
 import pytest
 
-from running.stations import MODEL, command, environment, process
-from server.certificates import Certified, certify
+from support.certificates import Certified, certify
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import MODEL, command, environment, process
 from support.waiting import until
 
 NAME = "station.example"

@@ -10,12 +10,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from core.budget import TIMED
-from running.stations import MODEL, RunningStation, foreign_node, station
 from sequence_planner.pipelines.runtime import RunningPipelines
 from sequence_planner.simulation.messages import Message, spoken
 from sequence_planner.station import ReadyStation, prepare_station
+from support.examples import TIMED
 from support.places import REPOSITORY
+from support.station import MODEL, RunningStation, foreign_node, station
 from support.waiting import PATIENCE
 
 BURSTS, BURST = 50, 20  # of messages of each topic

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import MODEL, RunningStation, finished, foreign_node, process, station
 from sequence_planner.ros.qos import QualityOfService
 from support.network import free_port
+from support.station import MODEL, RunningStation, finished, foreign_node, process, station
 from support.waiting import until
 
 AT_WORK = ("--emulator", "--start", "--emulator-speed", "5")

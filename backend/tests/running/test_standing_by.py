@@ -9,11 +9,11 @@ from pathlib import Path
 
 import httpx
 
-from db.servers import Server
 from running.mortal import Mortal
 from running.pairs import pair, standby, takes_over
 from sequence_planner.process.parent_watch import OVERTAKEN
 from sequence_planner.standby.lease import LASTS
+from support.postgresql import Server
 from support.waiting import until
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from db.servers import WHAT_TO_DO, binaries
 from running import stops
+from support.postgresql import WHAT_TO_DO, binaries
 
 
 def test_a_stop_lasts_though_the_controller_is_killed_within_milliseconds_after_the_answer() -> None:

@@ -12,7 +12,7 @@ import pytest
 from websockets.sync.client import connect
 
 from running.hall import Hall, opened
-from running.stations import finished
+from support.station import finished
 from support.waiting import until
 
 Record = dict[str, Any]

@@ -11,10 +11,9 @@ from typing import Any
 
 import httpx
 
-from running.signing_in import signed_in
-from running.stations import RunningStation, process
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import RunningStation, process, signed_in
 from support.waiting import PATIENCE, until
 
 SINGLE_BOLT = REPOSITORY / "models" / "single_bolt"

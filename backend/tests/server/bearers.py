@@ -17,8 +17,7 @@ from sequence_planner.auth.users import DEMONSTRATOR
 from sequence_planner.auth.watches import Watch
 from sequence_planner.core.actor import SYSTEM, ActorKind
 from sequence_planner.server.http.credentials import session_cookie, watch_cookie
-
-from .running import Server
+from support.server import Server
 
 HOUR = 3600.0  # seconds
 Headers = dict[str, str]

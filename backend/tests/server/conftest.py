@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
@@ -8,10 +9,9 @@ import pytest
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.settings import Settings, StreamLimits
-from support.network import free_port
+from support.server import Controller, Loop, Server, settings_in
 from support.waiting import until
 
-from .running import Controller, Loop, Server
 from .watching import FOREIGN, Device, station
 
 
@@ -24,16 +24,8 @@ def loop() -> Iterator[Loop]:
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    page = tmp_path / "page"
-    page.mkdir()
     limits = StreamLimits(queue=8, send_seconds=1.5, clients=10, of_one=6)
-    return Settings(
-        controller_socket=tmp_path / "controller.sock",
-        page=page,
-        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
-        port=free_port(),
-        stream=limits,
-    )
+    return replace(settings_in(tmp_path), stream=limits)
 
 
 @pytest.fixture
@@ -56,7 +48,7 @@ def lonely_server(loop: Loop, settings: Settings) -> Iterator[Server]:
 @pytest.fixture
 def server(controller: Controller, lonely_server: Server) -> Server:
     """A server that hears its controller."""
-    until(lambda: httpx.get(f"{lonely_server.address}/healthz").json()["controller"] == "heard")
+    lonely_server.hear_controller()
     return lonely_server
 
 

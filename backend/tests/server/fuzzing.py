@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import httpx
 import schemathesis
 from schemathesis import AuthContext, AuthProvider, Case, CheckContext, Response
 from schemathesis.engine import events, from_schema
@@ -23,11 +22,8 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.auth.sessions import find_session
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.server.http.credentials import session_cookie
-from sequence_planner.server.settings import Settings
-from support.network import free_port
-from support.waiting import until
+from support.server import Loop, Server, settings_in
 
-from .running import Loop, Server
 from .test_looking import Telling, network
 
 PHASES = ("examples", "coverage", "fuzzing", "stateful")
@@ -67,17 +63,10 @@ def station(folder: Path, *, with_model: bool = False) -> Iterator[tuple[Server,
     """A server whose operations have something to answer, those about the model and the past only where it has a model;
     and its controller. Files go to `folder`.
     """
-    database = f"sqlite:///{folder / 'station.sqlite'}"
-    path = folder / "controller.sock"
     (model := folder / "model").mkdir()
     (model / "station.yaml").write_text("name: cell\n", encoding="utf-8")
-    settings = Settings(
-        controller_socket=path,
-        page=folder / "page",
-        database=database,
-        port=free_port(),
-        model=model if with_model else None,
-    )
+    settings = replace(settings_in(folder), model=model if with_model else None)
+    path = settings.controller_socket
     loop = Loop()
     controller, server = Telling(loop, path), Server(loop, settings)
     controller.link = ControllerLink(path, controller.handle, controller.answer)
@@ -85,7 +74,7 @@ def station(folder: Path, *, with_model: bool = False) -> Iterator[tuple[Server,
     controller.start()
     server.start()
     try:
-        until(lambda: httpx.get(f"{server.address}/healthz").json()["controller"] == "heard")
+        server.hear_controller()
         controller.tell(network(REPORTS))
         yield server, controller
     finally:

@@ -11,9 +11,9 @@ from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.queries import AskDefinition
 from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.server.settings import Settings
+from support.server import Loop
 
 from .example_answers import DEFINITION
-from .running import Loop
 from .test_acting import problem
 from .test_errands import Asked, engineer
 

@@ -16,12 +16,9 @@ from fastapi.routing import iter_route_contexts
 
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.server.auth import allowed, check_declared
-from sequence_planner.server.settings import Settings
-from support.network import free_port
-from support.waiting import until
+from support.server import Controller, Loop, Server, settings_in
 
 from .bearers import Bearer, Headers, everybody
-from .running import Controller, Loop, Server
 
 PUBLIC, WATCH, BESIDE = "public", "watch", "beside"
 PERMITTED = "permitted"
@@ -212,16 +209,11 @@ class Scene(NamedTuple):
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scene]:
     folder: Path = tmp_path_factory.mktemp("station")
     loop = Loop()
-    settings = Settings(
-        controller_socket=folder / "controller.sock",
-        page=folder,
-        database=f"sqlite:///{folder / 'station.sqlite'}",
-        port=free_port(),
-    )
+    settings = settings_in(folder)
     controller, server = Controller(loop, settings.controller_socket), Server(loop, settings)
     controller.start()
     server.start()
-    until(lambda: httpx.get(f"{server.address}/healthz").json()["controller"] == "heard")
+    server.hear_controller()
     with httpx.Client(base_url=server.address) as browser:
         yield Scene(server, browser, everybody(server))
     server.stop()

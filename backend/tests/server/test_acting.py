@@ -15,10 +15,9 @@ from sequence_planner.controller.commands.command import Command
 from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl
 from sequence_planner.controller.commands.tasks import AcknowledgeTask, ProblemKind, ReportProblem, SolveProblem
 from sequence_planner.core.actor import ActorKind
+from support.example_view import example_view
+from support.server import Controller, Server
 from support.waiting import until
-
-from .example_view import example_view
-from .running import Controller, Server
 
 
 def problem(answer: httpx.Response, status: int, slug: str) -> dict[str, Any]:

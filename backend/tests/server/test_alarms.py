@@ -13,8 +13,8 @@ from sequence_planner.controller.commands.alarms import (
     SuppressAlarm,
     UnshelveAlarm,
 )
+from support.server import Controller
 
-from .running import Controller
 from .test_acting import problem
 
 KEY = "message:/arm/state:… is no pose"

@@ -18,8 +18,8 @@ from sequence_planner.controller.commands.approvals import (
     RequestApproval,
 )
 from sequence_planner.controller.commands.command import Command
+from support.server import Controller, Server
 
-from .running import Controller, Server
 from .test_acting import problem
 
 WHY = "seen with my own eyes"

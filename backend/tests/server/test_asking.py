@@ -17,9 +17,9 @@ from sequence_planner.controller.ipc import MOST_ASKS, ControllerClient, Control
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
 from sequence_planner.execution.vocabulary import Mode
+from support.example_view import example_view
 from support.waiting import until_async
 
-from .example_view import example_view
 from .test_link import ACTOR, accept, connected, path, peer_of
 
 __all__ = ["path"]  # the fixture

@@ -10,16 +10,14 @@ import httpx
 import pytest
 from hypothesis import given
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.auth.roles import Role
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Entry, Outcome
-from sequence_planner.server.settings import Settings
-from support.network import free_port
+from support.examples import examples
+from support.server import serving, settings_in
 
-from .running import Loop, Server
 from .test_acting import problem
 
 AUDIT = "/api/v1/audit"
@@ -32,22 +30,16 @@ MANY = 41
 def reader(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     """The browser of an operator, at a server that has something to tell. There is no controller."""
     folder: Path = tmp_path_factory.mktemp("audit")
-    loop = Loop()
-    database = f"sqlite:///{folder / 'station.sqlite'}"
-    settings = Settings(controller_socket=folder / "controller.sock", page=folder, database=database, port=free_port())
-    server = Server(loop, settings)
-    server.start()
-    with server.identity.database.writing() as connection:
-        for number in range(MANY):
-            person = PEOPLE[number % 3 == 0]
-            actor = Actor(kind=ActorKind.PERSON, id=person, name=f"Person {person}", address="127.0.0.1")
-            action, outcome = ACTIONS[number * number % 3], list(Outcome)[number % 4]
-            entry = Entry(actor=actor, action=action, subject=f"task {number}", reason="to see it", outcome=outcome)
-            audit.append(connection, entry, 1000.0 + number)
-    with server.client(Role.OPERATOR) as reader:
-        yield reader
-    server.stop()
-    loop.close()
+    with serving(settings_in(folder)) as server:
+        with server.identity.database.writing() as connection:
+            for number in range(MANY):
+                person = PEOPLE[number % 3 == 0]
+                actor = Actor(kind=ActorKind.PERSON, id=person, name=f"Person {person}", address="127.0.0.1")
+                action, outcome = ACTIONS[number * number % 3], list(Outcome)[number % 4]
+                entry = Entry(actor=actor, action=action, subject=f"task {number}", reason="to see it", outcome=outcome)
+                audit.append(connection, entry, 1000.0 + number)
+        with server.client(Role.OPERATOR) as reader:
+            yield reader
 
 
 def read(reader: httpx.Client, **question: object) -> dict[str, Any]:

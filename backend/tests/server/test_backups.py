@@ -9,6 +9,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,10 @@ from sequence_planner.forking.starting import children
 from sequence_planner.journal import audit
 from sequence_planner.server.services import backups
 from sequence_planner.server.settings import Settings
-from support.network import free_port
 from support.places import CELL
+from support.server import Loop, Server, settings_in
 from support.waiting import until
 
-from .running import Loop, Server
 from .test_acting import problem
 
 BACKUPS = "/api/v1/backups"
@@ -46,16 +46,8 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def settings(tmp_path: Path, folder: Path) -> Settings:
-    (tmp_path / "page").mkdir()
     shutil.copytree(CELL, tmp_path / "cell")
-    return Settings(
-        controller_socket=tmp_path / "controller.sock",
-        page=tmp_path / "page",
-        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
-        port=free_port(),
-        model=tmp_path / "cell",
-        backups=Keeping(folder, kept=2),
-    )
+    return replace(settings_in(tmp_path), model=tmp_path / "cell", backups=Keeping(folder, kept=2))
 
 
 @contextlib.contextmanager

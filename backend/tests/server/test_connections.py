@@ -12,9 +12,8 @@ import pytest
 from sequence_planner.server.http import connections, middleware
 from sequence_planner.server.http.connections import HEAD_SECONDS, LARGEST_HEAD
 from sequence_planner.server.http.middleware import MOST_UNKNOWN
+from support.server import Controller, Server, listen
 from support.waiting import patience, until
-
-from .running import Controller, Server, listen
 
 SOON = 0.4  # seconds
 

@@ -17,9 +17,9 @@ from sequence_planner.controller.commands.recovery import (
     UndoCorrection,
 )
 from sequence_planner.server.settings import Settings
+from support.server import Loop, Server
 
 from .example_answers import CORRECTION
-from .running import Loop, Server
 from .test_acting import problem
 from .test_errands import Asked
 

@@ -10,8 +10,6 @@ import httpx
 import pytest
 from pydantic import Field
 
-from controller.bench import IDENTITY, cell
-from controller.journalling import journal
 from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.audit import CommandAudit
 from sequence_planner.controller.commands.bus import CommandBus, handles
@@ -29,8 +27,9 @@ from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.server.api.commands import add_routes
 from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
-
-from .running import Controller, Loop, Server
+from support.cell import IDENTITY, cell
+from support.databases import journal
+from support.server import Controller, Loop, Server
 
 
 class SetLamp(Command):

@@ -13,11 +13,11 @@ from sequence_planner.auth import first_start
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.settings import Settings
+from support.example_view import example_view
 from support.network import free_port
+from support.server import Controller, Loop, Server
 from support.waiting import until
 
-from .example_view import example_view
-from .running import Controller, Loop, Server
 from .test_acting import problem
 
 PASSWORD = "seven green bolts"
@@ -28,7 +28,7 @@ def shown(loop: Loop, settings: Settings, controller: Controller) -> Iterator[Se
     """A server at which a demonstration may be opened."""
     server = Server(loop, replace(settings, demonstration=True))
     server.start()
-    until(lambda: httpx.get(f"{server.address}/healthz").json()["controller"] == "heard")
+    server.hear_controller()
     yield server
     server.stop()
 

@@ -13,8 +13,7 @@ from sequence_planner.controller.views.station import OverrideFieldView, Station
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.stream.broadcast import difference
 from sequence_planner.server.stream.messages import MAPS, Delta
-
-from .example_view import example_view
+from support.example_view import example_view
 
 EXAMPLE = example_view()
 NAMES = st.sampled_from(["a", "b", "c", 'quote"', "", "é"])

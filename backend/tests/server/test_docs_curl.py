@@ -15,11 +15,10 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.execution import ClearOverride, SetMode, SetOverride, TakeControl
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.server.settings import Settings
+from support.example_view import example_view
 from support.places import REPOSITORY
+from support.server import Controller, Server
 from support.waiting import until
-
-from .example_view import example_view
-from .running import Controller, Server
 
 TASK = example_view().tasks["7"].model_copy(update={"revision": 1})
 

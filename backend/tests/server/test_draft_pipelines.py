@@ -16,9 +16,9 @@ from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import RecordView
 from sequence_planner.server.settings import Settings
+from support.server import Controller, Loop
 from support.waiting import until
 
-from .running import Controller, Loop
 from .test_acting import problem
 from .test_model import change, eva, made, model, read, server
 

@@ -22,9 +22,9 @@ from sequence_planner.forking.starting import children
 from sequence_planner.model.yaml import reader
 from sequence_planner.server.settings import Settings
 from support.places import BOLT_TIGHTENING
+from support.server import Controller, Loop, Server
 from support.waiting import PATIENCE, until
 
-from .running import Controller, Loop, Server
 from .test_acting import problem
 from .test_model import MODEL, TITLE, change, checked, made, read, save
 
@@ -40,7 +40,7 @@ def server(controller: Controller, loop: Loop, settings: Settings, tmp_path: Pat
     model = shutil.copytree(BOLT_TIGHTENING, tmp_path / "model")
     server = Server(loop, Settings(**{**vars(settings), "model": model}))
     server.start()
-    until(lambda: httpx.get(f"{server.address}/healthz").json().get("controller") == "heard")
+    server.hear_controller()
     yield server
     server.stop()
 

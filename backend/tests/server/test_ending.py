@@ -21,11 +21,11 @@ from sequence_planner.controller.views.control_lock import ControlView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.server import metrics
 from sequence_planner.server.http.credentials import watch_cookie
+from support.example_view import example_view
+from support.server import Controller, Server
 from support.waiting import patience, until
 
 from .bearers import key, watch
-from .example_view import example_view
-from .running import Controller, Server
 from .test_acting import problem
 
 CLOSED_WITHIN = 2.0  # seconds

@@ -21,9 +21,9 @@ from sequence_planner.controller.commands.recovery import StopErrand, TakeErrand
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.server.settings import Settings
+from support.server import Controller, Loop, Server
 
 from .example_answers import ADVICE, OFFER, example_answer
-from .running import Controller, Loop, Server
 from .test_acting import problem
 
 

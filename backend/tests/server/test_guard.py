@@ -9,9 +9,9 @@ import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from support.server import Controller, Server, listen
 from support.waiting import patience
 
-from .running import Controller, Server, listen
 from .test_acting import problem
 
 MODE = {"mode": "paused"}

@@ -16,10 +16,10 @@ from websockets.sync.client import ClientConnection, connect
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.settings import Settings
+from support.certificates import Certified, certify
+from support.server import Controller, Loop, Server
 from support.waiting import PATIENCE, patience, until
 
-from .certificates import Certified, certify
-from .running import Controller, Loop, Server
 from .test_acting import problem
 
 NAME = "station.example"

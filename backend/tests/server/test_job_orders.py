@@ -20,11 +20,11 @@ from sequence_planner.mes import idempotency, orders
 from sequence_planner.mes.order import OrderRefused
 from sequence_planner.server.services.orders import OrderService
 from sequence_planner.server.settings import Settings
+from support.example_view import example_view
+from support.server import Loop, Server
 from support.waiting import until
 
 from .bearers import key
-from .example_view import example_view
-from .running import Loop, Server
 from .test_acting import problem
 from .test_docs_curl import snippet, typed
 from .test_looking import Telling

@@ -10,9 +10,9 @@ from sqlalchemy import select
 from websockets.sync.client import connect
 
 from sequence_planner.db.metadata import METADATA
+from support.server import Server
 from support.waiting import patience, until
 
-from .running import Server
 from .test_acting import problem
 from .test_people import closing_code, records
 

@@ -15,7 +15,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import TIMED
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.execution import SetMode
 from sequence_planner.controller.ipc import LONGEST_COMMAND, ControllerClient, ControllerLink, read_lines
@@ -23,8 +22,8 @@ from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.process.unix_socket import SocketTakenError, listen_on
-
-from .example_view import example_view
+from support.example_view import example_view
+from support.examples import TIMED
 
 
 def named(name: str) -> Actor:

@@ -14,7 +14,6 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
-from controller.bench import COMMAND, STATE, cell
 from controller.test_network_watch import REPORTS
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import ClearOverride, SetOverride
@@ -27,10 +26,11 @@ from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import EdgeFlowView, FlowsView, PipelineFlowView
 from sequence_planner.ros.transport import NetworkEndpoint
 from sequence_planner.server.settings import Settings
+from support.cell import COMMAND, STATE, cell
+from support.server import Controller, Loop, Server, listen
 from support.waiting import patience, until
 
 from .example_answers import example_answer
-from .running import Controller, Loop, Server, listen
 from .test_acting import problem
 from .test_stream import hear, hear_kind, slow_client
 

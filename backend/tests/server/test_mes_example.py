@@ -16,8 +16,8 @@ import pytest
 from mes.receiver import receiving
 from running.days import example
 from sequence_planner.mes.webhooks.endpoints import new_secret, signed
+from support.server import Server
 
-from .running import Server
 from .test_job_orders import controller, mes
 
 __all__ = ["controller", "mes"]

@@ -25,11 +25,11 @@ from sequence_planner.execution.vocabulary import Production
 from sequence_planner.process.restarts import write_restarts
 from sequence_planner.server import metrics
 from sequence_planner.server.settings import Settings
+from support.server import Controller, Loop, Server, listen
 from support.waiting import until
 
 from .bearers import key
 from .example_answers import example_answer, example_figures
-from .running import Controller, Loop, Server, listen
 from .test_acting import problem
 
 

@@ -17,9 +17,9 @@ from sequence_planner.model.files import read_files
 from sequence_planner.server.settings import Settings
 from support.network import free_port
 from support.places import BOLT_TIGHTENING
+from support.server import Controller, Loop, Server, listen
 from support.waiting import PATIENCE, until
 
-from .running import Controller, Loop, Server, listen
 from .test_acting import problem
 
 MODEL = "/api/v1/model"

@@ -20,8 +20,8 @@ from sequence_planner.controller.commands.execution import (
     TakeStep,
 )
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
+from support.server import Controller, Server
 
-from .running import Controller, Server
 from .test_acting import problem
 
 WHY = "the tool sticks"

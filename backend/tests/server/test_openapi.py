@@ -20,8 +20,7 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.server.openapi import document
 from sequence_planner.server.openapi_document import describe
 from support.places import REPOSITORY
-
-from .running import Server
+from support.server import Server
 
 COMMITTED = REPOSITORY / "frontend" / "openapi.json"
 

@@ -18,10 +18,10 @@ from sequence_planner.mes import orders
 from sequence_planner.mes.order import OrderState
 from sequence_planner.server.services import orders as order_dispatch
 from sequence_planner.server.settings import Settings
+from support.example_view import example_view
+from support.server import Loop, Server
 from support.waiting import until
 
-from .example_view import example_view
-from .running import Loop, Server
 from .test_job_orders import ORDERS, mes, store, tell
 from .test_looking import Telling
 

@@ -14,10 +14,10 @@ from sequence_planner.controller.views.station import JobStepState, JobStepView,
 from sequence_planner.execution.vocabulary import JobState, Mode
 from sequence_planner.mes.scheduling.problem import KnownTimes
 from sequence_planner.server.api import job_orders
+from support.server import Server
 from support.waiting import until
 
 from .example_answers import WORK_MASTERS
-from .running import Server
 from .test_job_orders import ORDERS, controller, mes, store, tell
 from .test_looking import Telling
 

@@ -22,10 +22,10 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.server.settings import Settings
+from support.certificates import certify
+from support.server import Controller, Loop, Server
 from support.waiting import patience, until
 
-from .certificates import certify
-from .running import Controller, Loop, Server
 from .test_acting import problem
 from .watching import FOREIGN, OWN, WATCHES, Device, active, station
 

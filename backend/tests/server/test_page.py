@@ -5,7 +5,8 @@ from __future__ import annotations
 import httpx
 import pytest
 
-from .running import Server
+from support.server import Server
+
 from .test_acting import problem
 
 

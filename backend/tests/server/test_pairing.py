@@ -12,9 +12,9 @@ from websockets.exceptions import InvalidStatus
 
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.server.http.credentials import watch_cookie
+from support.server import Controller, Server
 from support.waiting import until
 
-from .running import Controller, Server
 from .test_acting import problem
 from .test_people import records
 from .test_stream import hear

@@ -18,9 +18,9 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Record
+from support.server import Server, listen
 from support.waiting import patience
 
-from .running import Server, listen
 from .test_acting import problem
 
 PEOPLE = "/api/v1/users"

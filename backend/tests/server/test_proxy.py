@@ -14,9 +14,9 @@ from websockets.sync.client import connect
 from sequence_planner.auth.roles import Role
 from sequence_planner.server.http import middleware
 from sequence_planner.server.settings import Settings
-from support.waiting import patience, until
+from support.server import Controller, Loop, Server
+from support.waiting import patience
 
-from .running import Controller, Loop, Server
 from .test_acting import problem
 
 NAME = "station.example"
@@ -29,7 +29,7 @@ FORWARDED = {"Host": NAME, "X-Forwarded-Proto": "https", "X-Forwarded-For": CLIE
 def proxied(loop: Loop, controller: Controller, settings: Settings) -> Iterator[Server]:
     server = Server(loop, dataclasses.replace(settings, proxies=(PROXY, "2001:db8::1"), names=(NAME,)))
     server.start()
-    until(lambda: httpx.get(f"{server.address}/healthz").json()["controller"] == "heard")
+    server.hear_controller()
     yield server
     server.stop()
 

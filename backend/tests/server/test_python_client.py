@@ -18,9 +18,9 @@ import pytest
 from sequence_planner.auth.roles import Scope
 from sequence_planner.server.openapi import document
 from support.places import REPOSITORY
+from support.server import Server
 
 from .bearers import key
-from .running import Server
 from .test_docs_curl import snippet, typed
 from .test_job_orders import controller
 

@@ -6,9 +6,9 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
+from support.server import Controller, Server
 from support.waiting import until
 
-from .running import Controller, Server
 from .test_acting import problem
 
 PARTS = ["resources", "operations", "abilities", "plan", "tasks", "topics", "overrides", "alarms"]

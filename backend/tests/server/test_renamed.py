@@ -11,8 +11,8 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from sequence_planner.server.http.renamed import PAGES, ROUTES
+from support.server import Server
 
-from .running import Server
 from .watching import Device, active
 
 REPOSITORY = Path(__file__).parents[3]

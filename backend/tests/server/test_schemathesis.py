@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from core.budget import SHARE
 from sequence_planner.auth.roles import Role
+from support.examples import SHARE
+from support.server import Server
 
 from .fuzzing import documented, fuzz, station
-from .running import Server
 
 EDGES = ("coverage",)  # each edge of each schema once, and methods that are none
 UNREAD = {400, 405, 415}  # of requests that are refused before anybody asks who sends them

@@ -8,8 +8,7 @@ import httpx
 import pytest
 
 from sequence_planner.server.http.middleware import document_policy
-
-from .running import Server
+from support.server import Server
 
 HASH = "'sha256-pODQO96uX/EpWyr2+2ROQmWa44F+aFLu14EKEhc5T/0='"
 DOCUMENT = (

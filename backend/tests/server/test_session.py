@@ -16,8 +16,8 @@ from sequence_planner.auth.users import Person
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.journal.audit import read
 from sequence_planner.server.http.credentials import session_cookie
+from support.server import Server
 
-from .running import Server
 from .test_acting import problem
 
 PASSWORD, OTHER = "seven green bolts", "eight green bolts"

@@ -10,12 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.server.binding import bind, check_demonstration, check_endpoint, server_context
 from sequence_planner.server.settings import Endpoint, SettingsError, split_name
+from support.certificates import certify
+from support.examples import examples
 from support.network import free_port
-
-from .certificates import certify
 
 NAME = "station.example"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +18,10 @@ from sequence_planner.mes import events
 from sequence_planner.mes.events import EventKind
 from sequence_planner.retention.settings import Retention
 from sequence_planner.server.settings import Settings
-from support.network import free_port
 from support.places import CELL
+from support.server import Server, settings_in
 from support.waiting import until
 
-from .running import Server
 from .test_acting import problem
 from .test_backups import ada_at
 
@@ -37,16 +37,8 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def settings(tmp_path: Path, folder: Path) -> Settings:
-    (tmp_path / "page").mkdir()
     shutil.copytree(CELL, tmp_path / "cell")
-    return Settings(
-        controller_socket=tmp_path / "controller.sock",
-        page=tmp_path / "page",
-        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
-        port=free_port(),
-        model=tmp_path / "cell",
-        retention=Retention(folder=folder, order_days=8.0),
-    )
+    return replace(settings_in(tmp_path), model=tmp_path / "cell", retention=Retention(folder=folder, order_days=8.0))
 
 
 @pytest.fixture

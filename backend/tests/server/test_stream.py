@@ -14,10 +14,10 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
 from sequence_planner.execution.vocabulary import Mode
+from support.example_view import example_view
+from support.server import Controller, Server, listen
 from support.waiting import patience, until
 
-from .example_view import example_view
-from .running import Controller, Server, listen
 from .test_difference import apply
 
 Message = dict[str, Any]

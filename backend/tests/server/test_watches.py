@@ -12,9 +12,9 @@ from websockets.exceptions import InvalidStatus
 
 from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
 from sequence_planner.core.actor import ActorKind
+from support.server import Controller, Server
 from support.waiting import patience
 
-from .running import Controller, Server
 from .test_acting import problem
 from .test_people import closing_code
 from .test_stream import hear

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
@@ -17,11 +18,10 @@ from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES
 from sequence_planner.mes.webhooks.targets import Targets, network
 from sequence_planner.server.settings import Settings
-from support.network import free_port
+from support.server import Server, settings_in
 from support.waiting import until
 
 from .bearers import key
-from .running import Server
 from .test_acting import problem
 from .test_keys import bearing
 
@@ -38,14 +38,8 @@ def receiver() -> Iterator[Receiver]:
 def settings(tmp_path: Path, receiver: Receiver) -> Settings:
     receiver.received.clear()
     receiver.answers.clear()
-    (tmp_path / "page").mkdir()
-    return Settings(
-        controller_socket=tmp_path / "controller.sock",
-        page=tmp_path / "page",
-        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
-        port=free_port(),
-        webhooks=Targets(frozenset({("127.0.0.1", receiver.port), ("localhost", 9)}), True, (network("10.1.2.0/24"),)),
-    )
+    targets = Targets(frozenset({("127.0.0.1", receiver.port), ("localhost", 9)}), True, (network("10.1.2.0/24"),))
+    return replace(settings_in(tmp_path), webhooks=targets)
 
 
 @pytest.fixture

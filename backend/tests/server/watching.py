@@ -9,9 +9,9 @@ import httpx
 from websockets.sync.client import ClientConnection, connect
 
 from sequence_planner.controller.views.station import StationView
+from support.example_view import ability, example_view
+from support.server import Server
 
-from .example_view import ability, example_view
-from .running import Server
 from .test_acting import problem
 
 WATCHES = "/api/v1/wearables"

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.chain_runtime import first_message
 from sequence_planner.pipelines.runtime import RunningPipelines
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.messages import CannotSpeakError
 from sequence_planner.station import prepare_station
+from support.examples import examples
 from support.places import BOLT_TIGHTENING, CELL
 
 READY = prepare_station(CELL)

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis.strategies import SearchStrategy
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.chain_runtime import first_message
@@ -17,6 +16,7 @@ from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind, FaultReader, FaultyDevices
 from sequence_planner.station import ReadyStation, prepare_station
+from support.examples import examples
 from support.places import CELL, MODELS
 
 READY = prepare_station(CELL)

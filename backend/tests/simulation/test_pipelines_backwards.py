@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cli.commands import command
 from pipelines.station_writing import Heard, station_with, write_station
 from sequence_planner.simulation.devices import EmulatedDevices
 from sequence_planner.simulation.supported import emulation_findings
+from support.commands import command
 
 FIELDS = {"Scene": "string[] objects\nint32 code\n", "Arm": "float64 force\ngeometry_msgs/Pose pose\nstring state\n"}
 RESOURCE = """

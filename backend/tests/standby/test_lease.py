@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
 from sqlalchemy import delete, event, select
 
-from db.servers import Server
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.standby.lease import (
@@ -28,6 +27,7 @@ from sequence_planner.standby.lease import (
     LeaseLostError,
     open_lease,
 )
+from support.postgresql import Server
 
 MODEL, OTHER = "1" * 64, "2" * 64
 NAMES = ("press-a", "press-b", "press-c")

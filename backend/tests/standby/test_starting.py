@@ -11,17 +11,16 @@ from pathlib import Path
 
 import pytest
 
-from core.budget import SHARE
-from db.servers import Server
 from running.mortal import Mortal
 from running.pairs import standby
-from running.signing_in import signed_in
-from running.stations import process
 from running.test_deploying import TITLED, deployed
 from running.workshops import SINGLE_BOLT, EditedStation
 from sequence_planner.core.storage_error import DATABASE
 from sequence_planner.db.database import Database
+from support.examples import SHARE
 from support.network import free_port
+from support.postgresql import Server
+from support.station import process, signed_in
 from support.waiting import until
 
 LONG = 240.0  # seconds, on a machine that is busy with much else

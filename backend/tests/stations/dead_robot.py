@@ -14,10 +14,10 @@ from pathlib import Path
 
 import httpx
 
-from running.stations import RunningStation
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.disturbing import summed
 from stations.hall import Hall, controlled, hall
+from support.station import RunningStation
 from support.waiting import until
 
 SPEED = 3.0

@@ -20,10 +20,10 @@ from typing import Any
 
 import httpx
 
-from running.stations import RunningStation, environment
 from sequence_planner.simulation.truck_station.signals import COMPUTERS
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import RunningStation, environment
 from support.waiting import PATIENCE, until
 
 MODEL = Path("models") / "truck_engine_station"

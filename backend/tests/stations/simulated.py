@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from controller.rig import Rig, never
 from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.chain_runtime import first_message
@@ -18,6 +17,7 @@ from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE,
 from sequence_planner.simulation.truck_station.signals import read, set_signals
 from sequence_planner.simulation.truck_station.world import World
 from support.places import TRUCK_ENGINE_STATION
+from support.simulated import Rig, never
 
 SAYS = {f"{PREFIX}/{kind.says[0]}": name for name, kind in NODE_TYPES.items()}
 HEARS = {

@@ -8,7 +8,6 @@ from functools import partial
 import pytest
 
 from controller.carrying_out import carry_out
-from core.budget import SHARE
 from sequence_planner.automaton.automaton import target
 from sequence_planner.controller.commands.jobs import CommandJob, SetByOrder, TakeJob
 from sequence_planner.controller.features.jobs import JobHandler
@@ -17,6 +16,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from sequence_planner.station import prepare_station
 from stations.simulated import HallRig
+from support.examples import SHARE
 from support.places import TRUCK_ENGINE_STATION
 
 LONG = pytest.mark.skipif(SHARE < 1, reason="engines take long: `make campaign` makes them")

@@ -8,7 +8,6 @@ from functools import cache
 
 import pytest
 
-from core.budget import ONLY_TIMED, TIMED
 from sequence_planner.automaton.automaton import Kind, State
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
@@ -33,6 +32,7 @@ from sequence_planner.simulation.truck_station.nodes import NODE_TYPES, PACKAGE,
 from sequence_planner.simulation.truck_station.poses import PAIRS, POSES
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
+from support.examples import ONLY_TIMED, TIMED
 from support.places import TRUCK_ENGINE_STATION
 
 LONGEST_SYNTHESIS, LONGEST_PLAN = 10.0, 1.0  # seconds of CPU time, on a busy machine

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from sequence_planner.simulation.truck_station.poses import HOME, PAIRS, POSES
 from sequence_planner.simulation.truck_station.signals import NODES, read, set_signals
 from sequence_planner.simulation.truck_station.world import World
 from sequence_planner.simulation.truck_station.world_server import WorldServer
+from support.examples import examples
 
 STEP = 0.01
 FRAME_TOOL = ["PreAttachLFToolFarJOINTPose", "AttachLFToolTCPPose"]

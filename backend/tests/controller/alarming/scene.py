@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 from pydantic import JsonValue
 
-from controller.rig import Rig
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.alarms import (
     AcknowledgeAlarm,
@@ -27,6 +26,7 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.execution.executor import Executor
 from sequence_planner.ros.transports.memory import MemoryNetwork
 from sequence_planner.station import ReadyStation
+from support.simulated import Rig
 
 
 @dataclass

@@ -6,11 +6,11 @@ import asyncio
 
 import pytest
 
-from controller.bench import STATE, Arm, bench
 from sequence_planner.controller.commands.alarms import AcknowledgeAlarm
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.views.station import AlarmState
 from sequence_planner.core.actor import SYSTEM
+from support.cell import STATE, Arm, bench
 
 
 def test_an_alarm_comes_is_acknowledged_and_goes() -> None:

@@ -6,7 +6,6 @@ import dataclasses
 
 from controller.alarming.scene import acknowledge, alarms
 from controller.carrying_out import carry_out
-from controller.rig import Rig, never
 from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.tasks import ProblemKind
@@ -19,6 +18,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.state import LastErrand, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
+from support.simulated import Rig, never
 
 
 def outcome(

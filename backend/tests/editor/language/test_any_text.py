@@ -5,13 +5,13 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.editor.language.completion import MOST_OPTIONS, complete
 from sequence_planner.editor.language.field import TextField
 from sequence_planner.editor.language.hover import hover
 from sequence_planner.editor.language.schemas import CompletionView, HoverView, NameKind, OptionView, ProblemView
 from sequence_planner.editor.language.scope import Lexicon
 from sequence_planner.editor.language.service import check, completion_view, formatted, hover_view, problem_view
+from support.examples import examples
 
 from .drafts import draft, with_text
 

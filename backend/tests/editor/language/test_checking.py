@@ -6,7 +6,6 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.editor.language.service import TextProblem, check
 from sequence_planner.language.syntax import Span
@@ -15,6 +14,7 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.inference import variables_inferred
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.examples import examples
 
 from .drafts import ELSEWHERE, MODELS, STATIONS, Text, draft, with_text, words
 

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from language.trees import written, written_assignments, written_formulas
 from sequence_planner.editor.language.field import FieldKind, TextField
 from sequence_planner.editor.language.service import formatted
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.language.syntax import ExpressionError
+from support.examples import examples
 
 from .drafts import STATIONS, draft
 

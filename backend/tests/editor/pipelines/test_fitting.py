@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.budget import examples
 from sequence_planner.editor.draft import AddEntry, RemoveEntry, SetEntry
 from sequence_planner.editor.pipelines.examples import preview
 from sequence_planner.editor.pipelines.graph import DraftPipelines
@@ -22,6 +21,7 @@ from sequence_planner.model.files import write_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
 from sequence_planner.model.stages.registry import StageDocument
+from support.examples import examples
 
 from .drafts import MODELS, REACH, edited, files_of, graph_of, prepared, shipped
 

@@ -8,7 +8,6 @@ from itertools import combinations, product
 
 from hypothesis import assume, given
 
-from core.budget import examples
 from core.choices import Choices, made_by
 from core.exhaustive import can_reach
 from core.random_problems import problem
@@ -25,6 +24,7 @@ from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.planning.sat.search import SearchTimeoutError
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
+from support.examples import examples
 
 from .carrying_out import Stopped, carried_out
 

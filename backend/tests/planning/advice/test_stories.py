@@ -8,7 +8,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.building import predicate_of
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
@@ -31,6 +30,7 @@ from sequence_planner.process.budget import Budget
 from sequence_planner.process.worker import Worker, WorkerLoop
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import FewerSpecifications, synthesise
+from support.automata import predicate_of
 from support.places import BOLT_TIGHTENING
 
 from .carrying_out import Stopped, carried_out

@@ -12,9 +12,9 @@ from pathlib import Path
 from ruamel.yaml import YAML
 
 from running.back_to_work.floor import Floor, Hear, floor
-from running.stations import MODEL, RunningStation, process
 from support.network import free_port
 from support.places import REPOSITORY
+from support.station import MODEL, RunningStation, process
 from support.waiting import PATIENCE, until
 
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")

@@ -6,9 +6,9 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from running.stations import RunningStation
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.hall import Hall, controlled, hall
+from support.station import RunningStation
 
 SPEED = 4.0
 KEY = "operator.takes_over"

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from running.stations import foreign_node
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.ros.types.messages import MessageRegistry
@@ -20,6 +19,7 @@ from sequence_planner.simulation.manual_interface import (
     TEXT_TYPE,
     answer_start,
 )
+from support.station import foreign_node
 from support.waiting import PATIENCE, until
 
 Hear = Callable[[Mapping[str, object]], None]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from running.back_to_work.person import Person
-from running.stations import RunningStation
+from support.station import RunningStation
 from support.waiting import PATIENCE, until
 
 RESTART, CORRECTION, PHYSICAL, RESET = "restart", "correction", "physical", "reset"

@@ -45,7 +45,7 @@ export const account = {
 	},
 	demonstration: {
 		word: 'Demonstration:',
-		means: 'whoever opens this page may act. The devices are emulated; nothing real moves.'
+		means: 'anyone who opens this page may act. The devices are emulated; nothing real moves.'
 	},
 	control: {
 		label: 'Control',
@@ -126,7 +126,7 @@ export const account = {
 		working: 'Valid keys',
 		overTitle: 'Revoked and expired keys',
 		revoked: (name: string): string => `The key ${name} is revoked.`,
-		revokeMeans: 'Whoever uses it is refused from then on. It cannot be taken back; another key can be made.',
+		revokeMeans: 'Anyone who uses it is refused from then on. It cannot be taken back; another key can be made.',
 		may: 'May',
 		standing: 'Standing',
 		expires: 'Expires',

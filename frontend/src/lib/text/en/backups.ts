@@ -44,7 +44,7 @@ export const backups = {
 	never: 'never, as the station was started without --backup-every',
 	sameDisk: 'The folder is on the disk of the database: if that fails, both are lost. Keep copies on another machine.',
 	noDownload:
-		'A backup has password hashes and who did what, so it cannot be downloaded. Whoever may read the folder on the machine copies it from there, to a place as closed as the database.',
+		'A backup has password hashes and who did what, so it cannot be downloaded. Anyone who may read the folder on the machine copies it from there, to a place as closed as the database.',
 	list: 'Backups',
 	nothing: 'There are none.',
 	when: 'When',
@@ -76,5 +76,5 @@ export const backups = {
 	put: 'Put the backup in its place; it is verified before. A model that is another one than in the backup is refused: move its folder away then.',
 	putCommand: 'To restore the backup',
 	password: 'There is no password in the commands: give that of the database in PGPASSWORD or PGPASSFILE.',
-	start: 'Start the station as before. Everybody signs in anew. People, keys and watches that were locked out since then are no longer so: lock them out again.'
+	start: 'Start the station as before. Everybody signs in again. People, keys and watches that were locked out since then are no longer so: lock them out again.'
 };

@@ -177,7 +177,7 @@ export const deploy = {
 		change: {
 			new: 'new',
 			gone: 'gone',
-			anew: 'begins anew'
+			anew: 'begins again'
 		},
 		to: (before: string, after: string): string => `${before} → ${after}`,
 		begins: (value: string): string => `begins as ${value}`,
@@ -204,7 +204,7 @@ export const deploy = {
 		steps: {
 			sent: 'Sent',
 			accepted: 'Accepted: its files are in place',
-			anew: 'The controller begins anew',
+			anew: 'The controller begins again',
 			runs: 'The station runs it'
 		},
 		is: { done: 'done', now: 'now', later: 'to come' },

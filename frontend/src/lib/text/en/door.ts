@@ -54,7 +54,7 @@ export const door = {
 		make: 'Make the administrator',
 		nobody: 'Nobody can sign in yet: this station has no administrator.',
 		openLink: 'Open the link that the station showed on its terminal as it started. It works once and for 15 minutes; after that',
-		showsNew: 'with the station’s folder shows a new one. If you have loaded this page anew, open the link again.'
+		showsNew: 'with the station’s folder shows a new one. If you have loaded this page again, open the link again.'
 	},
 	refusal: {
 		notSent: 'Not sent',

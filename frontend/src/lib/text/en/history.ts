@@ -176,11 +176,11 @@ export const history = {
 	},
 	take: {
 		title: 'Take along',
-		about: 'Each record is a line of JSON with a hash over itself and the one before, so that whoever has the file can verify it.',
+		about: 'Each record is a line of JSON with a hash over itself and the one before, so that anyone who has the file can verify it.',
 		everything: 'Export everything',
 		shown: 'Export what the time line shows',
 		checkpoint: 'Checkpoint',
-		checkpointAbout: 'A signed statement of how far the journal has come. Kept where nobody of the station can write, it shows whether the journal was made anew since.',
+		checkpointAbout: 'A signed statement of how far the journal has come. Kept where nobody of the station can write, it shows whether the journal was made again since.',
 		show: 'Show the newest checkpoint',
 		signed: 'Newest checkpoint'
 	},

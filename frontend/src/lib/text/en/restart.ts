@@ -216,7 +216,7 @@ export const restart = {
 		title: 'None of these?',
 		about: 'A plan to what you ask for; it is shown, and taken, like the ways back above.',
 		reset: 'Reset an operation',
-		resetMeaning: 'The station is brought to where the operation begins, and it begins anew.',
+		resetMeaning: 'The station is brought to where the operation begins, and it begins again.',
 		operation: 'Operation',
 		active: 'active',
 		plan: 'Find a plan',

@@ -33,7 +33,7 @@ export const webhooks = {
 	noNetwork: 'none: private addresses are not sent to',
 	thisMachine: 'This machine',
 	loopback: 'where it is on the list, also without https',
-	allowedHint: 'Whoever runs the station sets this with --webhook-host and --webhook-network, or in its configuration file, and starts it again.',
+	allowedHint: 'Anyone who runs the station sets this with --webhook-host and --webhook-network, or in its configuration file, and starts it again.',
 	make: 'Make',
 	wasMade: (name: string): string => `The webhook ${name} was made. Keep its secret now: it is not shown again.`,
 	secret: 'Secret with which deliveries are signed',

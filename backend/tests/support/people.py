@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from argon2 import PasswordHasher
+
+from sequence_planner.auth.passwords import Passwords
 from sequence_planner.core.actor import Actor, ActorKind
 
 
@@ -11,3 +14,11 @@ def person(name: str, *, kind: ActorKind = ActorKind.PERSON, session: str | None
 
 
 EVA, ADAM = person("Eva"), person("Adam")
+
+
+CHEAP = PasswordHasher(time_cost=1, memory_cost=8, parallelism=1)
+
+
+def cheap_passwords() -> Passwords:
+    """As in the program, but for what a hash costs. Close it."""
+    return Passwords(CHEAP)

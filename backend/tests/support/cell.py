@@ -12,7 +12,6 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from functools import cache
 
-from controller.journalling import journal
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.controller import Controller
@@ -25,6 +24,7 @@ from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.transports.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
+from support.databases import journal
 from support.places import CELL
 from support.waiting import until_async
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from db.servers import WHAT_TO_DO, Server, binaries, running_server
 from sequence_planner.db.database import Database
+from support.postgresql import WHAT_TO_DO, Server, binaries, running_server
 
 
 @pytest.fixture(scope="session")
@@ -37,3 +39,15 @@ def database(database_url: str) -> Iterator[Database]:
     opened.upgrade()
     yield opened
     opened.close()
+
+
+@contextmanager
+def journal() -> Iterator[Database]:
+    """A database of its own, with all its tables."""
+    with tempfile.TemporaryDirectory() as folder:
+        database = Database.open(f"sqlite:///{Path(folder) / 'station.sqlite'}")
+        database.upgrade()
+        try:
+            yield database
+        finally:
+            database.close()

@@ -8,7 +8,7 @@ import secrets
 import socket
 import threading
 import time
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -17,7 +17,6 @@ import uvicorn
 from fastapi import FastAPI
 from websockets.sync.client import ClientConnection, connect
 
-from auth.cheap import cheap_passwords
 from sequence_planner.auth import users
 from sequence_planner.auth.login import SignIn
 from sequence_planner.auth.roles import Role
@@ -33,6 +32,8 @@ from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.server import uvicorn_config
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import Settings
+from support.network import free_port
+from support.people import cheap_passwords
 from support.waiting import PATIENCE, until
 
 from .example_view import example_view
@@ -142,6 +143,10 @@ class Server:
         until(lambda: self._uvicorn.started)
         self._hash_cheaply()
 
+    def hear_controller(self) -> None:
+        """Wait until it hears its controller."""
+        until(lambda: httpx.get(f"{self.address}/healthz").json()["controller"] == "heard")
+
     def _hash_cheaply(self) -> None:
         office = self.identity
         office.passwords.close()
@@ -186,6 +191,30 @@ class Server:
                     await self._task
 
         self.loop.run(end())
+
+
+def settings_in(folder: Path) -> Settings:
+    """Of a server whose database, page and controller's socket are in `folder`, on a free port."""
+    (page := folder / "page").mkdir(exist_ok=True)
+    return Settings(
+        controller_socket=folder / "controller.sock",
+        page=page,
+        database=f"sqlite:///{folder / 'station.sqlite'}",
+        port=free_port(),
+    )
+
+
+@contextlib.contextmanager
+def serving(settings: Settings) -> Iterator[Server]:
+    """A server that runs, with no controller."""
+    loop = Loop()
+    server = Server(loop, settings)
+    server.start()
+    try:
+        yield server
+    finally:
+        server.stop()
+        loop.close()
 
 
 def listen(
