@@ -20,8 +20,11 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest, correction_text, member_text
 from sequence_planner.planning.portfolio.engines import LANES
-from sequence_planner.planning.portfolio.worker import Answer
+from sequence_planner.planning.portfolio.worker import Answer, Request, planner_process
 from sequence_planner.planning.problem import Circumstances, PlanAnswer, PlanRequest, Verdict, goals_of
+from sequence_planner.process.task import WorkerError
+from sequence_planner.process.worker import Worker
+from support.cell import cell
 from support.places import CELL
 from support.waiting import until_async
 
