@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from sequence_planner.editor.symbols.texts import entry, items, named_in, pairs, text_at
+from sequence_planner.editor.symbols.texts import entry, items, marked_in, named_in, pairs, text_at
 from sequence_planner.language.records.field_paths import NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType
 from sequence_planner.language.types import BooleanType, IntegerRange
@@ -105,7 +105,7 @@ def _mapped(pipeline: Pipeline) -> Iterator[tuple[str, FieldType | None]]:
         if moved := pairs(entry(stage, RenameDocument.kind)):
             renamed += [(str(field), str(name)) for field, name in moved]
         else:
-            used |= named_in([stage], pipeline.incoming, NameUse.CONSUMED, NameUse.COMBINED, NameUse.GIVEN)
+            used |= named_in(marked_in([stage]), pipeline.incoming, NameUse.CONSUMED, NameUse.COMBINED, NameUse.GIVEN)
     used |= {field for field, _ in renamed}
     for field, variable in renamed:
         if pipeline.fields is None:

@@ -25,11 +25,13 @@ from sequence_planner.editor.symbols.index import (
 )
 from sequence_planner.editor.symbols.stages import Stages, kinds_of
 from sequence_planner.editor.symbols.texts import (
+    MarkedStages,
     ModelContent,
     entry,
     file_of,
     given_by,
     items,
+    marked_in,
     message_of,
     named_in,
     pairs,
@@ -48,15 +50,15 @@ from sequence_planner.ros.types.messages import MessageRegistry
 # Variables that a message names: an incoming field writes the variable of its name, an outgoing one reads it.
 
 
-def bind(stages: Stages, pipeline: Pipeline, file: str) -> None:
+def bind(stages: Stages, pipeline: Pipeline, marked: MarkedStages, file: str) -> None:
     """Note the variables that are bound to fields of a message by their names, at the end of a pipeline."""
     names = stages.names
     declared = names.naming.declared
     is_unknown = pipeline.fields is None
-    read = named_in(pipeline.stages, pipeline.incoming, NameUse.CONSUMED, NameUse.RENAMED) if is_unknown else set()
+    read = named_in(marked, pipeline.incoming, NameUse.CONSUMED, NameUse.RENAMED) if is_unknown else set()
     made: Collection[str] = set(names.fields)
     if pipeline.incoming:
-        made = names.given | named_in(pipeline.stages, True, NameUse.RENAMED)
+        made = names.given | named_in(marked, True, NameUse.RENAMED)
     for section in ("measured",) if pipeline.incoming else ("measured", "output", "estimated"):
         for name, variable in declared.own(names.resource, section):
             part = variable_of(names.resource, name)
@@ -111,8 +113,9 @@ def _is_made_elsewhere(name: str, stages: Stages, pipeline: Pipeline) -> bool:
         stages_there = entry(topic, "pipeline")
         if stages_there is pipeline.stages or (entry(topic, "direction") == "in") is not pipeline.incoming:
             continue
-        used = () if pipeline.incoming else named_in(stages_there, False, NameUse.CONSUMED, NameUse.RENAMED)
-        if name in given_by(stages_there) or name in used:
+        marked = marked_in(stages_there)
+        used = () if pipeline.incoming else named_in(marked, False, NameUse.CONSUMED, NameUse.RENAMED)
+        if name in given_by(marked) or name in used:
             return True
     return False
 
@@ -285,12 +288,13 @@ class PipelineCollector:
     def _read_resource(self, resource: str, file: str, found: object) -> None:
         for pipeline in pipelines(found, self._naming.declared.messages):
             where = Where(file, pipeline.path, f"{pipeline.kind} {pipeline.path[1]}", 2)
-            given = given_by(pipeline.stages)
-            kinds = kinds_of(pipeline.stages, self._naming.declared, resource)
+            marked = marked_in(pipeline.stages)
+            given = given_by(marked)
+            kinds = kinds_of(marked, self._naming.declared, resource)
             names = Names(self._naming, resource, pipeline.incoming, {}, given, kinds)
             stages = Stages(names, f"the {pipeline.kind} {pipeline.called}")
-            stages.read(pipeline.stages, where)
-            bind(stages, pipeline, file)
+            stages.read(marked, where)
+            bind(stages, pipeline, marked, file)
             self._ends[pipeline.called] = names.fields
             examples = entry(found, *pipeline.path[:2], "examples")
             above = Where(file, (*pipeline.path[:2], "examples"), where.owner, 2)
@@ -321,10 +325,10 @@ class PipelineCollector:
                 fields |= self._source(resource, written, at)
         self._pass_through(resource, fields, where)
         before = dict(fields)
-        pipeline = entry(flow, "pipeline")
-        kinds = kinds_of(pipeline, self._naming.declared, resource)
-        names = Names(self._naming, resource, True, fields, given_by(pipeline), kinds)
-        Stages(names, where.owner).read(pipeline, where.to("pipeline"))
+        marked = marked_in(entry(flow, "pipeline"))
+        kinds = kinds_of(marked, self._naming.declared, resource)
+        names = Names(self._naming, resource, True, fields, given_by(marked), kinds)
+        Stages(names, where.owner).read(marked, where.to("pipeline"))
         self._ends[name] = names.fields
         read_examples(names, before, entry(flow, "examples"), where.to("examples"))
         return names.fields

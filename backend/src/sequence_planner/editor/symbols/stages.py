@@ -7,17 +7,17 @@ from typing import NamedTuple, TypeVar
 
 from sequence_planner.editor.symbols.collectors import Names, read_calculation
 from sequence_planner.editor.symbols.index import Declared, Where
-from sequence_planner.editor.symbols.texts import marked_in
+from sequence_planner.editor.symbols.texts import MarkedStages
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.marks import EntryPath, FormulaMark, Marked, NameMark, NameUse, ValueMark
 
 T = TypeVar("T")
 
 
-def kinds_of(stages: object, declared: Declared, resource: str) -> dict[str, str]:
+def kinds_of(stages: MarkedStages, declared: Declared, resource: str) -> dict[str, str]:
     """The enumerations of names that are no variables, by the variables that they become in later stages."""
     found: dict[str, str] = {}
-    for _, _, marked in reversed(list(marked_in(stages))):
+    for _, _, marked in reversed(stages):
         for name, source in _become(marked):
             kind = declared.enumeration(resource, str(name)) or found.get(str(name))
             if kind is not None:
@@ -62,9 +62,9 @@ class Stages:
         self.names = names
         self._called = called
 
-    def read(self, stages: object, where: Where) -> None:
+    def read(self, stages: MarkedStages, where: Where) -> None:
         """All stages of a pipeline."""
-        for index, kind, marked in marked_in(stages):
+        for index, kind, marked in stages:
             self._read_stage(marked, where.to(index, kind))
 
     def _read_stage(self, marked: list[Marked], where: Where) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from sequence_planner.model.source import Finding, ModelError, SourceText
@@ -124,24 +124,29 @@ def texts(content: object, path: EntryPath) -> Iterator[tuple[EntryPath, SourceT
 # The stages of a pipeline, and what their declarations say of each name and value in them.
 
 
-def marked_in(stages: object) -> Iterator[tuple[int, str, list[Marked]]]:
+MarkedStages = Sequence[tuple[int, str, list[Marked]]]
+
+
+def marked_in(stages: object) -> MarkedStages:
     """Stages as written, each with its index, its kind, and what is marked in it. What is no stage is left out."""
-    for index, stage in enumerate(items(stages)):
-        for kind, content in pairs(stage):
-            if (declaration := KINDS.get(kind)) is not None:
-                yield index, str(kind), declaration.marked(content)
+    return [
+        (index, str(kind), KINDS[kind].marked(content))
+        for index, stage in enumerate(items(stages))
+        for kind, content in pairs(stage)
+        if kind in KINDS
+    ]
 
 
-def named_in(stages: object, is_incoming: bool, *uses: NameUse) -> set[str]:
+def named_in(stages: MarkedStages, is_incoming: bool, *uses: NameUse) -> set[str]:
     """The names of which stages make one of these uses."""
     return {
         str(text)
-        for _, _, marked in marked_in(stages)
+        for _, _, marked in stages
         for text, _, mark in marked
         if isinstance(mark, NameMark) and mark.use(is_incoming) in uses
     }
 
 
-def given_by(stages: object) -> frozenset[str]:
+def given_by(stages: MarkedStages) -> frozenset[str]:
     """All names that stages give to what they make, in an incoming pipeline."""
     return frozenset(name.partition("[")[0] for name in named_in(stages, True, NameUse.GIVEN))
