@@ -6,10 +6,14 @@ They know the form of the documents; what names and conditions mean, `sequence-p
 
 from __future__ import annotations
 
+import ast
+import inspect
 import json
 import re
 import sys
-from collections.abc import Mapping
+import textwrap
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +29,7 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.efa_document import PlainDocument
+from sequence_planner.model.stages.base import StageDeclaration
 from sequence_planner.model.stages.registry import StageDocument
 
 # The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
@@ -67,6 +72,9 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", schema["cls"].__name__.removesuffix("Document"))
         made["title"] = words.capitalize()
+        if issubclass(schema["cls"], StageDeclaration):
+            for name, text in _written_beneath(schema["cls"]):
+                made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
         if schema["cls"] is StageDocument:
             made |= {"minProperties": 1, "maxProperties": 1}
         if schema["cls"] is SpecificationDocument:
@@ -74,6 +82,16 @@ class _Generator(GenerateJsonSchema):
             made["oneOf"] = [{"required": [key]} for key in kinds]
             made["dependentRequired"] = {"never": ["while"], "while": ["never"]}
         return made
+
+
+def _written_beneath(part: type) -> Iterator[tuple[str, str]]:
+    """The fields of a class, each with the text beneath it."""
+    (definition,) = ast.parse(textwrap.dedent(inspect.getsource(part))).body
+    assert isinstance(definition, ast.ClassDef)
+    for above, below in pairwise(definition.body):
+        match above, below:
+            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                yield name, inspect.cleandoc(text)
 
 
 def schema_of(name: str) -> dict[str, Any]:
