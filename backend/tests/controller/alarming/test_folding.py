@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from controller.alarming.causes import cause
 from core.budget import examples
 from sequence_planner.controller.alarms.alarm import urgency
-from sequence_planner.controller.alarms.kinds import Priority
-from sequence_planner.controller.alarms.manager import LINGERS, Folding
 from sequence_planner.controller.alarms.message import as_it_was
+from sequence_planner.controller.alarms.registry import LINGERS, Folding
+from sequence_planner.controller.views.station import Priority
 
 KEYS = ("a", "b", "c", "d", "e")
 LINKS = st.fixed_dictionaries({key: st.lists(st.sampled_from(KEYS), max_size=2, unique=True) for key in KEYS})
