@@ -55,6 +55,7 @@ test('a variable and an ability with guard and action are added; what is wrong i
 	await expect(form(page).getByRole('heading').first()).toContainText('is_checked');
 
 	await add(page, 'Ability: Abilities of robot', 'check_pose');
+	await expect(expression(page, 'Enabled')).toHaveText('false'); // what is new has come into the field
 	await expression(page, 'Enabled').fill('pose == home and not is_chekced');
 	await expect(field(page, 'enabled')).toContainText('did you mean `is_checked`?');
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error')).toHaveText('is_chekced');
