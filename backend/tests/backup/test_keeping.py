@@ -54,7 +54,7 @@ def test_the_oldest_of_its_own_go_for_one_that_is_whole_and_others_stay(shelf: S
     assert steps == [Step.COPYING, Step.WRITING, Step.CHECKING]
     listed = {file.name, own[2].name, "broken.tar", *(each.name for each in others)}
     assert {each.name for each in shelf.folder.iterdir()} == {*listed, "letter.txt"}
-    backups = shelf.state().backups
+    backups = shelf.folder_state().backups
     assert {each.file for each in backups} == listed
     assert [each.manifest and each.manifest.maker for each in backups] == [MAKER, *[None] * 4]
     assert shelf.new(time.time()) != file
@@ -67,7 +67,7 @@ def test_a_backup_that_a_slow_clock_has_made_is_not_the_one_to_go(
     for when in (2e9, 2e9 + 1, 1e9):
         monkeypatch.setattr(time, "time", lambda when=when: when)
         files.append(make(shelf)[0])
-    assert [each.file for each in shelf.state().backups] == [files[1].name, files[2].name]
+    assert [each.file for each in shelf.folder_state().backups] == [files[1].name, files[2].name]
     every_day = Keeping(every=24)
     assert every_day.is_due([2e9, 1e9 - 86401], 1e9)
     assert not every_day.is_due([2e9, 1e9 - 86399], 1e9)
@@ -91,7 +91,7 @@ def test_a_folder_that_somebody_named_is_not_made_and_the_usual_one_is(shelf: Sh
         make(shelf)
     assert wrong.value.trouble is Trouble.NO_FOLDER
     usual = Shelf(shelf.url, shelf.model, Keeping())
-    assert usual.state().trouble is None
+    assert usual.folder_state().trouble is None
     file, _, _ = make(usual)
     assert file.parent == tmp_path / "state" / "station.backups"
     assert file.parent.stat().st_mode & 0o777 == 0o700

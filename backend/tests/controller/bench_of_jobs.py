@@ -25,7 +25,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.recorder import RunRecorder, model_digest
-from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.language.parser import parse_assignment
 from sequence_planner.language.resolver import NameScope, resolve_assignment
@@ -148,8 +148,10 @@ class Bench:
     def reset(self, operation: str) -> None:
         """A reset that has nothing to do: it is done in the next tick."""
         plan = Plan((PlanTick((), ()), PlanTick((), ())), False, False)
-        errand = OperatorPlan(ErrandKind.RESET, "reset", plan, TRUE, operation=operation, by="Eva", taken=self.now)
-        self.execution.take_errand(errand, self.now)
+        errand = OperatorPlan(
+            OperatorPlanKind.RESET, "reset", plan, TRUE, operation=operation, by="Eva", taken=self.now
+        )
+        self.execution.start_operator_plan(errand, self.now)
 
     def tick(self, **measured: Value | None) -> None:
         self.measured |= measured

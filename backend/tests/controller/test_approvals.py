@@ -35,7 +35,7 @@ from sequence_planner.controller.commands.recovery import (
     ConfirmEstimates,
     CorrectEstimates,
     DecideOutputs,
-    TakeErrand,
+    ExecuteOperatorPlan,
     UndoCorrection,
 )
 from sequence_planner.controller.controller import Controller
@@ -192,7 +192,7 @@ def direct(cell: Cell, actor: Actor) -> tuple[Command, ...]:
         CorrectEstimates(actor=actor, reason=WHY, values={OTHER: "full", PART: "full"}, revision=cell.revision),
         DecideOutputs(actor=actor, reason=WHY, values=values),
         ForceVariable(actor=actor, reason=WHY, name=MOVING, value=True, seconds=60),
-        TakeErrand(actor=actor, reason=WHY, offer="1", starts=[], corrections=values),
+        ExecuteOperatorPlan(actor=actor, reason=WHY, offer="1", starts=[], corrections=values),
     )
 
 

@@ -12,7 +12,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import CalledOff, Heard, ModeChanged
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import ErrandKind, InitialState, OperatorPlan
+from sequence_planner.execution.state import InitialState, OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.planner import Planner
@@ -95,7 +95,7 @@ class Station:
     def errand(self, goal: str, *, restart: bool = False, unsupervised: bool = False, **more: object) -> OperatorPlan:
         """A plan to `goal` from here, as a person would be shown it."""
         target = predicate_of(self.execution.automaton, goal)
-        errand = OperatorPlan(ErrandKind.GOAL, goal, Plan((), False, False), target, restart=restart, **more)  # type: ignore[arg-type]
+        errand = OperatorPlan(OperatorPlanKind.GOAL, goal, Plan((), False, False), target, restart=restart, **more)  # type: ignore[arg-type]
         circumstances = replace(self.execution.circumstances, restart=restart)
         request = PlanRequest(
             dict(self.execution.state), (errand.pursued,), 20, contract=Contract.MINIMAL, circumstances=circumstances
@@ -106,7 +106,7 @@ class Station:
         return replace(errand, plan=plan, unsupervised=unsupervised, by="Eva")
 
     def take(self, goal: str, **more: bool) -> None:
-        self.execution.take_errand(self.errand(goal, **more), self.now)
+        self.execution.start_operator_plan(self.errand(goal, **more), self.now)
 
 
 @pytest.fixture
@@ -149,8 +149,8 @@ def test_an_errand_is_carried_out_as_it_is_and_ends_with_its_goal(station: Stati
     assert station.tick() == ("detour",)
     assert execution.plan.status is PlanStatus.FOLLOWED
     assert station.tick(at="aside") == ()
-    assert execution.errand is None
-    last = execution.conduct.last_errand
+    assert execution.operator_plan is None
+    last = execution.conduct.last_operator_plan
     assert last is not None
     assert (last.done, last.title) == (True, "at == aside")
     assert execution.mode is Mode.RESTART, "to leave it is another act"
@@ -166,8 +166,8 @@ def test_an_errand_ends_when_the_station_departs_from_it_and_is_never_made_anew(
     station.take("at == aside")
     execution.set_service(ServiceKind.ABILITY, "detour", False, "Adam", "the way aside is blocked", station.now)
     assert station.tick() == ()
-    assert execution.errand is None
-    last = execution.conduct.last_errand
+    assert execution.operator_plan is None
+    last = execution.conduct.last_operator_plan
     assert last is not None
     assert not last.done
     assert last.by is None, "the station itself"
@@ -178,7 +178,7 @@ def test_an_errand_waits_while_a_device_is_silent_and_goes_on(station: Station) 
     station.execution.change_mode(Mode.RESTART, "Eva", station.now)
     station.take("at == aside")
     assert station.tick(at=None) == ()
-    assert station.execution.errand is not None
+    assert station.execution.operator_plan is not None
     assert station.tick(at="home") == ("detour",)
 
 
@@ -202,7 +202,7 @@ def test_a_goal_by_hand_is_carried_out_in_paused_mode_and_ended_by_going_on(stat
     station.take("at == aside")
     assert station.tick() == ("detour",)
     execution.change_mode(Mode.AUTOMATIC, "Eva", station.now)
-    assert execution.errand is None
+    assert execution.operator_plan is None
 
 
 def test_from_outside_the_safe_states_only_what_a_person_has_confirmed_is_started() -> None:
@@ -221,7 +221,7 @@ def test_from_outside_the_safe_states_only_what_a_person_has_confirmed_is_starte
     station.execution.state = {**station.execution.state, "target": "aside"}
     station.tick()
     assert not station.execution.safe
-    station.execution.take_errand(
+    station.execution.start_operator_plan(
         replace(station.errand("at == home", unsupervised=True), unsupervised=False), station.now
     )
     assert station.tick() == ()
@@ -265,9 +265,9 @@ def test_from_the_first_safe_state_on_the_supervisor_has_its_say_again(
     plan = Planner(PRESS, SAFE).answer(PlanRequest(dict(execution.state), (Goal("errand", goal),), 20)).plan
     assert plan is not None
     errand = OperatorPlan(
-        ErrandKind.WAY_BACK, "free it", plan, goal, restart=True, unsupervised=True, by="Eva", taken=now
+        OperatorPlanKind.WAY_BACK, "free it", plan, goal, restart=True, unsupervised=True, by="Eva", taken=now
     )
-    execution.take_errand(errand, now)
+    execution.start_operator_plan(errand, now)
     assert execution.tick(measured, now).started == ("free",)
     assert not execution.safe
     assert execution.tick({**measured, "stuck": False}, now).started == ()
@@ -342,7 +342,7 @@ def test_an_operation_that_does_not_repeat_waits_to_be_reset() -> None:
     assert execution.active == frozenset()
     assert execution.conduct.done == {"make"}
     execution.change_mode(Mode.RESTART, "Eva", station.now)
-    execution.take_errand(replace(station.errand("true"), operation="make"), station.now)
+    execution.start_operator_plan(replace(station.errand("true"), operation="make"), station.now)
     station.tick()
     station.tick()
     assert execution.active == {"make"}

@@ -13,7 +13,7 @@ from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, UndoCorrection
 from sequence_planner.controller.views.details import CorrectionPreview
 from sequence_planner.core.immutable import replace
-from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Plan, PlanRequest
@@ -235,7 +235,9 @@ def test_corrections_are_for_restart_mode_once_production_is_started(mode: Mode)
 
 def test_nothing_is_corrected_under_an_errand() -> None:
     station = in_restart(Station())
-    station.execution.take_errand(OperatorPlan(ErrandKind.GOAL, "go home", Plan((), True, True)), station.now)
+    station.execution.start_operator_plan(
+        OperatorPlan(OperatorPlanKind.GOAL, "go home", Plan((), True, True)), station.now
+    )
     assert refusal(lambda: station.correct({BOLT: "placed"})) == "plan-running"
 
 

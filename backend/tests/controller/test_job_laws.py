@@ -112,7 +112,7 @@ class Orders(RuleBasedStateMachine):
     def change_mode(self, mode: Mode) -> None:
         self.on.execution.change_mode(mode, "Eva", self.on.now)
 
-    @precondition(lambda self: self.on.execution.errand is None and self.completed)
+    @precondition(lambda self: self.on.execution.operator_plan is None and self.completed)
     @rule(number=NUMBERS)
     def reset_operation(self, number: int) -> None:
         self.resetting = picked(sorted(self.completed), number)[1]
@@ -135,7 +135,7 @@ class Orders(RuleBasedStateMachine):
         self._follow()
 
     def _follow(self) -> None:
-        jobs, errand = self.jobs, self.on.execution.errand
+        jobs, errand = self.jobs, self.on.execution.operator_plan
         reset, self.resetting = (self.resetting, None) if errand is None else (None, self.resetting)
         for job in jobs.taken:
             before = self._before.get(job.id)

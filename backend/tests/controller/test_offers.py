@@ -11,7 +11,7 @@ import pytest
 
 from sequence_planner.automaton.automaton import Operation
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue
-from sequence_planner.controller.commands.recovery import TakeErrand
+from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery import proposals
 from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
@@ -99,7 +99,7 @@ class Desk:
         """Take it as it was shown, or with other things confirmed."""
         shown = [] if offer.errand is None else [step.ability for step in offer.errand.steps]
         changes = {change.name: change.then for change in offer.corrections}
-        command = TakeErrand(
+        command = ExecuteOperatorPlan(
             actor=EVA,
             reason="to try it",
             offer=offer.id,
@@ -154,17 +154,17 @@ def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> 
             refused("not-confirmed", lambda: there.take(offer, starts=[]))
             refused("not-confirmed", lambda: there.take(offer, corrections={"jammed": False}))
             refused("proposal-gone", lambda: there.take(offer.model_copy(update={"id": "another-1"})))
-            assert there.execution.errand is None
+            assert there.execution.operator_plan is None
             there.take(offer)
-            assert there.execution.errand is not None
-            assert (there.execution.errand.by, there.execution.errand.why) == ("Eva", "to try it")
+            assert there.execution.operator_plan is not None
+            assert (there.execution.operator_plan.by, there.execution.operator_plan.why) == ("Eva", "to try it")
             assert there.tick() == ("go",)
             await refused_later("plan-running", there.offers.goal("loaded"))
             await refused_later("plan-running", there.offers.advice())
             assert there.tick(at="work") == ()
-            assert there.execution.errand is None
-            assert there.execution.conduct.last_errand is not None
-            assert there.execution.conduct.last_errand.done
+            assert there.execution.operator_plan is None
+            assert there.execution.conduct.last_operator_plan is not None
+            assert there.execution.conduct.last_operator_plan.done
             assert there.execution.mode is Mode.PAUSED
 
     asyncio.run(scenario())
@@ -202,7 +202,7 @@ def test_an_operation_is_reset_to_where_it_begins() -> None:
             assert there.tick() == ("back",)
             assert there.tick(at="home") == ("load",)
             there.tick()
-            assert there.execution.errand is None
+            assert there.execution.operator_plan is None
             there.tick()
             assert "deliver" in there.execution.active
 
@@ -312,7 +312,7 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             there.take(next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps))
             assert there.tick() == ("rescue",)
             there.tick()
-            assert there.execution.errand is None
+            assert there.execution.operator_plan is None
             assert there.execution.mode is Mode.RESTART, "to leave it is another act"
             replan = (await there.offers.advice()).offers[0]
             assert replan.kind == "replan"

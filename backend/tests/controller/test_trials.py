@@ -15,7 +15,7 @@ from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.trials import Trials
-from sequence_planner.controller.views.builder import errand_view, last_errand_view
+from sequence_planner.controller.views.builder import last_operator_plan_view, operator_plan_view
 from sequence_planner.controller.views.details import AbilityDefinitionView, TrialView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -23,7 +23,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.codec import Codec
 from sequence_planner.execution.record.recorder import Memory, RunRecorder, model_digest
 from sequence_planner.execution.record.replay import Player
-from sequence_planner.execution.state import ErrandKind
+from sequence_planner.execution.state import OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
@@ -142,17 +142,17 @@ def press() -> Press:
 def test_it_runs_once_and_is_done_when_it_has_finished(press: Press) -> None:
     press.attempt()
     execution = press.execution
-    assert execution.errand is not None
-    assert (execution.errand.kind, execution.errand.by) == (ErrandKind.TRIAL, "Eva")
-    shown = errand_view(execution)
+    assert execution.operator_plan is not None
+    assert (execution.operator_plan.kind, execution.operator_plan.by) == (OperatorPlanKind.TRIAL, "Eva")
+    shown = operator_plan_view(execution)
     assert shown is not None
     assert (shown.ability, shown.title, shown.ends) == ("press", "Try: press", "ram == down and at == down")
     assert press.tick() == ("press",)
     assert press.tick("between") == ()
-    assert execution.errand is not None
+    assert execution.operator_plan is not None
     assert press.tick("down") == ()
-    assert execution.errand is None
-    ended = last_errand_view(execution.conduct)
+    assert execution.operator_plan is None
+    ended = last_operator_plan_view(execution.conduct)
     assert ended is not None
     assert (ended.done, ended.why, ended.ability) == (True, "", "press")
     assert execution.mode is Mode.PAUSED
@@ -162,7 +162,7 @@ def test_it_runs_once_and_is_done_when_it_has_finished(press: Press) -> None:
 def test_an_ability_that_is_done_at_its_start_ends_with_it(press: Press) -> None:
     press.attempt("open")
     assert press.tick() == ("open",)
-    assert press.execution.errand is None
+    assert press.execution.operator_plan is None
     assert press.definition("open").trial is not None
 
 
@@ -229,14 +229,14 @@ def test_real_devices_have_to_be_confirmed(press: Press) -> None:
 def test_what_cannot_start_at_once_does_not_start_later(press: Press) -> None:
     press.attempt()
     assert press.tick("down") == ()
-    assert press.execution.errand is None
-    ended = press.execution.conduct.last_errand
+    assert press.execution.operator_plan is None
+    ended = press.execution.conduct.last_operator_plan
     assert ended is not None
     assert (ended.done, ended.why, ended.by) == (False, "press could not start any more", None)
     assert press.tick("up") == ()
     press.attempt()
     assert press.tick(obstacles=("the network",)) == ()
-    assert press.execution.errand is None
+    assert press.execution.operator_plan is None
 
 
 def test_an_overdue_run_is_called_off(press: Press) -> None:
@@ -244,7 +244,7 @@ def test_an_overdue_run_is_called_off(press: Press) -> None:
     press.tick()
     press.tick("between")
     press.tick(seconds=4)
-    assert press.execution.errand is not None
+    assert press.execution.operator_plan is not None
     press.seconds += 2
     assert press.execution.is_due(press.now)
     press.tick()
@@ -258,9 +258,9 @@ def test_an_overdue_run_is_called_off(press: Press) -> None:
 def test_stopping_it_calls_it_off_where_it_says_how(press: Press) -> None:
     press.attempt()
     press.tick()
-    press.execution.stop_errand("Adam", press.now)
+    press.execution.stop_operator_plan("Adam", press.now)
     assert press.execution.state["ram"] == "up"
-    assert press.execution.errand is None
+    assert press.execution.operator_plan is None
     assert press.trial().why == "Adam stopped it"
     assert press.tick() == ()
     assert press.execution.published["ram"] == "up"
@@ -270,7 +270,7 @@ def test_without_cancel_actions_it_goes_on_to_its_end() -> None:
     press = paused(Press(cancel=()))
     press.attempt()
     press.tick()
-    press.execution.stop_errand("Adam", press.now)
+    press.execution.stop_operator_plan("Adam", press.now)
     assert press.execution.state["ram"] == "down"
     assert [step.ability for step in press.execution.plan.order.running] == ["press"]
     press.tick("between")
@@ -328,7 +328,7 @@ def test_a_definition_says_what_of_it_holds(press: Press) -> None:
 def test_trials_are_replayed_bit_for_bit(press: Press) -> None:
     press.attempt()
     press.tick()
-    press.execution.stop_errand("Adam", press.now)
+    press.execution.stop_operator_plan("Adam", press.now)
     press.tick("between")
     press.tick("up")
     press.attempt()

@@ -15,7 +15,7 @@ from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.language.syntax import TRUE
 from sequence_planner.planning.problem import ORDINARY, Plan, PlanTick, goals_of
 from sequence_planner.planning.recovery.proposals import OfferKind
@@ -49,7 +49,7 @@ def standing() -> Taken:
 
 
 def take(taken: Taken, errand: OperatorPlan) -> None:
-    taken.execution.take_errand(errand, Timestamp(taken.seconds, taken.seconds))
+    taken.execution.start_operator_plan(errand, Timestamp(taken.seconds, taken.seconds))
 
 
 def alarms_of(execution: Executor) -> PlanAlarms:
@@ -80,15 +80,15 @@ def test_a_way_back_starts_although_a_person_has_an_open_task(meanwhile: tuple[s
     plan = Plan((PlanTick((), (TO_ABOVE,)), PlanTick((LEAVES,), ())), False, False)
     ends = "not operator.acknowledged and robot.pose == unknown and robot.target_pose == above_engine"
     goal = predicate_of(tried.automaton, ends)
-    take(taken, OperatorPlan(ErrandKind.WAY_BACK, "up", plan, goal, unsupervised=True))
+    take(taken, OperatorPlan(OperatorPlanKind.WAY_BACK, "up", plan, goal, unsupervised=True))
     assert taken.tick() == (TO_ABOVE,)
     taken = standing()
-    take(taken, OperatorPlan(ErrandKind.WAY_BACK, "up", plan, unsupervised=True, into_safe=True))
+    take(taken, OperatorPlan(OperatorPlanKind.WAY_BACK, "up", plan, unsupervised=True, into_safe=True))
     assert taken.tick() == (TO_ABOVE,)
     assert not taken.execution.safe
     taken.tick((*meanwhile, LEAVES))
-    assert taken.execution.conduct.last_errand is not None
-    assert taken.execution.conduct.last_errand.done
+    assert taken.execution.conduct.last_operator_plan is not None
+    assert taken.execution.conduct.last_operator_plan.done
     assert taken.execution.safe
 
 
@@ -101,7 +101,7 @@ def test_what_is_offered_there_is_carried_out_to_its_end() -> None:
     take(taken, errand_of(tried.automaton, offer))
     assert taken.tick() == ("nutrunner.run_nut",)
     taken.tick((ACKNOWLEDGES, "nutrunner.run_nut.tool_starts"))
-    assert taken.execution.errand is None
+    assert taken.execution.operator_plan is None
     assert taken.execution.safe
 
 
@@ -120,7 +120,10 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     to_home = "robot.move_to_position(home)"
     ticks = (PlanTick((), (TO_ABOVE,)), PlanTick((LEAVES,), ()), PlanTick((arrives,), (to_home,)))
     goal = predicate_of(tried.automaton, "robot.target_pose == home")
-    take(taken, OperatorPlan(ErrandKind.WAY_BACK, "home", Plan(ticks, False, False), goal, unsupervised=True, by="Eva"))
+    take(
+        taken,
+        OperatorPlan(OperatorPlanKind.WAY_BACK, "home", Plan(ticks, False, False), goal, unsupervised=True, by="Eva"),
+    )
 
     def causes(seconds: float) -> list[str]:
         return [str(c.text) for c in alarms.causes(None, taken.seconds + seconds) if c.key == "errand-waits"]
@@ -130,10 +133,12 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     assert causes(20) == [], "what runs is overdue by its own time-outs"
     taken = standing()
     alarms = alarms_of(taken.execution)
-    missing = OperatorPlan(ErrandKind.WAY_BACK, "home", Plan((PlanTick((), (to_home,)),), False, False), goal, by="Eva")
+    missing = OperatorPlan(
+        OperatorPlanKind.WAY_BACK, "home", Plan((PlanTick((), (to_home,)),), False, False), goal, by="Eva"
+    )
     take(taken, missing)
     assert taken.tick() == ()
-    assert taken.execution.errand is None, "it leads nowhere, and is over at once"
+    assert taken.execution.operator_plan is None, "it leads nowhere, and is over at once"
     held = replace(missing, plan=Plan((PlanTick((), (TO_ABOVE,)),), False, False), into_safe=True, unsupervised=True)
     taken = standing()
     taken.execution.set_stepping(True)

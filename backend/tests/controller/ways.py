@@ -24,7 +24,7 @@ from sequence_planner.controller.views.wording import offer_title
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.evaluator import holds
 from sequence_planner.language.syntax import Expression
@@ -86,7 +86,7 @@ def errand_of(automaton: Automaton, offer: RecoveryProposal, goal: Expression | 
     """What is carried out of an offer; with a `goal`, for that instead."""
     assert offer.errand is not None
     return OperatorPlan(
-        kind=ErrandKind.WAY_BACK,
+        kind=OperatorPlanKind.WAY_BACK,
         title=offer_title(automaton, offer),
         plan=offer.errand,
         goal=offer.goal if goal is None else goal,
@@ -121,17 +121,17 @@ def after_a_fault(name: str, seed: str, deadline: float) -> Counter[str]:
         execution = execution_in(automaton, supervisor, state, moment.active, circumstances)
         taken = Taken(execution, real, circumstances.offline)
         taken.tick()
-        execution.take_errand(errand_of(automaton, offer), Timestamp(taken.seconds, taken.seconds))
+        execution.start_operator_plan(errand_of(automaton, offer), Timestamp(taken.seconds, taken.seconds))
         hurry, started = chance.choice((0.05, 0.3, 1.0)), 0
         for _ in range(PATIENCE):
             possible = taken.possible()
             chance.shuffle(possible)
             started += len(taken.tick([each for each in possible if chance.random() < hurry]))
-            if execution.errand is None:
+            if execution.operator_plan is None:
                 break
-        last = execution.conduct.last_errand
+        last = execution.conduct.last_operator_plan
         case = f"{name}, {fault.kind}: {offer_title(automaton, offer)}, in {state}"
-        assert execution.errand is None, f"{case}: it does not end"
+        assert execution.operator_plan is None, f"{case}: it does not end"
         assert last is not None, case
         if last.done:
             assert execution.safe, f"{case}: it ends outside the safe states"

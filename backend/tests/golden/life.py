@@ -25,7 +25,7 @@ from sequence_planner.controller.commands.execution import (
 )
 from sequence_planner.controller.commands.jobs import CommandJob, TakeJob
 from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
-from sequence_planner.controller.commands.recovery import CorrectEstimates, DecideOutputs, TakeErrand
+from sequence_planner.controller.commands.recovery import CorrectEstimates, DecideOutputs, ExecuteOperatorPlan
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.previous_run import what_is_known
@@ -189,9 +189,9 @@ class Life:
         """Take a plan by hand to the precondition of an operation."""
         await self._take(await self.controller.answer(AskReset(operation=operation)))
 
-    async def errand_over(self) -> None:
+    async def operator_plan_over(self) -> None:
         """Wait until a plan by hand is over."""
-        await self.until(lambda: self.controller.execution.errand is None)
+        await self.until(lambda: self.controller.execution.operator_plan is None)
 
     async def job(self, job: str, work_master: str) -> None:
         """Order a job."""
@@ -207,7 +207,7 @@ class Life:
         starts = [step.ability for step in offer.errand.steps]
         corrections = {change.name: change.then for change in offer.corrections}
         await self.controller.command(
-            TakeErrand(actor=EVA, reason=WHY, offer=offer.id, starts=starts, corrections=corrections)
+            ExecuteOperatorPlan(actor=EVA, reason=WHY, offer=offer.id, starts=starts, corrections=corrections)
         )
 
     async def attend(self) -> None:

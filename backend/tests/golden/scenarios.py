@@ -13,7 +13,7 @@ from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.approvals import ReleaseForce
 from sequence_planner.controller.commands.execution import EnterRestart, SetStepping, TakeStep
 from sequence_planner.controller.commands.jobs import ForgetJob, JobOperation, JobWait, SequenceJobs, SetByOrder
-from sequence_planner.controller.commands.recovery import ConfirmEstimates, StopErrand, TryAbility, UndoCorrection
+from sequence_planner.controller.commands.recovery import ConfirmEstimates, StopOperatorPlan, TryAbility, UndoCorrection
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.simulation.faults import FaultKind
@@ -214,12 +214,12 @@ async def recover(life: Life) -> None:
     await life.enter_restart()
     await life.goal(_elsewhere(life))
     await asyncio.sleep(0.2)
-    await life.controller.command(StopErrand(actor=EVA))
+    await life.controller.command(StopOperatorPlan(actor=EVA))
     await life.until(lambda: not life.controller.execution.running())
     await life.goal(_elsewhere(life))
-    await life.errand_over()
+    await life.operator_plan_over()
     if await life.advised() is not None:
-        await life.errand_over()
+        await life.operator_plan_over()
     await life.leave_restart()
     await life.work(2)
 
@@ -230,7 +230,7 @@ async def reset_an_operation(life: Life) -> None:
     await life.work(4)
     await life.enter_restart()
     await life.reset({BOLTS: "prepare_planning_scene", TRUCK: "identify_engine"}[_station(life)])
-    await life.errand_over()
+    await life.operator_plan_over()
     await life.leave_restart()
     await life.work(2)
 
@@ -246,10 +246,10 @@ async def try_abilities(life: Life) -> None:
         moves = (name for name in execution.automaton.abilities if name.startswith("robot.move_to_position"))
         ability = next(name for name in moves if execution.startable(name) is not None)
         await life.controller.command(TryAbility(actor=EVA, ability=ability))
-        await life.until(lambda: bool(execution.running()) or execution.errand is None)
-        if stopped and execution.errand is not None:
-            await life.controller.command(StopErrand(actor=EVA))
-        await life.errand_over()
+        await life.until(lambda: bool(execution.running()) or execution.operator_plan is None)
+        if stopped and execution.operator_plan is not None:
+            await life.controller.command(StopOperatorPlan(actor=EVA))
+        await life.operator_plan_over()
         await life.until(lambda: not execution.running())
     await life.mode(Mode.AUTOMATIC)
     await life.work(3)

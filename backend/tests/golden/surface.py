@@ -27,7 +27,7 @@ from sequence_planner.cli.main import app
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.kinds import KINDS as ALARMS
 from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
-from sequence_planner.execution.record.codec import _MISSING, BEGUN, KINDS, SNAPSHOT, _fields
+from sequence_planner.execution.record.codec import _MISSING, BEGUN, KINDS, SNAPSHOT, WRITTEN_AS, _fields
 from sequence_planner.execution.record.recorder import EXECUTION, ORDER, PLAN
 from sequence_planner.language.syntax import Expression
 from sequence_planner.planning.problem import Proof
@@ -152,7 +152,11 @@ def _form(form: Any) -> Any:  # noqa: ANN401 - what annotations are is no type
     if form in (bool, int, float, str):
         return form.__name__
     hints = get_type_hints(form)
-    return {f"{n}{'' if default is _MISSING else '?'}": _form(hints[n]) for n, default in _fields(form).items()}
+    names = WRITTEN_AS.get(form, {})
+    return {
+        f"{names.get(n, n)}{'' if default is _MISSING else '?'}": _form(hints[n])
+        for n, default in _fields(form).items()
+    }
 
 
 @cache

@@ -28,7 +28,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace as changed
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.recorder import RunRecorder, model_digest
-from sequence_planner.execution.state import ErrandKind, InitialState, OperatorPlan
+from sequence_planner.execution.state import InitialState, OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.language.syntax import TRUE, Assignment, Constant, Expression, Variable
@@ -160,16 +160,16 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         goal = choices.pick([each.predicate for each in execution.pursued.goals.values()] or [_any_goal(station)])
         starts = tuple(choices.different(tuple(station.abilities), 0, 2))
         plan = Plan((PlanTick((), starts), PlanTick((), ())), False, False)
-        kind = choices.pick(tuple(ErrandKind))
+        kind = choices.pick(tuple(OperatorPlanKind))
         operation = choices.pick((None, *station.operations))
         taken = OperatorPlan(kind, "by hand", plan, goal, choices.chance(2), choices.chance(2), operation, "Eva", "so")
         taken = changed(taken, into_safe=choices.chance(3))
-        if kind is ErrandKind.TRIAL and station.abilities:
+        if kind is OperatorPlanKind.TRIAL and station.abilities:
             tried = choices.pick(tuple(station.abilities))
             plan = Plan((PlanTick((), (tried,)), PlanTick((), ())), False, False)
             taken = OperatorPlan(kind, "by hand", plan, goal, by="Eva", ability=tried)
             execution.change_mode(Mode.PAUSED, "Eva", lived.moment)
-        execution.take_errand(taken, lived.moment)
+        execution.start_operator_plan(taken, lived.moment)
 
     desk = JobHandler(execution)
 
@@ -184,7 +184,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         *(execution.take_step, service, correct, force, release, errand),
         lambda: execution.call_off("Eva", lived.moment),
         lambda: execution.confirm(frozenset(station.names(Kind.ESTIMATED)[:1]), "Eva", lived.moment),
-        lambda: execution.stop_errand("Eva", lived.moment),
+        lambda: execution.stop_operator_plan("Eva", lived.moment),
         lambda: execution.explained(Diagnosis(None, ())),
     ]
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from history.happened import HAPPENINGS, happening, value
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.execution.events import ErrandTaken, ModeChanged, Ticked
+from sequence_planner.execution.events import ModeChanged, OperatorPlanStarted, Ticked
 from sequence_planner.execution.record.codec import KINDS, TICKED, Codec, Senses, TickBook, UnreadableError, kind_of
-from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.journal.run_journal import LONGEST_KIND
 from sequence_planner.language.syntax import Comparison, Constant, Variable
@@ -64,9 +64,9 @@ def test_each_kind_of_happening_has_a_kind_of_record() -> None:
 
 def test_predicates_are_written_as_in_the_model() -> None:
     errand = OperatorPlan(
-        ErrandKind.GOAL, "ring", Plan((PlanTick((), ("go",)),), False, False), Variable("bell", BOOLEAN)
+        OperatorPlanKind.GOAL, "ring", Plan((PlanTick((), ("go",)),), False, False), Variable("bell", BOOLEAN)
     )
-    content = Codec(STATION).content(ErrandTaken(errand, NOW))
+    content = Codec(STATION).content(OperatorPlanStarted(errand, NOW))
     assert content["what"]["errand"]["goal"] == "bell"
 
 
@@ -76,10 +76,10 @@ def test_a_value_with_the_name_of_a_variable_stays_a_value() -> None:
         {"go": Does(start=("bell := true",))}, output={"bell": (BOOLEAN, False), "at": (places, "home")}
     )
     goal = Comparison("==", Variable("at", places), Constant("bell"))
-    errand = OperatorPlan(ErrandKind.GOAL, "go there", Plan((), False, False), goal)
+    errand = OperatorPlan(OperatorPlanKind.GOAL, "go there", Plan((), False, False), goal)
     codec = Codec(station)
-    document = json.loads(json.dumps(codec.content(ErrandTaken(errand, NOW))))
-    assert codec.happening("errand-taken", document) == ErrandTaken(errand, NOW)
+    document = json.loads(json.dumps(codec.content(OperatorPlanStarted(errand, NOW))))
+    assert codec.happening("errand-taken", document) == OperatorPlanStarted(errand, NOW)
 
 
 @pytest.mark.parametrize(

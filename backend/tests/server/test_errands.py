@@ -17,7 +17,7 @@ from sequence_planner.controller.commands.queries import (
     AskReset,
     AskWhyNot,
 )
-from sequence_planner.controller.commands.recovery import StopErrand, TakeErrand
+from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan, StopOperatorPlan
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.server.settings import Settings
@@ -91,12 +91,12 @@ def test_an_offer_is_taken_with_all_that_was_confirmed(engineer: httpx.Client, c
     assert engineer.post("operator-plans", json=body).status_code == 204
     assert engineer.post("operator-plans/stop", json={}).status_code == 204
     taken, stopped = controller.commands
-    assert isinstance(taken, TakeErrand)
+    assert isinstance(taken, ExecuteOperatorPlan)
     assert taken.needs_control
     assert (taken.offer, taken.starts, taken.reason) == ("81a0a8-1", ["robot.move"], "the bolt is out")
     assert taken.corrections == {"bolts": "placed", "on": True, "count": 3}
     assert taken.corrections["on"] is True
-    assert isinstance(stopped, StopErrand)
+    assert isinstance(stopped, StopOperatorPlan)
     assert not stopped.needs_control
     for wrong in ({"reason": ""}, {"reason": None}, {"starts": "robot.move"}, {"corrections": {"bolts": 1.5}}):
         problem(engineer.post("operator-plans", json={**body, **wrong}), 422, "invalid-request")

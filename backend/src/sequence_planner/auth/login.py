@@ -174,7 +174,7 @@ class SignIn:
                     rate_limit.count(connection, attempt.counters, attempt.now)
                     found = find_password(connection, attempt.name)
                     return None if found is None else _Known(*found)
-        self._limited.record(waiting.counter, attempt.refused("too-many-attempts", tried), attempt.now)
+        self._limited.add_refusal(waiting.counter, attempt.refused("too-many-attempts", tried), attempt.now)
         if self._limited.due(attempt.now):
             with self._database.writing() as connection:
                 self._record_limited(connection, attempt.now)

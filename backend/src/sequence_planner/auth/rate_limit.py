@@ -173,7 +173,7 @@ class RefusalLog:
         self._gathered: dict[Counter, _Gathered] = {}
         self._lock = threading.Lock()
 
-    def record(self, counter: Counter, entry: Entry, now: float) -> None:
+    def add_refusal(self, counter: Counter, entry: Entry, now: float) -> None:
         """Somebody was refused; of several, `entry` tells of the last."""
         with self._lock:
             before = self._gathered.get(counter)

@@ -148,7 +148,7 @@ class Shelf:
         self._own = re.compile(rf"{re.escape(self._mark)}-\d{{8}}T\d{{6}}Z{re.escape(ENDING)}")
         self._known: dict[tuple[str, int, int, int], Kept] = {}  # by name, and what changes when the file does
 
-    def state(self) -> BackupFolderState:
+    def folder_state(self) -> BackupFolderState:
         """All backups there are, and whether one can be made."""
         trouble, free = None, None
         try:

@@ -302,7 +302,7 @@ class Controller:
     def _note(self, kind: str, content: Mapping[str, JsonValue]) -> None:
         if kind == "alarm" and content["event"] == "came" and content["priority"] != Priority.LOW:
             self._adviser.expect()
-        self._recorder.record(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
+        self._recorder.append_record(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
 
     def _unjournalled(self) -> str | None:
         """Return why what happens cannot be journalled; None when it can."""

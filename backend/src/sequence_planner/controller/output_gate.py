@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from sequence_planner.automaton.automaton import Automaton, State, target
 from sequence_planner.execution.events import (
     CalledOff,
-    ErrandTaken,
     Event,
     Heard,
     ModeChanged,
+    OperatorPlanStarted,
     ProductionStarted,
     TickOutcome,
 )
@@ -122,7 +122,7 @@ def _holds(happening: Event) -> bool:
 
 
 def _goes_on(happening: Event) -> bool:
-    return isinstance(happening, ErrandTaken) or (
+    return isinstance(happening, OperatorPlanStarted) or (
         isinstance(happening, ModeChanged) and happening.mode is Mode.AUTOMATIC
     )
 

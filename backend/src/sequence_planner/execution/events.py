@@ -69,7 +69,7 @@ class ModeChanged(Immutable):
 
 
 class CalledOff(Immutable):
-    """The calling off of what ran, by its cancel actions, and of the errand with it; the mode is as before."""
+    """The calling off of what ran, by its cancel actions, and of the operator plan with it; the mode is as before."""
 
     by: str
     now: Timestamp
@@ -178,14 +178,14 @@ class JobForgotten(Immutable):
     now: Timestamp
 
 
-class ErrandTaken(Immutable):
+class OperatorPlanStarted(Immutable):
     """A person has taken a plan to be carried out."""
 
-    errand: OperatorPlan
+    operator_plan: OperatorPlan
     now: Timestamp
 
 
-class ErrandStopped(Immutable):
+class OperatorPlanStopped(Immutable):
     """It is carried out no further."""
 
     by: str
@@ -208,8 +208,8 @@ Event = (
     | Confirmed
     | Forced
     | ForceReleased
-    | ErrandTaken
-    | ErrandStopped
+    | OperatorPlanStarted
+    | OperatorPlanStopped
     | ByOrderChanged
     | JobTaken
     | JobsSequenced

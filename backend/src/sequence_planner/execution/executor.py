@@ -19,8 +19,6 @@ from sequence_planner.execution.events import (
     CalledOff,
     Confirmed,
     Corrected,
-    ErrandStopped,
-    ErrandTaken,
     Event,
     Explained,
     Forced,
@@ -31,6 +29,8 @@ from sequence_planner.execution.events import (
     JobsSequenced,
     JobTaken,
     ModeChanged,
+    OperatorPlanStarted,
+    OperatorPlanStopped,
     ProductionStarted,
     ServiceChanged,
     SteppingChanged,
@@ -43,14 +43,14 @@ from sequence_planner.execution.jobs import Job, JobAct, Waits
 from sequence_planner.execution.plan_tracker import ExecutionSnapshot, PlanTracker
 from sequence_planner.execution.products import kept_back, lacking, still_written
 from sequence_planner.execution.state import (
-    NAME as ERRAND,
+    NAME as OPERATOR_PLAN,
 )
 from sequence_planner.execution.state import (
     ActiveGoals,
     ExecutionState,
     Force,
     InitialState,
-    LastErrand,
+    LastOperatorPlan,
     OperatorPlan,
     OutOfService,
     writing,
@@ -132,15 +132,19 @@ class ExecutorBase:
         return self.conduct.production
 
     @property
-    def errand(self) -> OperatorPlan | None:
-        """The errand that is carried out beside the operations, which wait for it."""
-        return self.conduct.errand
+    def operator_plan(self) -> OperatorPlan | None:
+        """The operator plan that is carried out beside the operations, which wait for it."""
+        return self.conduct.operator_plan
 
     @property
     def pursued(self) -> ActiveGoals:
-        """The goals that plans are made for: those of active operations, or that of an errand."""
-        if self.errand is not None:
-            return ActiveGoals() if self.errand.ability else ActiveGoals({ERRAND: self.errand.pursued})
+        """The goals that plans are made for: those of active operations, or that of an operator plan."""
+        if self.operator_plan is not None:
+            return (
+                ActiveGoals()
+                if self.operator_plan.ability
+                else ActiveGoals({OPERATOR_PLAN: self.operator_plan.pursued})
+            )
         return self._operations
 
     @property
@@ -213,17 +217,21 @@ class ExecutorBase:
         before = self._run.values
         if self.supervisor.allows(before, after):
             return True
-        return self.errand is not None and self.errand.unsupervised and not self.supervisor.safe.includes(before)
+        return (
+            self.operator_plan is not None
+            and self.operator_plan.unsupervised
+            and not self.supervisor.safe.includes(before)
+        )
 
     @property
     def _present(self) -> ExecutionSnapshot:
-        confirmed = self.errand is not None
+        confirmed = self.operator_plan is not None
         return ExecutionSnapshot(self._run, self.published, self.pursued, self.circumstances, confirmed)
 
     @property
     def _is_free(self) -> bool:
         """True if what is carried out has still to come into the safe states, outside which no supervisor speaks."""
-        return self.errand is not None and (self.errand.unsupervised or self.errand.into_safe)
+        return self.operator_plan is not None and (self.operator_plan.unsupervised or self.operator_plan.into_safe)
 
     # How a tick is taken.
 
@@ -240,7 +248,7 @@ class ExecutorBase:
         ended = tuple(name for name in finishing.finished if self.plan.order.finish(name, now))
         called_off, given_up = self._check_running(ended, now)
         activated, completed = self._update_operations(now)
-        self._look_after_errand(now)
+        self._check_operator_plan(now)
         self._heed_supervisor()
         started = self._start(now)
         self._heed_supervisor()
@@ -328,7 +336,7 @@ class ExecutorBase:
             begun = active - self._operations.goals.keys()
             self._operations = self._operations.activated(self.automaton, begun, self._run.values, now)
         self.active = active
-        if self.errand is None:
+        if self.operator_plan is None:
             self.plan.settle(active, self._operations.hopeful)
         return activated, completed
 
@@ -342,34 +350,38 @@ class ExecutorBase:
         pairs = zip(before.taken, after.taken, strict=True)
         return frozenset(name for old, new in pairs for name in new.completed.keys() - old.completed.keys())
 
-    def _look_after_errand(self, now: Timestamp) -> None:
-        """An errand whose goal holds is done; with it an operation that is reset begins anew."""
-        errand = self.errand
-        if errand is None or errand.ability is not None or not holds(errand.goal, self._run.values):
+    def _check_operator_plan(self, now: Timestamp) -> None:
+        """An operator plan whose goal holds is done; with it an operation that is reset begins anew."""
+        operator_plan = self.operator_plan
+        if (
+            operator_plan is None
+            or operator_plan.ability is not None
+            or not holds(operator_plan.goal, self._run.values)
+        ):
             return
-        if errand.into_safe and not self.safe:
+        if operator_plan.into_safe and not self.safe:
             return
-        if errand.operation is not None:
-            jobs = self.conduct.jobs.reopened(errand.operation, self.automaton)
-            self._change(done=self.conduct.done - {errand.operation}, jobs=jobs)
+        if operator_plan.operation is not None:
+            jobs = self.conduct.jobs.reopened(operator_plan.operation, self.automaton)
+            self._change(done=self.conduct.done - {operator_plan.operation}, jobs=jobs)
             # What comes after it in a job has to wait for it again.
-            withdrawn = {errand.operation} | (self.active & self.conduct.idle_operations(self.automaton))
+            withdrawn = {operator_plan.operation} | (self.active & self.conduct.idle_operations(self.automaton))
             self.active -= withdrawn
             self._operations = self._operations.without(withdrawn)
             self._run.record_activity(self.active)
-        self._end_errand("", now, done=True)
+        self._end_operator_plan("", now, done=True)
 
     def _heed_supervisor(self) -> None:
-        """From the first safe state on an errand goes by the supervisor, also when something becomes unknown later."""
-        if self.errand is not None and self._is_free and self.safe:
-            self._change(errand=replace(self.errand, unsupervised=False, into_safe=False))
+        """An operator plan goes by the supervisor from the first safe state on, also when something becomes unknown."""
+        if self.operator_plan is not None and self._is_free and self.safe:
+            self._change(operator_plan=replace(self.operator_plan, unsupervised=False, into_safe=False))
 
     def _heed_answers(self, started: Iterable[str]) -> None:
         """Let what a person has said count until it is another by now, or operations go on with what they rely on."""
         answers = self.conduct.answers
         if not answers:
             return
-        if self.errand is None:
+        if self.operator_plan is None:
             abilities = (self.automaton.abilities[name] for name in started)
             answers = still_to_rely_on(self.automaton, answers, abilities)
         answers = {name: value for name, value in answers.items() if self._run.values[name] == value}
@@ -380,25 +392,25 @@ class ExecutorBase:
         """Notice that the plan is done with, or that the state has departed from it."""
         if self.conduct.executes_operations:
             self.plan.update(self._present, self.active)
-        elif self.errand is not None and self.errand.ability is not None:
-            self._check_trial(self.errand.ability, now)
-        elif self.errand is not None and not self.blind and not self.plan.still_leads(self._present):
-            self._end_errand("the station departed from it, so that it no longer led to its goal", now)
+        elif self.operator_plan is not None and self.operator_plan.ability is not None:
+            self._check_trial(self.operator_plan.ability, now)
+        elif self.operator_plan is not None and not self.blind and not self.plan.still_leads(self._present):
+            self._end_operator_plan("the station departed from it, so that it no longer led to its goal", now)
 
     def _check_trial(self, ability: str, now: Timestamp) -> None:
         """A trial starts in the first tick after it was taken, and is over when its run is, or when that is overdue."""
         title, order = self.automaton.abilities[ability].title, self.plan.order
         if order.ahead:
-            self._end_errand(f"{title} could not start any more", now)
+            self._end_operator_plan(f"{title} could not start any more", now)
         elif all(step.ability != ability for step in order.running):
-            self._end_errand("", now, done=True)
+            self._end_operator_plan("", now, done=True)
         elif (what := self._trial_overdue(now)) is not None:
             self._break_off(ability, now)
-            self._end_errand(f"{title} {what}", now)
+            self._end_operator_plan(f"{title} {what}", now)
 
     def _trial_overdue(self, now: Timestamp) -> Late | None:
         """Say what has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
-        tried = None if self.errand is None else self.errand.ability
+        tried = None if self.operator_plan is None else self.operator_plan.ability
         late = (
             overdue(step, self.automaton.abilities[step.ability], now.monotonic)
             for step in self.plan.order.running
@@ -424,7 +436,7 @@ class ExecutorBase:
             step = self.plan.start(now)
             self._run.start(step.ability)
             self.conduct = self.conduct.started_one()
-            if self.errand is None:
+            if self.operator_plan is None:
                 self._operations = self._operations.moved(self._run.values, now)
             if self.automaton.abilities[step.ability].finish_guard is None:
                 step.ended = now
@@ -494,10 +506,13 @@ class ExecutorBase:
         for name in called_off:
             self.plan.order.finish(name, now)
 
-    def _end_errand(self, why: str, now: Timestamp, *, by: str | None = None, done: bool = False) -> None:
-        errand = self.errand
-        if errand is not None:
-            self._change(errand=None, last_errand=LastErrand(errand.title, done, why, now, by, errand.ability))
+    def _end_operator_plan(self, why: str, now: Timestamp, *, by: str | None = None, done: bool = False) -> None:
+        operator_plan = self.operator_plan
+        if operator_plan is not None:
+            self._change(
+                operator_plan=None,
+                last_operator_plan=LastOperatorPlan(operator_plan.title, done, why, now, by, operator_plan.ability),
+            )
             self.plan.drop("what was taken is done" if done else f"what was taken has ended: {why}")
 
 
@@ -551,9 +566,9 @@ class Executor(ExecutorBase):
         self._emit(ProductionStarted(), before)
 
     def change_mode(self, mode: Mode, by: str, now: Timestamp) -> None:
-        """Another mode. An errand ends with it, and holding calls off what runs."""
+        """Another mode. An operator plan ends with it, and holding calls off what runs."""
         before = self.state
-        self._end_errand(f"{by} chose {mode}", now, by=by)
+        self._end_operator_plan(f"{by} chose {mode}", now, by=by)
         if mode is Mode.HOLD:
             self._call_off(now)
         restarts = Mode.RESTART in (mode, self.mode)
@@ -563,9 +578,9 @@ class Executor(ExecutorBase):
         self._emit(ModeChanged(mode, by, now), before)
 
     def call_off(self, by: str, now: Timestamp) -> None:
-        """Call off what runs, and the errand; the mode stays."""
+        """Call off what runs, and the operator plan; the mode stays."""
         before = self.state
-        self._end_errand(f"{by} chose to hold", now, by=by)
+        self._end_operator_plan(f"{by} chose to hold", now, by=by)
         self._change(steps=0)
         self._call_off(now)
         self._emit(CalledOff(by, now), before)
@@ -634,20 +649,24 @@ class Executor(ExecutorBase):
         self._release((name,))
         self._emit(ForceReleased(name), before)
 
-    def take_errand(self, errand: OperatorPlan, now: Timestamp) -> None:
+    def start_operator_plan(self, operator_plan: OperatorPlan, now: Timestamp) -> None:
         """Carry out a plan that a person has taken."""
-        self._end_errand("another was taken", now, by=errand.by)
-        self._change(errand=errand)
-        self.plan.follow(errand.plan, frozenset() if errand.ability else frozenset({ERRAND}), errand.title)
-        self._emit(ErrandTaken(errand, now), self.state)
+        self._end_operator_plan("another was taken", now, by=operator_plan.by)
+        self._change(operator_plan=operator_plan)
+        self.plan.follow(
+            operator_plan.plan,
+            frozenset() if operator_plan.ability else frozenset({OPERATOR_PLAN}),
+            operator_plan.title,
+        )
+        self._emit(OperatorPlanStarted(operator_plan, now), self.state)
 
-    def stop_errand(self, by: str, now: Timestamp) -> None:
+    def stop_operator_plan(self, by: str, now: Timestamp) -> None:
         """Start no more of it. What is only tried is called off with it."""
-        before, errand = self.state, self.errand
-        if errand is not None and errand.ability is not None:
-            self._break_off(errand.ability, now)
-        self._end_errand(f"{by} stopped it", now, by=by)
-        self._emit(ErrandStopped(by, now), before)
+        before, operator_plan = self.state, self.operator_plan
+        if operator_plan is not None and operator_plan.ability is not None:
+            self._break_off(operator_plan.ability, now)
+        self._end_operator_plan(f"{by} stopped it", now, by=by)
+        self._emit(OperatorPlanStopped(by, now), before)
 
     # Its jobs. They advance with the next tick.
 
@@ -668,7 +687,7 @@ class Executor(ExecutorBase):
 
     def command_job(self, job: str, act: JobAct, by: str, why: str, now: Timestamp) -> None:
         """Pause, resume, stop or abort a job under way."""
-        self._change(jobs=self.conduct.jobs.command(job, act, self.active, self.automaton, now))
+        self._change(jobs=self.conduct.jobs.after_act(job, act, self.active, self.automaton, now))
         self._emit(JobCommanded(job, act, by, why, now), self.state)
 
     def forget_job(self, job: str, by: str, now: Timestamp) -> None:

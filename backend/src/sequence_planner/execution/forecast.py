@@ -73,7 +73,7 @@ class Forecast:
     def update(self, now: float) -> None:
         """After a tick: remember how long has taken what ended, and look through a plan that is new."""
         order = self._execution.plan.order
-        if self._execution.mode is not Mode.AUTOMATIC or self._execution.errand is not None:
+        if self._execution.mode is not Mode.AUTOMATIC or self._execution.operator_plan is not None:
             self._disturbed |= {step.number for step in order.past if step.number not in self._counted}
         ended = {step.number: step for step in order.past if step.ended is not None}
         for number in sorted(ended.keys() - self._counted - self._disturbed):

@@ -58,7 +58,7 @@ class Job(Immutable):
         """The operations that come before this one and are not completed."""
         return automaton.work_masters[self.work_master].operations[operation] - self.completed.keys()
 
-    def apply(self, act: JobAct, active: frozenset[str], now: Timestamp) -> Job:
+    def after_act(self, act: JobAct, active: frozenset[str], now: Timestamp) -> Job:
         """After a person or a system has asked for this, while some of its operations are `active`."""
         waits = JobState.WAITING if self.begun is None else JobState.RUNNING
         match act:
@@ -151,13 +151,13 @@ class Jobs(Immutable):
         """Return the jobs with this one having begun: what its product brings is there."""
         return self._each(lambda each: replace(each, state=JobState.RUNNING, begun=now) if each.id == job else each)
 
-    def command(self, job: str, act: JobAct, active: frozenset[str], automaton: Automaton, now: Timestamp) -> Jobs:
+    def after_act(self, job: str, act: JobAct, active: frozenset[str], automaton: Automaton, now: Timestamp) -> Jobs:
         """After somebody has asked for this, while some operations are `active`."""
 
         def tell(each: Job) -> Job:
             if each.id != job or not each.under_way:
                 return each
-            return each.apply(act, active & self.eligible(each, automaton), now)
+            return each.after_act(act, active & self.eligible(each, automaton), now)
 
         return self._each(tell)
 

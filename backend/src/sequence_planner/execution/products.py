@@ -29,8 +29,8 @@ def kept_back(conduct: ExecutionState) -> Iterator[str]:
         yield "production to be started"
     if conduct.mode is not Mode.AUTOMATIC:
         yield "automatic mode"
-    if conduct.errand is not None:
-        yield f"the end of what is carried out: {conduct.errand.title}"
+    if conduct.operator_plan is not None:
+        yield f"the end of what is carried out: {conduct.operator_plan.title}"
 
 
 def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[str]) -> Iterator[str]:

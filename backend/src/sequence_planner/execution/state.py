@@ -18,15 +18,15 @@ from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import moved, settled
 from sequence_planner.planning.problem import Circumstances, Goal, Plan, goal_of
 
-# An errand: a plan that a person has seen and taken, and that is carried out as it is and never made anew.
+# An operator plan: a plan that a person has seen and taken, and that is carried out as it is and never made anew.
 #
-# A way back, the reset of an operation and a goal by hand are errands. They have their abilities from one plan; what
-# they are for is a goal of its own beside the operations, which wait meanwhile. So is a trial: one start of one
+# A way back, the reset of an operation and a goal by hand are operator plans. They have their abilities from one plan;
+# what they are for is a goal of its own beside the operations, which wait meanwhile. So is a trial: one start of one
 # ability.
 
 
-class ErrandKind(StrEnum):
-    """The purpose of an errand."""
+class OperatorPlanKind(StrEnum):
+    """The purpose of an operator plan."""
 
     WAY_BACK = "way-back"  # into the safe states, or to where operations can go on
     RESET = "reset"  # to the precondition of an operation
@@ -34,7 +34,7 @@ class ErrandKind(StrEnum):
     TRIAL = "trial"  # one run of an ability alone, to see what it does
 
 
-NAME = "errand"  # of its goal, beside those of operations
+NAME = "errand"  # of its goal in records, beside those of operations
 
 
 class OperatorPlan(Immutable):
@@ -47,7 +47,7 @@ class OperatorPlan(Immutable):
     `goal` only says by what an end is known.
     """
 
-    kind: ErrandKind
+    kind: OperatorPlanKind
     title: str
     plan: Plan
     goal: Expression = TRUE
@@ -91,8 +91,8 @@ class OutOfService(Immutable):
     why: str
 
 
-class LastErrand(Immutable):
-    """The end of the last errand, or of the trial of an `ability`; `by` names who ended it, None for the station."""
+class LastOperatorPlan(Immutable):
+    """The end of the last operator plan, or of the trial of an `ability`; `by` is who ended it, None: the station."""
 
     title: str
     done: bool
@@ -146,8 +146,8 @@ class ExecutionState(Immutable):
     steps: int = 0
     service: Service = NOTHING
     forces: Mapping[str, Force] = NOTHING
-    errand: OperatorPlan | None = None
-    last_errand: LastErrand | None = None
+    operator_plan: OperatorPlan | None = None
+    last_operator_plan: LastOperatorPlan | None = None
     returned: frozenset[str] = frozenset()
     done: frozenset[str] = frozenset()
     tried: Mapping[str, int] = NOTHING
@@ -158,16 +158,16 @@ class ExecutionState(Immutable):
     @property
     def executes_operations(self) -> bool:
         """True if operations are planned for and executed, or would be if it were not paused."""
-        return self.errand is None and self.mode is not Mode.RESTART
+        return self.operator_plan is None and self.mode is not Mode.RESTART
 
     @property
     def may_start(self) -> bool:
         """True if it allows any start."""
         if self.production is not Production.STARTED or (self.stepping and not self.steps):
             return False
-        if self.errand is None:
+        if self.operator_plan is None:
             return self.mode is Mode.AUTOMATIC
-        return self.mode is Mode.RESTART or (self.mode is Mode.PAUSED and not self.errand.restart)
+        return self.mode is Mode.RESTART or (self.mode is Mode.PAUSED and not self.operator_plan.restart)
 
     def idle_operations(self, automaton: Automaton) -> frozenset[str]:
         """The operations that do not become active."""
@@ -182,7 +182,7 @@ class ExecutionState(Immutable):
         forced = self.forces.keys() & automaton.outputs
         barred = self.out_of(ServiceKind.ABILITY) | writing(automaton, forced)
         offline = self.silent | self.out_of(ServiceKind.RESOURCE)
-        restart = self.errand is not None and self.errand.restart
+        restart = self.operator_plan is not None and self.operator_plan.restart
         return Circumstances(offline=offline, restart=restart, barred=barred)
 
     def sensing(self, measured: Mapping[str, Value | None]) -> tuple[Mapping[str, Value | None], ExecutionState]:

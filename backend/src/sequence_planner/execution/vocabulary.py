@@ -11,7 +11,7 @@ class Mode(StrEnum):
     AUTOMATIC = "automatic"
     PAUSED = "paused"  # what runs may finish, nothing is started
     HOLD = "hold"  # paused, and what runs was called off where it can be
-    RESTART = "restart"  # operations are paused; errands are carried out one by one
+    RESTART = "restart"  # operations are paused; operator plans are carried out one by one
 
 
 class Production(StrEnum):

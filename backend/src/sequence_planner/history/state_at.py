@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.views.builder import errand_view, force_views, packml, service_views
+from sequence_planner.controller.views.builder import force_views, operator_plan_view, packml, service_views
 from sequence_planner.controller.views.jobs import job_views
 from sequence_planner.controller.views.station import StepStatus
 from sequence_planner.execution.executor import Executor
@@ -63,7 +63,7 @@ def past_view(execution: Executor) -> PastView:
         by_order=conduct.jobs.by_order,
         jobs=job_views(execution),
         plan=_plan(execution),
-        errand=errand_view(execution),
+        errand=operator_plan_view(execution),
         forces=force_views(conduct),
         out_of_service=service_views(execution.automaton, conduct),
     )

@@ -11,9 +11,9 @@ from pydantic import JsonValue
 from sequence_planner.controller.recovery.manual import KIND as BY_HAND
 from sequence_planner.controller.views.part import Value, View
 from sequence_planner.controller.views.station import (
-    ErrandView,
     ForceView,
     JobView,
+    OperatorPlanView,
     PackML,
     ServiceView,
     StepStatus,
@@ -107,7 +107,7 @@ class PastView(View):
     by_order: bool
     jobs: dict[str, JobView]
     plan: PastPlanView
-    errand: ErrandView | None
+    errand: OperatorPlanView | None
     forces: dict[str, ForceView]
     out_of_service: list[ServiceView]
 

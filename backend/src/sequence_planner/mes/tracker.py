@@ -16,9 +16,9 @@ from sequence_planner.controller.views.part import Value
 from sequence_planner.db.database import Database
 from sequence_planner.execution.events import (
     Corrected,
-    ErrandStopped,
-    ErrandTaken,
     ModeChanged,
+    OperatorPlanStarted,
+    OperatorPlanStopped,
     ProductionStarted,
     ServiceChanged,
 )
@@ -157,7 +157,7 @@ def _deviations(kind: str, content: Mapping[str, Any]) -> list[tuple[str, Mappin
 # faults, the states of PackML, and what its orders wait for.
 
 _STARTED: Final = kind_of(ProductionStarted)
-_MODES: Final = frozenset(map(kind_of, (ModeChanged, ErrandTaken, ErrandStopped)))
+_MODES: Final = frozenset(map(kind_of, (ModeChanged, OperatorPlanStarted, OperatorPlanStopped)))
 _OF_ALARMS: Final = ("priority", "text", "consequence", "action")
 
 

@@ -201,7 +201,7 @@ class EmulatedDevices:
         """The topics, services and actions on which the devices say something."""
         return list(self._messages)
 
-    def restore(self, values: Mapping[str, Value | None], messages: Mapping[str, Message]) -> None:
+    def restore_values(self, values: Mapping[str, Value | None], messages: Mapping[str, Message]) -> None:
         """Stand as devices of another model did, in all that is here too, before any time has passed.
 
         A goal or a request that was under way is not known here. On a topic on which it cannot be said how things were

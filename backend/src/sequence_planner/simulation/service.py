@@ -111,7 +111,7 @@ class _Life:
             resources=emulation.resources,
         )
         if emulation.standing is not None:
-            devices.restore(emulation.standing.values, emulation.standing.messages)
+            devices.restore_values(emulation.standing.values, emulation.standing.messages)
         self._devices = FaultyDevices(devices, station.pipelines, emulation.seed)
         self._others = RunningPipelines(station.pipelines)  # what devices say that are not emulated
         self._random = random.Random(f"reports {emulation.seed}")

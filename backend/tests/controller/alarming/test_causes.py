@@ -15,7 +15,7 @@ from sequence_planner.controller.views.station import AlarmState, Priority, Ques
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
-from sequence_planner.execution.state import LastErrand, OutOfService
+from sequence_planner.execution.state import LastOperatorPlan, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
 from support.simulated import Rig, never
 
@@ -215,7 +215,7 @@ def test_an_errand_that_the_station_has_stopped_is_an_alarm_until_it_works_again
     now = rig_now(rig)
     rig.execution.change_mode(Mode.RESTART, "Eva", now)
     for by, expected in (("Eva", set[str]()), (None, {f"errand:{now.epoch}"})):
-        last = LastErrand("Bring the robot home", False, "the station departed from it", now, by)
+        last = LastOperatorPlan("Bring the robot home", False, "the station departed from it", now, by)
         rig.execution.conduct = replace(rig.execution.conduct, last_errand=last)
         assert there(shown, now) == expected
     rig.execution.change_mode(Mode.AUTOMATIC, "Eva", now)

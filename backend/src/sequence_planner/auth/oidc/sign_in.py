@@ -233,7 +233,9 @@ class ProviderSignIn:
     def _refuse(self, counter: Counter, actor: Actor, refused: IdentityRefused, now: float) -> None:
         """Record a refusal, the first of its kind at once and further ones together."""
         details: dict[str, JsonValue] = {"because": refused.slug, "issuer": self.provider.settings.issuer}
-        self._limited.record(counter, Entry(actor=actor, action=SIGN_IN, outcome=Outcome.REFUSED, details=details), now)
+        self._limited.add_refusal(
+            counter, Entry(actor=actor, action=SIGN_IN, outcome=Outcome.REFUSED, details=details), now
+        )
         if self._limited.due(now):
             with self._database.writing() as connection:
                 for entry in self._limited.collect_due(now):

@@ -65,8 +65,8 @@ class Consequences:
         until: Argument = message("wait.until-it-does") if until_it_does else ""
         if execution.production is not Production.STARTED:
             return message("wait.not-started")
-        if execution.errand is not None:
-            return message("wait.errand", title=message("quoted", title=execution.errand.title), until=until)
+        if execution.operator_plan is not None:
+            return message("wait.errand", title=message("quoted", title=execution.operator_plan.title), until=until)
         if execution.mode is not Mode.AUTOMATIC:
             return message("wait.mode", mode=message(f"mode.{execution.mode}"))
         names = sorted(execution.active.intersection(operations))

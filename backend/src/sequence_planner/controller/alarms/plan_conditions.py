@@ -62,7 +62,7 @@ class PlanAlarms:
         yield from self._standing_still(monotonic)
         yield from self._given_up()
         yield from self._called_off()
-        yield from self._waiting_errand(monotonic)
+        yield from self._waiting_operator_plan(monotonic)
         if planner_trouble is not None:
             waiting = self._consequences.waiting(self._execution.active)
             yield PLANNER.cause("", {"trouble": planner_trouble, "waiting": waiting})
@@ -208,10 +208,14 @@ class PlanAlarms:
                 resources=[ability.resource],
             )
 
-    def _waiting_errand(self, monotonic: float) -> Iterator[Cause]:
+    def _waiting_operator_plan(self, monotonic: float) -> Iterator[Cause]:
         """Yield what a person has taken, and does not go on."""
-        execution, errand = self._execution, self._execution.errand
-        if errand is None or errand.ability is not None or (since := idle_since(execution, errand)) is None:
+        execution, operator_plan = self._execution, self._execution.operator_plan
+        if (
+            operator_plan is None
+            or operator_plan.ability is not None
+            or (since := idle_since(execution, operator_plan)) is None
+        ):
             return
         ahead, waited = execution.plan.order.ahead, monotonic - since
         if waited <= (START_WITHIN if ahead else END_WITHIN):
@@ -222,12 +226,14 @@ class PlanAlarms:
             conditions: Argument = waits or message("errand-waits.nothing-known")
             what = message("errand-waits.start", ability=title, seconds=START_WITHIN, conditions=conditions)
         else:
-            condition = end_text(errand.goal, errand.into_safe)
-            inside = [message("errand-waits.safe")] if errand.into_safe else []
+            condition = end_text(operator_plan.goal, operator_plan.into_safe)
+            inside = [message("errand-waits.safe")] if operator_plan.into_safe else []
             what = message(
                 "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]
             )
-        yield ERRAND_WAITS.cause("", {"what": what, "title": message("quoted", title=errand.title), "by": errand.by})
+        yield ERRAND_WAITS.cause(
+            "", {"what": what, "title": message("quoted", title=operator_plan.title), "by": operator_plan.by}
+        )
 
     def _violated(self) -> Iterator[Cause]:
         for name, since in self._execution.pursued.violated.items():

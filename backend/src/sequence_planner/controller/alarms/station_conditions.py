@@ -79,7 +79,7 @@ class StationAlarms:
         yield from self._beginning()
         yield from self._belief()
         yield from self._deployment()
-        yield from self._errand()
+        yield from self._operator_plan()
         yield from self._forces()
         yield from self._problems()
         yield from self._by_hand()
@@ -168,10 +168,10 @@ class StationAlarms:
             parts = [*map(as_it_was, self.unemulated)]
             yield NOT_EMULATED.cause("", {"why": self.unemulated[0]}, parts=parts, past_parts=parts)
 
-    def _errand(self) -> Iterator[Cause]:
-        last = self._execution.conduct.last_errand
+    def _operator_plan(self) -> Iterator[Cause]:
+        last = self._execution.conduct.last_operator_plan
         # Who has ended it knows of it; and once operations are executed again it is past.
-        if last is None or last.done or last.by is not None or self._execution.errand is not None:
+        if last is None or last.done or last.by is not None or self._execution.operator_plan is not None:
             return
         if self._execution.mode is not Mode.AUTOMATIC:
             yield ERRAND.cause(str(last.ended.epoch), {"title": message("quoted", title=last.title), "why": last.why})

@@ -75,11 +75,11 @@ class Definitions:
 
 
 def _trial(trial: AbilityTrial) -> TrialView:
-    errand, end = trial.errand, trial.end
+    operator_plan, end = trial.operator_plan, trial.end
     return TrialView(
-        by=errand.by,
-        reason=errand.why,
-        accepted=errand.taken.epoch,
+        by=operator_plan.by,
+        reason=operator_plan.why,
+        accepted=operator_plan.taken.epoch,
         started=_epoch(trial.started),
         executing=_epoch(trial.executing),
         ended=None if end is None else end.ended.epoch,

@@ -115,7 +115,7 @@ class DecideOutputs(ValuesCommand):
         return self.values
 
 
-class TakeErrand(Command):
+class ExecuteOperatorPlan(Command):
     """Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
 
     409 `proposal-gone` and `stale-revision` ask to look again; `not-confirmed`: starts and corrections are not those
@@ -128,7 +128,7 @@ class TakeErrand(Command):
             "/operator-plans",
             "execute_operator_plan",
             tag="recovery",
-            body="ErrandBody",
+            body="OperatorPlanBody",
             body_text="The offer, and all that it contains as the person has seen it: the starts in order, and the "
             "corrections.",
             refusals=(409, 422, 504),
@@ -173,7 +173,7 @@ class TryAbility(Command):
     real_devices: StrictBool = False
 
 
-class StopErrand(Command):
+class StopOperatorPlan(Command):
     """Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
 
     200 says that it was done and the journal does not have it yet.

@@ -97,7 +97,7 @@ class JobHandler:
             if act is JobAct.ABORT or act is JobAct.STOP:
                 raise _ended(job, "There is nothing left of it to end.")
             raise _ended(job, "Order another one.")
-        if self._jobs.command(job.id, act, execution.active, self._automaton, moment) != self._jobs:
+        if self._jobs.after_act(job.id, act, execution.active, self._automaton, moment) != self._jobs:
             execution.command_job(job.id, act, command.actor.name, command.reason or "", moment)
 
     @handles(ForgetJob)

@@ -14,11 +14,11 @@ from sequence_planner.controller.commands.execution import (
     StartProduction,
     TakeStep,
 )
-from sequence_planner.controller.commands.recovery import StopErrand
+from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
-from sequence_planner.controller.views.wording import errand_under_way
+from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
@@ -45,9 +45,9 @@ class Modes:
             # Pausing and holding are for everybody; restart mode is left by its own command, and by that alone.
             if mode is Mode.HOLD:
                 execution.call_off(by, moment)
-            elif execution.errand is not None:
-                execution.stop_errand(by, moment)
-        elif mode is not execution.mode or execution.errand is not None or mode is Mode.HOLD:
+            elif execution.operator_plan is not None:
+                execution.stop_operator_plan(by, moment)
+        elif mode is not execution.mode or execution.operator_plan is not None or mode is Mode.HOLD:
             execution.change_mode(mode, by, moment)
 
     @handles(EnterRestart)
@@ -63,8 +63,8 @@ class Modes:
         if execution.mode is not Mode.RESTART:
             detail = f"The mode is {execution.mode}: there is nothing to leave."
             raise CommandRefused("not-in-restart", "The station is not in restart mode", detail)
-        if execution.errand is not None:
-            detail = f"{execution.errand.title} is being carried out. Wait for its end, or stop it."
+        if execution.operator_plan is not None:
+            detail = f"{execution.operator_plan.title} is being carried out. Wait for its end, or stop it."
             raise CommandRefused("plan-running", "Something else is being carried out", detail)
         execution.change_mode(Mode.PAUSED, command.actor.name, moment)
 
@@ -89,11 +89,11 @@ class Modes:
             command.of, command.name, command.in_service, command.actor.name, command.reason, moment
         )
 
-    @handles(StopErrand)
-    def stop_errand(self, command: StopErrand, moment: Timestamp) -> None:
+    @handles(StopOperatorPlan)
+    def stop_operator_plan(self, command: StopOperatorPlan, moment: Timestamp) -> None:
         """End what is carried out, if anything is."""
-        if self._execution.errand is not None:
-            self._execution.stop_errand(command.actor.name, moment)
+        if self._execution.operator_plan is not None:
+            self._execution.stop_operator_plan(command.actor.name, moment)
 
     @handles(StartProduction)
     def start_production(self, command: StartProduction, moment: Timestamp) -> None:
@@ -114,8 +114,8 @@ class Modes:
     def require_standing(self, command: Deploy, moment: Timestamp) -> None:
         """Let another model take over (which the process does, as this controller ends) where nothing is started."""
         execution = self._execution
-        if execution.errand is not None:
-            raise errand_under_way(execution.errand)
+        if execution.operator_plan is not None:
+            raise plan_running(execution.operator_plan)
         if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
             detail = "Operations are executed automatically. Pause the station first."
             raise CommandRefused("in-automatic", "The station is at work", detail)
@@ -126,8 +126,8 @@ class Modes:
         if execution.mode is Mode.RESTART:
             detail = "Leave restart mode first; to go on is another decision."
             raise CommandRefused("in-restart", "The station is in restart mode", detail)
-        if execution.errand is not None:
-            raise errand_under_way(execution.errand)
+        if execution.operator_plan is not None:
+            raise plan_running(execution.operator_plan)
         if situation is not None and situation.certain:
             detail = f"{self._outside.describe(situation)} Enter restart mode and see which ways lead back."
             raise CommandRefused("outside-safe-states", "The station is outside its safe states", detail)

@@ -67,7 +67,7 @@ def of_station(execution: Executor) -> Iterator[BlockingCondition]:
     texts: list[str] = []
     if conduct.production is not Production.STARTED:
         texts.append("production to be started")
-    if conduct.errand is None and conduct.mode is not Mode.AUTOMATIC:
+    if conduct.operator_plan is None and conduct.mode is not Mode.AUTOMATIC:
         texts.append(WAITS[conduct.mode])
     if conduct.stepping and not conduct.steps:
         texts.append("a step: the station goes step by step")
@@ -128,7 +128,7 @@ def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> 
 def _unwritten(execution: Executor, ability: Ability, guard: SupervisorGuard | None) -> Iterator[BlockingCondition]:
     """Yield what keeps it from starting where all that is written holds."""
     state = execution.state
-    unsupervised = execution.errand is not None and execution.errand.unsupervised
+    unsupervised = execution.operator_plan is not None and execution.operator_plan.unsupervised
     after = start(execution.automaton, state, ability)
     if after is None:
         yield BlockingCondition(HindranceKind.WRITTEN, "values that are unknown")
@@ -368,7 +368,7 @@ def waits_for(
 
 def right_moment(execution: Executor) -> str:
     """Say what the next start waits for although it may start."""
-    if execution.errand is None:
+    if execution.operator_plan is None:
         return "the right moment: started now, the rest of the plan would not reach its goals"
     if before := list(dict.fromkeys(_before(execution))):
         return f"what comes before it in what was taken: {', '.join(before)}"
@@ -388,9 +388,9 @@ def _before(execution: Executor) -> Iterator[str]:
             return
 
 
-def idle_since(execution: Executor, errand: OperatorPlan) -> float | None:
-    """Since when nothing of an errand is under way; None while something is."""
-    taken = errand.taken.monotonic
+def idle_since(execution: Executor, operator_plan: OperatorPlan) -> float | None:
+    """Since when nothing of an operator plan is under way; None while something is."""
+    taken = operator_plan.taken.monotonic
     own = [step for step in execution.plan.order.past if step.started and step.started.monotonic >= taken]
     ended = [step.ended.monotonic for step in own if step.ended is not None]
     return None if len(ended) < len(own) else max((taken, *ended))

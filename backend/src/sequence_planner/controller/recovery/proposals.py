@@ -15,17 +15,17 @@ from typing import Protocol
 
 from sequence_planner.controller.commands.bus import handles
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.recovery import CorrectEstimates, TakeErrand
+from sequence_planner.controller.commands.recovery import CorrectEstimates, ExecuteOperatorPlan
 from sequence_planner.controller.io.inputs import LastKnown
 from sequence_planner.controller.planner_client import AIMED_WITHIN, WAITING, AdvisorClient, aim
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
 from sequence_planner.controller.views.wording import (
     diagnosis_view,
-    errand_under_way,
     no_plan,
     offer_title,
     offer_view,
+    plan_running,
     read_predicate,
     refusal_of,
     require_confirmation,
@@ -33,7 +33,7 @@ from sequence_planner.controller.views.wording import (
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import ErrandKind, OperatorPlan
+from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.timeouts import overdue
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.language.evaluator import holds
@@ -97,7 +97,7 @@ class Offers:
 
     async def advice(self) -> AdviceView:
         """Ways on from the present state. Raises `CommandRefused`."""
-        self._require_no_errand()
+        self._require_no_operator_plan()
         execution, revision = self._execution, self._execution.revision
         request = AdviceRequest(
             state=execution.state,
@@ -157,7 +157,7 @@ class Offers:
         return await self._offered(found.precondition, operation)
 
     async def _offered(self, target: Expression, operation: str | None) -> OfferView:
-        self._require_no_errand()
+        self._require_no_operator_plan()
         execution, revision = self._execution, self._execution.revision
         request = ErrandRequest(
             state=execution.state,
@@ -175,8 +175,8 @@ class Offers:
         (view,) = self._keep((aimed.offer,), revision)
         return view
 
-    @handles(TakeErrand)
-    def take(self, command: TakeErrand, moment: Timestamp) -> None:
+    @handles(ExecuteOperatorPlan)
+    def take(self, command: ExecuteOperatorPlan, moment: Timestamp) -> None:
         """Make the corrections of an offer and have its plan carried out."""
         kept = self._kept.get(command.offer)
         if kept is None:
@@ -195,13 +195,13 @@ class Offers:
             )
             self._corrections.correct(correcting, moment)
         if offer.errand is not None:
-            execution.take_errand(self._errand(offer, command, moment), moment)
+            execution.start_operator_plan(self._operator_plan(offer, command, moment), moment)
 
-    def _errand(self, offer: RecoveryProposal, command: TakeErrand, moment: Timestamp) -> OperatorPlan:
+    def _operator_plan(self, offer: RecoveryProposal, command: ExecuteOperatorPlan, moment: Timestamp) -> OperatorPlan:
         assert offer.errand is not None
-        kind = {OfferKind.RESET: ErrandKind.RESET, OfferKind.GOAL: ErrandKind.GOAL}
+        kind = {OfferKind.RESET: OperatorPlanKind.RESET, OfferKind.GOAL: OperatorPlanKind.GOAL}
         return OperatorPlan(
-            kind=kind.get(offer.kind, ErrandKind.WAY_BACK),
+            kind=kind.get(offer.kind, OperatorPlanKind.WAY_BACK),
             title=offer_title(self._execution.automaton, offer),
             plan=offer.errand,
             goal=offer.goal,
@@ -226,9 +226,9 @@ class Offers:
             del self._kept[id_]
         return views
 
-    def _require_no_errand(self) -> None:
-        if self._execution.errand is not None:
-            raise errand_under_way(self._execution.errand)
+    def _require_no_operator_plan(self) -> None:
+        if self._execution.operator_plan is not None:
+            raise plan_running(self._execution.operator_plan)
 
     @property
     def _unused(self) -> frozenset[str]:

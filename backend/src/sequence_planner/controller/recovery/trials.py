@@ -11,11 +11,11 @@ from sequence_planner.controller.commands.bus import handles
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.controller.recovery.explain import ConditionContext, of_ability
-from sequence_planner.controller.views.wording import errand_under_way
+from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.execution.events import ErrandTaken, Heard, Ticked, TickOutcome
+from sequence_planner.execution.events import Heard, OperatorPlanStarted, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import ErrandKind, LastErrand, OperatorPlan
+from sequence_planner.execution.state import LastOperatorPlan, OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.syntax import TRUE
 from sequence_planner.language.types import Value
@@ -48,12 +48,12 @@ class ExpectedEffect:
 class AbilityTrial:
     """The course of a trial; `end` says how it ended."""
 
-    errand: OperatorPlan
+    operator_plan: OperatorPlan
     ability: Ability
     reactions: list[ExpectedEffect]
     started: Timestamp | None = None
     executing: Timestamp | None = None
-    end: LastErrand | None = None
+    end: LastOperatorPlan | None = None
 
 
 class TrialWatch:
@@ -67,28 +67,28 @@ class TrialWatch:
 
     def _hear(self, heard: Heard) -> None:
         match heard.happening:
-            case ErrandTaken(errand):
+            case OperatorPlanStarted(operator_plan):
                 self._end()
                 self._looks = False
-                if errand.ability is not None:
-                    self._begin(errand, errand.ability)
+                if operator_plan.ability is not None:
+                    self._begin(operator_plan, operator_plan.ability)
             case Ticked(now=now) if heard.outcome is not None:
                 self._note(heard.outcome, heard.after, now)
                 self._end()
             case _:
                 self._end()
 
-    def _begin(self, errand: OperatorPlan, name: str) -> None:
+    def _begin(self, operator_plan: OperatorPlan, name: str) -> None:
         automaton = self._execution.automaton
         self.last = AbilityTrial(
-            errand, automaton.abilities[name], [ExpectedEffect(each) for each in reactions(automaton, name)]
+            operator_plan, automaton.abilities[name], [ExpectedEffect(each) for each in reactions(automaton, name)]
         )
         self._looks = True
 
     def _end(self) -> None:
         trial, execution = self.last, self._execution
-        if trial is not None and trial.end is None and execution.errand is not trial.errand:
-            trial.end = execution.conduct.last_errand
+        if trial is not None and trial.end is None and execution.operator_plan is not trial.operator_plan:
+            trial.end = execution.conduct.last_operator_plan
 
     def _note(self, outcome: TickOutcome, state: State, now: Timestamp) -> None:
         trial = self.last
@@ -115,8 +115,8 @@ def reactions(automaton: Automaton, ability: str) -> list[Effect]:
 
 # Trying an ability: one run of it alone, under the same conditions as ever.
 #
-# It is an errand, so operations wait for it, and the guards and the supervisor are as strict as in production. What may
-# start starts at once; what may not is refused, with all that is in its way.
+# It is an operator plan, so operations wait for it, and the guards and the supervisor are as strict as in production.
+# What may start starts at once; what may not is refused, with all that is in its way.
 
 
 class Trials:
@@ -141,13 +141,13 @@ class Trials:
         if not command.real_devices and (there := self.real_devices()):
             detail = f"{'; '.join(there)}. Confirm that real devices may move."
             raise CommandRefused("real-devices", "There are real devices", detail)
-        self._execution.take_errand(_errand(ability, command, moment), moment)
+        self._execution.start_operator_plan(_operator_plan(ability, command, moment), moment)
 
     def refusal(self, ability: Ability) -> CommandRefused | None:
         """Return why it cannot be tried now; None when it can."""
         execution = self._execution
-        if execution.errand is not None:
-            return errand_under_way(execution.errand)
+        if execution.operator_plan is not None:
+            return plan_running(execution.operator_plan)
         if execution.production is not Production.STARTED:
             detail = "No command is sent before production is started. Pause, then start production, then try it."
             return CommandRefused("production-not-started", "Production waits", detail)
@@ -168,9 +168,9 @@ class Trials:
         yield from (each.text for each in of_ability(execution, ability, self._around.feeds, guard))
 
 
-def _errand(ability: Ability, command: TryAbility, moment: Timestamp) -> OperatorPlan:
+def _operator_plan(ability: Ability, command: TryAbility, moment: Timestamp) -> OperatorPlan:
     return OperatorPlan(
-        kind=ErrandKind.TRIAL,
+        kind=OperatorPlanKind.TRIAL,
         title=f"Try: {ability.title}",
         plan=Plan((PlanTick((), (ability.name,)), PlanTick((), ())), minimal_ticks=False, minimal_starts=True),
         goal=TRUE if ability.finish_guard is None else ability.finish_guard,

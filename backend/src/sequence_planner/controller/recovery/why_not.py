@@ -118,8 +118,8 @@ class WhyNot:
     def _progress(self, operation: Operation) -> str:
         """Say how far an active operation is."""
         execution, name = self._execution, operation.name
-        if execution.errand is not None:
-            return f"It waits: {execution.errand.title} is being carried out."
+        if execution.operator_plan is not None:
+            return f"It waits: {execution.operator_plan.title} is being carried out."
         if execution.mode is Mode.RESTART:
             return "It waits: the station is in restart mode."
         if name in execution.pursued.violated:

@@ -27,11 +27,11 @@ from sequence_planner.controller.views.station import (
     DiagnosisView,
     DifferenceView,
     DroppedStepView,
-    ErrandView,
     ForceView,
     LastCorrectionView,
-    LastErrandView,
+    LastOperatorPlanView,
     OperationView,
+    OperatorPlanView,
     OverrideView,
     PackML,
     PlanStepView,
@@ -114,7 +114,7 @@ def packml(execution: Executor) -> PackML:
     if execution.mode is Mode.AUTOMATIC:
         followed = execution.plan.status is PlanStatus.FOLLOWED and bool(execution.plan.order.goals)
         return PackML.EXECUTE if moves or followed else PackML.SUSPENDED
-    moves = moves or execution.errand is not None
+    moves = moves or execution.operator_plan is not None
     if execution.mode is Mode.RESTART:
         return PackML.CLEARING if moves else PackML.ABORTED
     during, after = _ENDING[execution.mode]
@@ -161,29 +161,31 @@ def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[
     return StationStanding.SILENT if silent else StationStanding.WORKING
 
 
-def errand_view(execution: Executor) -> ErrandView | None:
+def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
     """Return what is carried out now."""
-    errand = execution.errand
-    if errand is None:
+    operator_plan = execution.operator_plan
+    if operator_plan is None:
         return None
-    return ErrandView(
-        kind=errand.kind,
-        title=errand.title,
-        by=errand.by,
-        why=errand.why,
-        since=errand.taken.epoch,
-        ends=end_text(errand.goal, errand.into_safe),
-        into_safe=errand.into_safe,
-        ability=errand.ability,
+    return OperatorPlanView(
+        kind=operator_plan.kind,
+        title=operator_plan.title,
+        by=operator_plan.by,
+        why=operator_plan.why,
+        since=operator_plan.taken.epoch,
+        ends=end_text(operator_plan.goal, operator_plan.into_safe),
+        into_safe=operator_plan.into_safe,
+        ability=operator_plan.ability,
     )
 
 
-def last_errand_view(conduct: ExecutionState) -> LastErrandView | None:
+def last_operator_plan_view(conduct: ExecutionState) -> LastOperatorPlanView | None:
     """Return how the last one has ended."""
-    last = conduct.last_errand
+    last = conduct.last_operator_plan
     if last is None:
         return None
-    return LastErrandView(title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability)
+    return LastOperatorPlanView(
+        title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability
+    )
 
 
 def force_views(conduct: ExecutionState) -> dict[str, ForceView]:
@@ -352,8 +354,8 @@ class ViewBuilder:
             by_order=jobs.by_order,
             jobs=job_views(execution, jobs, self._around(desk, alarms, control is not None, moment)),
             plan=self._plan(),
-            errand=errand_view(execution),
-            last_errand=last_errand_view(conduct),
+            errand=operator_plan_view(execution),
+            last_errand=last_operator_plan_view(conduct),
             forces=force_views(conduct),
             out_of_service=service_views(execution.automaton, conduct),
             questions=doubts.questions,

@@ -62,8 +62,8 @@ def _station(execution: Executor, around: Around | None) -> Iterator[str]:
     stopped = conduct.production is not Production.STARTED or conduct.mode is not Mode.AUTOMATIC
     if stopped and around is not None and not around.controlled:
         yield "somebody to take control"
-    if conduct.errand is not None:
-        yield f"the end of what is carried out: {conduct.errand.title}"
+    if conduct.operator_plan is not None:
+        yield f"the end of what is carried out: {conduct.operator_plan.title}"
 
 
 class _Running:

@@ -221,7 +221,7 @@ class ServiceView(View):
     why: str
 
 
-class ErrandView(View):
+class OperatorPlanView(View):
     """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
 
     It is done when it `ends`, and one `into_safe` when the station is inside its safe states besides. `ability` is the
@@ -238,8 +238,8 @@ class ErrandView(View):
     ability: str | None
 
 
-class LastErrandView(View):
-    """How the last errand has ended: `done`, or why not. `ability` is the one that was tried."""
+class LastOperatorPlanView(View):
+    """How the last operator plan has ended: `done`, or why not. `ability` is the one that was tried."""
 
     title: str
     done: bool
@@ -667,8 +667,8 @@ class StationView(View):
     by_order: bool  # operations of work masters are active for jobs only
     jobs: dict[str, JobView]  # that are under way, or have ended and are not forgotten yet, in the order taken
     plan: PlanView
-    errand: ErrandView | None
-    last_errand: LastErrandView | None
+    errand: OperatorPlanView | None
+    last_errand: LastOperatorPlanView | None
     forces: dict[str, ForceView]
     out_of_service: list[ServiceView]
     questions: list[QuestionView]

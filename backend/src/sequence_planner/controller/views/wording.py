@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
-from sequence_planner.controller.commands.recovery import TakeErrand
+from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
 from sequence_planner.controller.planner_client import GOAL, GoalPlan
 from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.views.proposals import (
@@ -83,7 +83,7 @@ def offer_view(
 
 
 def end_text(goal: Expression, into_safe: bool) -> str | None:
-    """By what it is known that an errand has come to its end, beside that it is inside the safe states."""
+    """By what it is known that an operator plan has come to its end, beside that it is inside the safe states."""
     return None if into_safe and goal == TRUE else print_expression(goal)
 
 
@@ -193,8 +193,8 @@ def _changes(changes: Iterable[ValueChange]) -> list[ValueChangeView]:
 
 def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused | None:
     """Return why an offer for the present state cannot be taken now; None when it can."""
-    if execution.errand is not None:
-        return errand_under_way(execution.errand)
+    if execution.operator_plan is not None:
+        return plan_running(execution.operator_plan)
     if offer.physical or offer.online or offer.in_service:
         detail = "Something has to be done at the station first. Do that, then ask again."
         return CommandRefused("manual-step-required", "Something has to be done first", detail)
@@ -211,8 +211,8 @@ def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused |
 
 def correcting_refused(execution: Executor) -> CommandRefused | None:
     """Return why no correction can be made now; None when one can."""
-    if execution.errand is not None:
-        return errand_under_way(execution.errand)
+    if execution.operator_plan is not None:
+        return plan_running(execution.operator_plan)
     if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
         detail = "Corrections are made in restart mode, or before production is started. Enter restart mode first."
         return CommandRefused("not-in-restart", "The mode is another one", detail)
@@ -229,7 +229,7 @@ def _wrong_mode(offer: RecoveryProposal, mode: Mode) -> CommandRefused | None:
     return CommandRefused("wrong-mode", "The mode is another one", detail)
 
 
-def require_confirmation(offer: RecoveryProposal, command: TakeErrand) -> None:
+def require_confirmation(offer: RecoveryProposal, command: ExecuteOperatorPlan) -> None:
     """Raises `CommandRefused` unless the command repeats what the offer contains."""
     starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
     corrections = {change.name: change.new for change in offer.corrections}
@@ -243,9 +243,9 @@ def _same(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
     return one == other and all(type(one[name]) is type(other[name]) for name in one)
 
 
-def errand_under_way(errand: OperatorPlan) -> CommandRefused:
-    """Nothing is offered beside an errand: the state moves with it."""
-    detail = f"{errand.title} is being carried out. Wait for its end, or stop it."
+def plan_running(operator_plan: OperatorPlan) -> CommandRefused:
+    """Nothing is offered beside an operator plan: the state moves with it."""
+    detail = f"{operator_plan.title} is being carried out. Wait for its end, or stop it."
     return CommandRefused("plan-running", "Something else is being carried out", detail)
 
 

@@ -20,8 +20,6 @@ from sequence_planner.execution.events import (
     CalledOff,
     Confirmed,
     Corrected,
-    ErrandStopped,
-    ErrandTaken,
     Event,
     Explained,
     Forced,
@@ -31,6 +29,8 @@ from sequence_planner.execution.events import (
     JobsSequenced,
     JobTaken,
     ModeChanged,
+    OperatorPlanStarted,
+    OperatorPlanStopped,
     ProductionStarted,
     ServiceChanged,
     SteppingChanged,
@@ -38,6 +38,7 @@ from sequence_planner.execution.events import (
     Ticked,
     Unanswered,
 )
+from sequence_planner.execution.state import ExecutionState
 from sequence_planner.language.parser import parse_formula
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.resolver import NameScope, resolve_formula
@@ -69,6 +70,11 @@ class HistoryError(Exception):
 
 Encode = Callable[[Any], JsonValue]
 Decode = Callable[[Any], Any]
+# The names that fields have in the journal where the program has another, by their classes.
+WRITTEN_AS: Final[Mapping[type, Mapping[str, str]]] = {
+    ExecutionState: {"operator_plan": "errand", "last_operator_plan": "last_errand"},
+    OperatorPlanStarted: {"operator_plan": "errand"},
+}
 _PRIMITIVES = (bool, int, float, str)
 _MISSING = object()
 
@@ -193,25 +199,27 @@ class Shapes:
     def _record(self, form: type) -> Shape:
         """The fields of a class that are not as their default is."""
         hints = get_type_hints(form)
-        fields = {name: (self.shape(hints[name]), default) for name, default in _fields(form).items()}
+        written_as = WRITTEN_AS.get(form, {})
+        names = {name: written_as.get(name, name) for name in _fields(form)}
+        fields = {names[name]: (name, self.shape(hints[name]), default) for name, default in _fields(form).items()}
 
         def encode(value: Any) -> JsonValue:  # noqa: ANN401
             document: dict[str, JsonValue] = {}
-            for name, (shape, default) in fields.items():
+            for written_name, (name, shape, default) in fields.items():
                 content = getattr(value, name)
                 if default is not _MISSING and content == default:
                     continue
                 written = shape.encode(content)
                 if written is not None or default is not None:  # what is dropped is as if it had never been there
-                    document[name] = written
+                    document[written_name] = written
             return document
 
         def decode(document: Any) -> Any:  # noqa: ANN401
             if unknown := _expected(dict, document).keys() - fields.keys():
                 raise UnreadableError(f"a {form.__name__} has no {', '.join(sorted(unknown))}")
-            if missing := {name for name, (_, default) in fields.items() if default is _MISSING} - document.keys():
+            if missing := {name for name, (_, _, default) in fields.items() if default is _MISSING} - document.keys():
                 raise UnreadableError(f"a {form.__name__} needs {', '.join(sorted(missing))}")
-            return form(**{name: fields[name][0].decode(content) for name, content in document.items()})
+            return form(**{fields[each][0]: fields[each][1].decode(content) for each, content in document.items()})
 
         return Shape(encode, decode)
 
@@ -276,8 +284,8 @@ KINDS: Final[Mapping[str, type]] = {
     "confirmed": Confirmed,
     "forced": Forced,
     "force-released": ForceReleased,
-    "errand-taken": ErrandTaken,
-    "errand-stopped": ErrandStopped,
+    "errand-taken": OperatorPlanStarted,
+    "errand-stopped": OperatorPlanStopped,
     "by-order-changed": ByOrderChanged,
     "job-taken": JobTaken,
     "jobs-sequenced": JobsSequenced,

@@ -203,7 +203,7 @@ class RunRecorder:
         self._put(BEGUN, clock(), self._everything())
         execution.listeners.append(self._on_event)
 
-    def record(self, kind: str, epoch: float, content: Mapping[str, JsonValue], lasts: bool = False) -> None:
+    def append_record(self, kind: str, epoch: float, content: Mapping[str, JsonValue], lasts: bool = False) -> None:
         """Write down what is no happening of the execution, such as an alarm.
 
         What `lasts` holds part by part until it is noted otherwise. It is written again with each snapshot, so that

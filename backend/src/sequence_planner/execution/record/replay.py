@@ -17,8 +17,6 @@ from sequence_planner.execution.events import (
     CalledOff,
     Confirmed,
     Corrected,
-    ErrandStopped,
-    ErrandTaken,
     Event,
     Explained,
     Forced,
@@ -28,6 +26,8 @@ from sequence_planner.execution.events import (
     JobsSequenced,
     JobTaken,
     ModeChanged,
+    OperatorPlanStarted,
+    OperatorPlanStopped,
     ProductionStarted,
     ServiceChanged,
     SteppingChanged,
@@ -163,10 +163,10 @@ class Player:
                 execution.force(name, value, until, by, why)
             case ForceReleased(name):
                 execution.release(name)
-            case ErrandTaken(errand, now):
-                execution.take_errand(errand, now)
-            case ErrandStopped(by, now):
-                execution.stop_errand(by, now)
+            case OperatorPlanStarted(operator_plan, now):
+                execution.start_operator_plan(operator_plan, now)
+            case OperatorPlanStopped(by, now):
+                execution.stop_operator_plan(by, now)
             case ByOrderChanged(on, by, why, now):
                 execution.set_by_order(on, by, why, now)
             case JobTaken(job, title, work_master, by, now):

@@ -169,7 +169,7 @@ class Deliverer:
         self._made = asyncio.Event()
         self._has_webhooks = True  # as far as it is known
 
-    def wake(self) -> None:
+    def on_webhook(self) -> None:
         """A webhook was made."""
         self._made.set()
 

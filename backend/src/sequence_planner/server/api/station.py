@@ -16,11 +16,11 @@ from sequence_planner.controller.views.station import (
     AlarmView,
     ApprovalView,
     DeploymentView,
-    ErrandView,
     ForceView,
     LastCorrectionView,
-    LastErrandView,
+    LastOperatorPlanView,
     OperationView,
+    OperatorPlanView,
     OverrideView,
     PackML,
     PlanView,
@@ -67,8 +67,8 @@ class StationAnswer(Answer):
     unconfirmed: bool
     undecided: dict[str, UndecidedOutputView]
     control: ControlView | None
-    errand: ErrandView | None
-    last_errand: LastErrandView | None
+    errand: OperatorPlanView | None
+    last_errand: LastOperatorPlanView | None
     forces: dict[str, ForceView]
     out_of_service: list[ServiceView]
     questions: list[QuestionView]

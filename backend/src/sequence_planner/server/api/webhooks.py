@@ -135,7 +135,7 @@ async def create_webhook(
         by=actor,
     )
     deliverer: Deliverer = request.app.state.deliverer
-    deliverer.wake()
+    deliverer.on_webhook()
     response.headers["Location"] = request.url_for("read_webhook", webhook=webhook.id).path
     return NewWebhookAnswer(webhook=webhook, secret=secret)
 

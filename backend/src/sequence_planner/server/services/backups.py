@@ -107,7 +107,7 @@ class BackupService:
 
     async def look(self) -> BackupFolderState:
         """The folder as it is now. Raises `FolderSilentError`."""
-        looked = await self._in_thread(self.shelf.state)
+        looked = await self._in_thread(self.shelf.folder_state)
         times = [each.manifest.time for each in looked.backups if each.manifest is not None]
         self.newest = max(times, default=None)
         return looked

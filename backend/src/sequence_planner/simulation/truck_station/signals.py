@@ -59,7 +59,7 @@ def _put_arm(world: World, signals: Signals) -> None:
     is_planned = signals.get("action") == "PLANNED"
     tool = world.held if world.effector.locked else None
     if is_planned and not world.arm.off and goal != world.arm.goal and world.scene != ([] if tool is None else [tool]):
-        world.verdict.record(world.now, f"wrong plan: the scene has {world.scene}, and the robot {tool}")
+        world.verdict.add_event(world.now, f"wrong plan: the scene has {world.scene}, and the robot {tool}")
     world.arm.command(goal, scaling)
 
 

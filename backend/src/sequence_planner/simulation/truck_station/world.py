@@ -258,7 +258,7 @@ class Verdict:
 
     events: list[tuple[float, str]] = field(default_factory=list)
 
-    def record(self, now: float, event: str) -> None:
+    def add_event(self, now: float, event: str) -> None:
         """Take down an event."""
         self.events.append((round(now, 3), event))
 
@@ -329,7 +329,7 @@ class World:
             self._once(f"collision: the robot and a hand at {self._at}")
 
     def _record(self, event: str) -> None:
-        self.verdict.record(self.now, event)
+        self.verdict.add_event(self.now, event)
 
     def _once(self, event: str) -> None:
         if not self.verdict.events or self.verdict.events[-1][1] != event:
