@@ -86,7 +86,7 @@ def analyses(
     yield found
     found = _counted(found, supervision, counting)
     if found.supervisor is not None and found.supervised_states is None and found.supervised_at_most is None:
-        found = _bounded(found, automaton, read(name_key(automaton), Evidence))
+        found = _bounded(found, automaton, known_evidence(automaton))
     yield replace(found, pending=None)
 
 
@@ -152,6 +152,11 @@ def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
                 found, supervised_at_most=None, supervised_states=count(whole.reachable(supervised=True, effort=effort))
             )
     return found
+
+
+def known_evidence(automaton: Automaton) -> Evidence | None:
+    """Return what answers about the model of this name rested on when it was last looked at."""
+    return read(name_key(automaton), Evidence)
 
 
 def _for_next_time(asked: SupervisionQuestion, restrictions: Restrictions) -> Evidence | None:

@@ -123,9 +123,9 @@ def _kept(automaton: Automaton, unwanted: Collection[str]) -> Found | None:
 
 def _evidence(automaton: Automaton) -> Evidence | None:
     """Return what answers about the model of this name rested on when it was last looked at."""
-    from sequence_planner.analysis.checks.evidence import Evidence  # noqa: PLC0415
+    from sequence_planner.analysis.finding import known_evidence  # noqa: PLC0415
 
-    return read(name_key(automaton), Evidence)
+    return known_evidence(automaton)
 
 
 def _found(automaton: Automaton, limits: Limits, hearing: _Hearing, *, far: bool = True) -> Found:

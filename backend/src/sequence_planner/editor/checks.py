@@ -7,9 +7,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import COUNTING
-from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.rules import check_automaton
-from sequence_planner.analysis.finding import analyses, without_numbers
+from sequence_planner.analysis.finding import analyses, known_evidence, without_numbers
 from sequence_planner.analysis.report import (
     FindingDocument,
     TraceDocument,
@@ -17,7 +16,6 @@ from sequence_planner.analysis.report import (
     error_document,
     findings_of,
 )
-from sequence_planner.analysis.store import name_key, read
 from sequence_planner.automaton.automaton import Ability, Automaton
 from sequence_planner.controller.views.automaton_diagram import Drawing
 from sequence_planner.controller.views.details import AutomatonView
@@ -80,9 +78,7 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
     with collection_put_off():
         warnings = findings_of(automaton, [*check_automaton(automaton, station.connections), *station.suspicions()])
     view = view.model_copy(update={"findings": listed(sorted(warnings, key=_place))})
-    evidence = read(
-        name_key(automaton), Evidence
-    )  # of what `check` has answered from afar: then it is soon proven again
+    evidence = known_evidence(automaton)  # of what `check` has answered from afar: then it is soon proven again
     for analysis in without_numbers(automaton, far=evidence is not None, evidence=evidence):
         document = document_of(automaton, analysis)
         found = sorted([*warnings, *(document.findings or ())], key=_place)

@@ -51,7 +51,7 @@ class Plans:
         self._left = 0.0 if automaton.one_at_a_time else seconds
 
     @property
-    def work(self) -> tuple[Goal, ...]:
+    def all_goals(self) -> tuple[Goal, ...]:
         """The goals of all operations."""
         return goals_of(self._automaton, self._automaton.operations)
 
@@ -97,7 +97,7 @@ class FarInquiry(ReachabilityQuery):
         self.whole = effort  # for what serves all questions
         self._plans = plans
 
-    def plan(self, goals: Sequence[Goal]) -> None:
+    def know_plan(self, goals: Sequence[Goal]) -> None:
         """Know what a plan for `goals` leads through, from where the longest run that is known ends."""
         if self._plans is not None:
             begin = self._runs.furthest
@@ -179,7 +179,7 @@ class FarInquiry(ReachabilityQuery):
                 with suppress(TooMuchError):
                     return self._gone_back(target, supervised, faults)
                 if goal is not None:
-                    self.plan((Goal("", goal),))
+                    self.know_plan((Goal("", goal),))
                     goal = None
                     found = target & self._runs.known(supervised=supervised, faults=faults)
                     if found.satisfiable():
@@ -416,7 +416,7 @@ def _answers(
 def _anew(asked: Questions, plans: Plans, whole: NodeLimit) -> FarInquiry | None:
     inquiry = begun(asked, whole, plans)
     if inquiry is not None:
-        inquiry.plan(plans.work)
+        inquiry.know_plan(plans.all_goals)
     return inquiry
 
 
@@ -425,7 +425,7 @@ def _resumed(asked: Questions, plans: Plans, known: Evidence, whole: NodeLimit) 
     with suppress(TooMuchError):
         inquiry = FarInquiry(asked, whole, known.ordered(asked.bearing), plans)
         if not inquiry.recall(known):
-            inquiry.plan(plans.work)
+            inquiry.know_plan(plans.all_goals)
         return inquiry
     return None
 
