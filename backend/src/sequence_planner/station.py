@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sequence_planner.analysis.cache import STATION, content_key, keep, read_before
 from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.checks.ungiven_values import check_never_given
 from sequence_planner.analysis.checks.warning import ModelWarning, described
+from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.declarations import OPERATION
 from sequence_planner.automaton.grounding import GroundBefore, ground
@@ -93,7 +93,7 @@ def read_station(folder: Path, before: Before | None = None) -> MeantStation:
 
 
 @dataclass(frozen=True)
-class _Kept:
+class ReadStation:
     """The parts kept of a station that was read: message types are classes, and made anew."""
 
     station: Station
@@ -105,12 +105,12 @@ def _read_or_kept(folder: Path) -> MeantStation:
     before.
     """
     content = content_key(folder)
-    known = None if content is None else read_before(STATION, content)
-    if isinstance(known, _Kept):
+    known = None if content is None else read(content, ReadStation)
+    if known is not None:
         return MeantStation(known.station, load_messages(known.station), known.automaton)
     meant = read_station(folder)
     if content is not None and content == content_key(folder):  # nobody has changed it meanwhile
-        keep(STATION, content, _Kept(meant.station, meant.automaton))
+        write(content, ReadStation(meant.station, meant.automaton))
     return meant
 
 

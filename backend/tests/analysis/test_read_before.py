@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.analysis.cache import automaton_read_before, content_key, keep_automaton
-from sequence_planner.analysis.store import folder, key
+from sequence_planner.analysis.store import content_key, folder, key, read, write
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.cli import loading
 from sequence_planner.cli.loading import load_model, usable_automaton
 from support.places import MODELS, SINGLE_BOLT
@@ -36,12 +36,13 @@ def test_what_is_kept_is_found_however_the_model_was_read(
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     path = MODELS / station
-    read, content = load_model(path).automaton, content_key(path)
+    first, content = load_model(path).automaton, content_key(path)
     assert content is not None
-    keep_automaton(content, read)
-    kept = automaton_read_before(content)
-    assert kept == read
-    assert key(kept) == key(read)
+    write(content, first)
+    kept = read(content, Automaton)
+    assert kept is not None
+    assert kept == first
+    assert key(kept) == key(first)
 
 
 def test_each_change_of_a_file_is_seen(model: Path) -> None:
@@ -69,7 +70,7 @@ def test_the_same_files_under_another_name_have_other_places(model: Path) -> Non
 
 def test_a_damaged_file_is_not_believed(model: Path) -> None:
     first = usable_automaton(model)
-    [file] = folder().glob("automaton-*")
+    [file] = folder().glob("Automaton-*")
     content = bytearray(file.read_bytes())
     content[-20] ^= 4
     file.write_bytes(content)
@@ -80,4 +81,4 @@ def test_what_is_more_than_a_model_is_read_each_time(model: Path) -> None:
     (model / "elsewhere").symlink_to(model.parent)
     assert content_key(model) is None
     assert usable_automaton(model).resources
-    assert not list(folder().glob("automaton-*"))
+    assert not list(folder().glob("Automaton-*"))

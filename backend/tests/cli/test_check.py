@@ -55,6 +55,31 @@ def test_of_a_long_run_its_length_is_told_and_all_of_it_where_it_is_asked_for(tm
     assert steps[-1].endswith("which forbidden_1 forbids")
 
 
+def test_how_many_starts_and_goals_are_possible_is_counted(tmp_path: Path) -> None:
+    document = {
+        "name": "valve",
+        "variables": {"n": {"min": 0, "max": 2}},
+        "initial": "n == 0",
+        "marked": "n <= 1",
+        "transitions": [
+            {"event": "open", "controllable": True, "guard": "n == 0", "set": {"n": "1"}},
+            {"event": "burst", "controllable": True, "guard": "n == 1", "set": {"n": "2"}},
+        ],
+        "forbidden": ["n == 2"],
+    }
+    file = tmp_path / "valve.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    for _ in ("found out", "told again"):
+        code, out, _ = command("check", file)
+        assert (code, out.splitlines()[-2]) == (1, "2 events and goals: 1 always possible, 1 not, 0 not known")
+        _, told = as_json("check", file)
+        assert told["summary"]["questions"] == {"possible": 1, "impossible": 1, "open": 0}
+    document["forbidden"] = []
+    file.write_text(json.dumps(document), encoding="utf-8")
+    _, told = as_json("check", file)
+    assert told["summary"]["questions"]["possible"] == 1
+
+
 def test_one_of_each_is_told_as_one(tmp_path: Path) -> None:
     (tmp_path / "resources").mkdir()
     (tmp_path / "station.yaml").write_text("name: lamp\nestimated: {lit: {type: bool, initial: false}}\n")

@@ -7,7 +7,8 @@ from shutil import copytree
 
 import pytest
 
-from sequence_planner.analysis.store import kept
+from sequence_planner.analysis.store import key, read
+from sequence_planner.cli.analysing import Found
 from sequence_planner.cli.loading import load_model
 from support.commands import as_json, command, plain
 from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
@@ -97,7 +98,7 @@ uncontrollable ask
 def test_the_guard_of_one_ability_is_the_same_as_among_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     _, alone, _ = command("show", BOLT_TIGHTENING, "operator.place_bolt_pair(bolt_pair_1)")
-    assert kept(load_model(BOLT_TIGHTENING).automaton) is None  # nothing else was found out for it
+    assert read(key(load_model(BOLT_TIGHTENING).automaton), Found) is None  # nothing else was found out for it
     _, everything, _ = command("show", BOLT_TIGHTENING)
     lines = [line for line in alone.splitlines() if "supervisor" in line or "because" in line]
     assert len(lines) == 2

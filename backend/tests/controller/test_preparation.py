@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from sequence_planner.analysis.store import known_supervisor
 from sequence_planner.cli.analysing import Limits, checked, supervisor_of
 from sequence_planner.controller.preparation import Preparation, analyse
 from sequence_planner.process.task import TooLargeError, WorkerError
@@ -92,9 +93,10 @@ def test_what_is_safe_is_there_at_once_where_a_command_has_found_it(
     if command == "plan":
         found = supervisor_of(automaton)
     else:
-        of = checked(automaton, None, Limits()).supervisor
-        assert of is not None
-        found = of
+        checked(automaton, None, Limits())
+        known = known_supervisor(automaton)
+        assert known is not None
+        found = known
 
     async def scenario() -> None:
         monkeypatch.setattr("sequence_planner.controller.preparation.ANALYSIS_DEADLINE", 0.001)

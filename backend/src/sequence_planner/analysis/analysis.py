@@ -19,6 +19,17 @@ COUNTING = "the number of states"  # the last that is computed, where it is not 
 
 
 @dataclass(frozen=True)
+class QuestionCounts:
+    """How many questions about starts and operations are answered, and how: what can always be done, what cannot, with
+    the reason, and what is not known.
+    """
+
+    possible: int
+    impossible: int
+    open: int
+
+
+@dataclass(frozen=True)
 class Analysis:
     """The findings so far. Of what has not been computed yet, and of what cannot be, it says None.
 
@@ -37,4 +48,5 @@ class Analysis:
     supervised_states: int | None = None
     supervised_at_most: int | None = None
     warnings: tuple[ModelWarning, ...] | None = None
+    questions: QuestionCounts | None = None
     evidence: Evidence | None = None

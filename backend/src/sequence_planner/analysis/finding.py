@@ -8,13 +8,13 @@ from dataclasses import replace
 from math import prod
 
 from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
-from sequence_planner.analysis.cache import remembered_evidence
 from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.rules import CheckProgress, conflicting, looked
 from sequence_planner.analysis.checks.supervised import SupervisionQuestion
 from sequence_planner.analysis.checks.unmeetable import unmeetable
 from sequence_planner.analysis.checks.warning import ModelWarning, place
+from sequence_planner.analysis.store import name_key, read
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.synthesis.diagnosis import why_unmeetable
@@ -61,7 +61,7 @@ def analyses(
             asked.look_far(made)
         if asked.left:
             asked.look()
-        found = replace(found, warnings=tuple(asked.warnings()))
+        found = replace(found, warnings=tuple(asked.warnings()), questions=asked.counts)
         if not asked.left:
             found = _bounded(found, automaton, asked.evidence)
         yield found
@@ -76,7 +76,8 @@ def analyses(
             found = replace(found, pending=FAR)
             yield found
             asked.look_far(made)
-            found = _bounded(replace(found, warnings=tuple(asked.warnings())), automaton, asked.evidence)
+            found = replace(found, warnings=tuple(asked.warnings()), questions=asked.counts)
+            found = _bounded(found, automaton, asked.evidence)
             yield replace(found, evidence=_for_next_time(asked, restrictions))
         if not guards:
             yield replace(found, pending=GUARDS)
@@ -85,7 +86,7 @@ def analyses(
     yield found
     found = _counted(found, supervision, counting)
     if found.supervisor is not None and found.supervised_states is None and found.supervised_at_most is None:
-        found = _bounded(found, automaton, remembered_evidence(automaton))
+        found = _bounded(found, automaton, known_evidence(automaton))
     yield replace(found, pending=None)
 
 
@@ -151,6 +152,11 @@ def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
                 found, supervised_at_most=None, supervised_states=count(whole.reachable(supervised=True, effort=effort))
             )
     return found
+
+
+def known_evidence(automaton: Automaton) -> Evidence | None:
+    """Return what answers about the model of this name rested on when it was last looked at."""
+    return read(name_key(automaton), Evidence)
 
 
 def _for_next_time(asked: SupervisionQuestion, restrictions: Restrictions) -> Evidence | None:

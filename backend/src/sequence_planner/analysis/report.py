@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from pydantic import BaseModel, ConfigDict
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.language.printer import print_expression
 
 if TYPE_CHECKING:
@@ -74,21 +73,6 @@ class FindingDocument(Document):
     column: int
     message: str
     trace: TraceDocument | None
-
-
-class SetDocument(Document):
-    """A `StateSet`, without the domains of its variables."""
-
-    names: list[str]
-    nodes: list[tuple[int, list[int]]]
-    root: int
-
-
-class SupervisorDocument(Document):
-    """A `Supervisor`."""
-
-    safe: SetDocument
-    guards: dict[str, SetDocument]
 
 
 class AnalysisDocument(Document):
@@ -180,33 +164,4 @@ def trace_document(automaton: Automaton, trace: Trace) -> TraceDocument:
             )
             for step, line in zip(trace.steps, trace.lines(), strict=True)
         ],
-    )
-
-
-def supervisor_document(supervisor: Supervisor) -> SupervisorDocument:
-    """A supervisor as JSON."""
-    return SupervisorDocument(
-        safe=_set(supervisor.safe), guards={name: _set(guard) for name, guard in supervisor.guards.items()}
-    )
-
-
-def read_supervisor(automaton: Automaton, document: SupervisorDocument) -> Supervisor:
-    """The supervisor of `automaton` that a document says."""
-    return Supervisor(
-        _read_set(automaton, document.safe),
-        {name: _read_set(automaton, guard) for name, guard in document.guards.items()},
-    )
-
-
-def _set(states: StateSet) -> SetDocument:
-    nodes = [(axis, list(children)) for axis, children in states.nodes]
-    return SetDocument(names=list(states.names), nodes=nodes, root=states.root)
-
-
-def _read_set(automaton: Automaton, document: SetDocument) -> StateSet:
-    return StateSet(
-        tuple(document.names),
-        tuple(automaton.variables[name].type.domain for name in document.names),
-        tuple((axis, tuple(children)) for axis, children in document.nodes),
-        document.root,
     )

@@ -15,22 +15,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
-from sequence_planner.analysis.cache import (
-    known_supervisor,
-    remember_evidence,
-    remember_supervisor,
-    remembered_evidence,
-)
-from sequence_planner.analysis.report import (
-    AnalysisDocument,
-    FindingDocument,
-    TraceDocument,
-    document_of,
-    read_supervisor,
-    supervisor_document,
-)
-from sequence_planner.analysis.store import Kept, keep, kept
+from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis, QuestionCounts
+from sequence_planner.analysis.report import AnalysisDocument, FindingDocument, TraceDocument, document_of
+from sequence_planner.analysis.store import key, known_supervisor, name_key, read, write
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.cli.loading import usable_automaton
@@ -77,8 +64,8 @@ class Found:
     """
 
     document: AnalysisDocument
-    supervisor: Supervisor | None
-    unfinished: str | None
+    questions: QuestionCounts | None = None
+    unfinished: str | None = None
     suspicious: tuple[ModelWarning, ...] = ()
 
 
@@ -94,7 +81,7 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
         return known
     from sequence_planner.analysis.finding import analyses, without_numbers  # noqa: PLC0415
 
-    evidence = remembered_evidence(automaton) if counts else None
+    evidence = _evidence(automaton) if counts else None
     work = (analyses, automaton, _COUNTING, True, True, evidence) if counts else (without_numbers, automaton)
     return _found(automaton, limits, _Hearing(work, unwanted), far=counts)
 
@@ -111,8 +98,8 @@ def guarded(automaton: Automaton, names: frozenset[str], limits: Limits) -> Foun
     unfinished = hearing.hear(limits)
     found = hearing.analysis
     if supervisor is None and found.supervisor is not None:
-        remember_supervisor(automaton, found.supervisor)
-    return Found(document_of(automaton, found), found.supervisor, unfinished)
+        write(key(automaton), found.supervisor)
+    return Found(document_of(automaton, found), unfinished=unfinished)
 
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
@@ -122,7 +109,7 @@ def checked(automaton: Automaton, connections: Connections | None, limits: Limit
 
     unwanted = frozenset({GUARDS, COUNTING})
     known = _kept(automaton, unwanted)
-    evidence = remembered_evidence(automaton) if known is None else None
+    evidence = _evidence(automaton) if known is None else None
     hearing = _Hearing((everything, automaton, connections, known is None, evidence), unwanted, after=CONFLICTS)
     found = _found(automaton, limits, hearing)
     return found if known is None else replace(known, unfinished=found.unfinished, suspicious=found.suspicious)
@@ -130,25 +117,30 @@ def checked(automaton: Automaton, connections: Connections | None, limits: Limit
 
 def _kept(automaton: Automaton, unwanted: Collection[str]) -> Found | None:
     """Return what is kept of an earlier command, if nothing is missing but what is `unwanted`."""
-    known = kept(automaton)
-    if known is None or known.analysis.pending not in (None, *unwanted):
-        return None
-    supervisor = None if known.supervisor is None else read_supervisor(automaton, known.supervisor)
-    return Found(known.analysis, supervisor, None)
+    known = read(key(automaton), Found)
+    return None if known is None or known.document.pending not in (None, *unwanted) else known
+
+
+def _evidence(automaton: Automaton) -> Evidence | None:
+    """Return what answers about the model of this name rested on when it was last looked at."""
+    from sequence_planner.analysis.finding import known_evidence  # noqa: PLC0415
+
+    return known_evidence(automaton)
 
 
 def _found(automaton: Automaton, limits: Limits, hearing: _Hearing, *, far: bool = True) -> Found:
     """Return what is heard, and keep it: but not what is unknown only as nobody looked `far`."""
     unfinished = hearing.hear(limits)
     analysis = hearing.analysis
-    document = document_of(automaton, analysis)
+    found = Found(document_of(automaton, analysis), analysis.questions)
     if hearing.evidence is not None:
-        remember_evidence(automaton, hearing.evidence)
+        write(name_key(automaton), hearing.evidence)
+    if analysis.supervisor is not None:
+        write(key(automaton), analysis.supervisor)
     known = far or all(each.kind != "too-many-states" for each in analysis.warnings or ())
     if analysis.pending in (None, GUARDS, COUNTING) and known:
-        supervisor_kept = None if analysis.supervisor is None else supervisor_document(analysis.supervisor)
-        keep(automaton, Kept(analysis=document, supervisor=supervisor_kept))
-    return Found(document, analysis.supervisor, unfinished, tuple(sorted(hearing.suspicious)))
+        write(key(automaton), found)
+    return replace(found, unfinished=unfinished, suspicious=tuple(sorted(hearing.suspicious)))
 
 
 def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervisor:
@@ -168,7 +160,7 @@ def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervi
         for found in told(limits.memory, limits.left, tried, automaton):
             if not isinstance(found, Supervisor):
                 raise SynthesisError(found)
-            remember_supervisor(automaton, found)
+            write(key(automaton), found)
     except TimeoutError:
         late = f"the safe states could not be computed within {limits.deadline:g} s"
         refuse(f"{late}: allow more with --deadline, or let fewer variables bear on them", FOUND)

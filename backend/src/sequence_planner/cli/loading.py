@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sequence_planner.analysis.cache import automaton_read_before, content_key, keep_automaton
+from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.cli.options import refuse
 
@@ -56,9 +56,9 @@ def usable_model(path: Path) -> LoadedModel:
 def usable_automaton(path: Path) -> Automaton:
     """The automaton of a model, kept from before where it was read by this very program; or end with what is wrong."""
     content = content_key(path)
-    known = None if content is None else automaton_read_before(content)
+    known = None if content is None else read(content, Automaton)
     if known is None:
         known = usable_model(path).automaton
         if content is not None and content == content_key(path):  # nobody has changed it meanwhile
-            keep_automaton(content, known)
+            write(content, known)
     return known

@@ -11,8 +11,8 @@ from pathlib import Path
 import structlog
 
 from sequence_planner.analysis.analysis import FINDINGS, Analysis
-from sequence_planner.analysis.cache import known_supervisor, remember, remembered
 from sequence_planner.analysis.report import AnalysisDocument, document_of, error_document
+from sequence_planner.analysis.store import key, known_supervisor, read, write
 from sequence_planner.analysis.worker import analysing
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
@@ -374,11 +374,12 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
             if known.pending is None:
                 return
             await asyncio.sleep(PUT_OFF)
+        of = await asyncio.to_thread(key, automaton)
         async with asyncio.timeout(ANALYSIS_DEADLINE), analysing(automaton) as finding:
             async for found in finding:
                 preparation.take(document_of(automaton, found), found)
                 if found.supervisor is not None:
-                    await asyncio.to_thread(remember, folder, automaton, found)
+                    await asyncio.to_thread(write, of, found, folder)
     except WorkerError as ended:
         LOG.error("synthesis ended early", because=str(ended))
         preparation.end(ended)
@@ -394,7 +395,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
 
 def _known(automaton: Automaton, folder: Path) -> Analysis | None:
     """All that an earlier life of the controller has left, or else the supervisor that a command has."""
-    known = remembered(folder, automaton, Analysis)
+    known = read(key(automaton), Analysis, folder)
     if known is not None and known.supervisor is not None:
         return known
     supervisor = known_supervisor(automaton)

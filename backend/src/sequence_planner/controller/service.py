@@ -12,7 +12,7 @@ from pathlib import Path
 
 import structlog
 
-from sequence_planner.analysis.cache import cache
+from sequence_planner.analysis.store import user_cache
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.audit import CommandAudit
 from sequence_planner.controller.commands.command import Command, CommandRefused
@@ -208,7 +208,7 @@ class _Life:
             return
         keeper = self.keeper
         alone = self._living.create_task(self._alone(station) if keeper is None else keeper.taken())
-        analysing = analyse(station.automaton, self._preparation, cache() or self._running.socket.parent)
+        analysing = analyse(station.automaton, self._preparation, user_cache() or self._running.socket.parent)
         async with self._link, _beside(analysing):
             async with _beside(self._show_preparing()):
                 supervisor = await _prepared(self._preparation)

@@ -7,9 +7,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import COUNTING
-from sequence_planner.analysis.cache import remembered_evidence
 from sequence_planner.analysis.checks.rules import check_automaton
-from sequence_planner.analysis.finding import analyses, without_numbers
+from sequence_planner.analysis.finding import analyses, known_evidence, without_numbers
 from sequence_planner.analysis.report import (
     FindingDocument,
     TraceDocument,
@@ -79,7 +78,7 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
     with collection_put_off():
         warnings = findings_of(automaton, [*check_automaton(automaton, station.connections), *station.suspicions()])
     view = view.model_copy(update={"findings": listed(sorted(warnings, key=_place))})
-    evidence = remembered_evidence(automaton)  # of what `check` has answered from afar: then it is soon proven again
+    evidence = known_evidence(automaton)  # of what `check` has answered from afar: then it is soon proven again
     for analysis in without_numbers(automaton, far=evidence is not None, evidence=evidence):
         document = document_of(automaton, analysis)
         found = sorted([*warnings, *(document.findings or ())], key=_place)

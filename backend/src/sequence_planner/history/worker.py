@@ -12,7 +12,7 @@ from pathlib import Path
 
 import structlog
 
-from sequence_planner.analysis.cache import supervisor_of
+from sequence_planner.analysis.store import supervisor_of
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database

@@ -84,11 +84,16 @@ class Runs:
             return self._begun(values)
         return next(point for point, here in self._points[supervised, faults] if (here & states).satisfiable())
 
-    def follow(self, ticks: Iterable[PlanTick]) -> None:
-        """Take in what a plan from the initial state leads through, each step of it on the reference."""
+    @property
+    def furthest(self) -> Point:
+        """The end of the longest run without faults in safe states, or else the initial state."""
+        points = self._points[True, False]
+        return points[-1][0] if points else Point(initial_state(self._plant.automaton))
+
+    def follow(self, point: Point, ticks: Iterable[PlanTick]) -> None:
+        """Take in what a plan from `point` leads through, each step of it on the reference."""
         effects = {effect.name: effect for effect in self._plant.automaton.effects}
         reference = self._steps[False]
-        point = Point(initial_state(self._plant.automaton))
         for tick in ticks:
             sensed = apply_effects(point.state, [effects[name] for name in tick.effects])
             assert sensed is not None

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 from sequence_planner.analysis.checks.reachability import ReachabilityQuery
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
-from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation, target
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.simplifier import simplify
-from sequence_planner.language.syntax import Expression, conjunction
+from sequence_planner.language.syntax import Comparison, Constant, Expression, Variable, conjunction
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.reachability import Tracer
 from sequence_planner.synthesis.traces import Trace
@@ -75,7 +75,7 @@ class Possibility:
 
     def _start(self, subject: Subject) -> Iterator[FeasibilityFinding]:
         inquiry = self._inquiry
-        if any(inquiry.reached(inquiry.allowed(each)).satisfiable() for each in subject.abilities):
+        if any(inquiry.reached(inquiry.allowed(e), goal=self._begun(e)).satisfiable() for e in subject.abilities):
             return
         if (known := self._with_guards(subject.abilities, supervised=True)) is not None:
             yield self._never_allowed(subject, *known)
@@ -91,6 +91,17 @@ class Possibility:
             first = subject.abilities[0]
             guard = print_expression(simplify(conjunction(first.enabled, first.start_guard)))
             yield FeasibilityFinding("never-starts", subject, f"never starts: {_never(guard)}", relative=True)
+
+    def _begun(self, ability: Ability) -> Expression:
+        """What its start brings about."""
+        types = self._automaton.types
+        return conjunction(
+            *(
+                Comparison("==", Variable(target(each), types[target(each)]), each.value)
+                for each in ability.start_actions
+                if each.condition is None and isinstance(each.value, Constant)
+            )
+        )
 
     def _with_guards(self, members: Sequence[Ability], supervised: bool) -> tuple[Ability, Function] | None:
         """One of `members` whose guards hold in some of the states that are reached, and those."""
@@ -164,7 +175,7 @@ class Possibility:
     def _operation(self, subject: Subject, operation: Operation) -> Iterator[FeasibilityFinding]:
         inquiry = self._inquiry
         active = inquiry.plant.where(operation.precondition)
-        if inquiry.reached(active).satisfiable():
+        if inquiry.reached(active, goal=operation.precondition).satisfiable():
             yield from self._goal(subject, operation, active)
         elif (beyond := inquiry.reached(active, supervised=False)).satisfiable():
             trace = inquiry.way(beyond, supervised=False)
@@ -183,7 +194,7 @@ class Possibility:
     def _goal(self, subject: Subject, operation: Operation, active: Function) -> Iterator[FeasibilityFinding]:
         inquiry, plain = self._inquiry, self._automaton.one_at_a_time
         goal = inquiry.plant.where(operation.goal)
-        if inquiry.reached(goal, faults=False).satisfiable():
+        if inquiry.reached(goal, faults=False, goal=operation.goal).satisfiable():
             if plain:
                 return  # a goal of the automaton, which nobody undertakes again in each state
         elif (lost := inquiry.reached(goal, supervised=False, faults=False)).satisfiable():

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 from sequence_planner.analysis.checks.evidence import Again, Evidence, Runs, grown, joining
 from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding, Possibility, Subject
 from sequence_planner.analysis.checks.reachability import Questions, ReachabilityQuery, bits
-from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.tick import initial_state
 from sequence_planner.language.syntax import Expression
-from sequence_planner.planning.problem import Contract, PlanRequest, PlanTick, goals_of
+from sequence_planner.planning.problem import Contract, Goal, PlanRequest, PlanTick, goals_of
 from sequence_planner.synthesis.approximation import around, composed
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.reachability import Tracer
@@ -29,18 +30,60 @@ from sequence_planner.synthesis.transition_relation import (
     together,
 )
 
+if TYPE_CHECKING:
+    from sequence_planner.planning.planner import Planner
+
 # An inquiry where the states that are reached are too many to be computed: `large_reachability` says how it answers.
 
 _SOON = 3_000_000  # of all effort; for what takes longer, something else is tried first
 _LARGER = (20, 26)  # bits of larger parts, and of those after them
 _KEPT = 60  # ways, and traps, for the next edit: those that have served last
 _MOST_NEAR = 3  # states that are looked at one by one
+_PLANNING_ONE = 2.0  # seconds, for a plan for one goal
+
+
+class Plans:
+    """Plans under a `supervisor`, on which no more than so many `seconds` are spent in all."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, seconds: float) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._left = 0.0 if automaton.one_at_a_time else seconds
+
+    @property
+    def all_goals(self) -> tuple[Goal, ...]:
+        """The goals of all operations."""
+        return goals_of(self._automaton, self._automaton.operations)
+
+    @cached_property
+    def _planner(self) -> Planner:
+        from sequence_planner.planning.planner import Planner  # noqa: PLC0415 - few models need it
+
+        return Planner(self._automaton, self._supervisor)
+
+    def __call__(self, state: State, goals: Sequence[Goal]) -> tuple[PlanTick, ...]:
+        """A plan for these goals from `state`, or for as many as one is soon found for."""
+        if self._left <= 0 or not goals:
+            return ()
+        from sequence_planner.planning.planner import PlannerError  # noqa: PLC0415 - few models need it
+
+        began = time.monotonic()
+        seconds = min(self._left, _PLANNING_ONE * len(goals))
+        request = PlanRequest(state, tuple(goals), seconds, contract=Contract.FAST)
+        try:
+            plan = self._planner.answer(request).plan
+        except PlannerError:
+            plan = None
+        self._left -= time.monotonic() - began
+        return () if plan is None else plan.ticks
 
 
 class FarInquiry(ReachabilityQuery):
     """An inquiry that takes less, and is soon answered where runs are known."""
 
-    def __init__(self, asked: Questions, effort: NodeLimit, order: Sequence[str] = ()) -> None:
+    def __init__(
+        self, asked: Questions, effort: NodeLimit, order: Sequence[str] = (), plans: Plans | None = None
+    ) -> None:
         super().__init__(asked, effort, order)
         self._runs = Runs(self.plant, self.safe)
         self._more: dict[bool, Function] = {}
@@ -52,10 +95,13 @@ class FarInquiry(ReachabilityQuery):
         self._again: Again | None = None
         self._added = self.diagrams.false  # to what may be reached, by an edit
         self.whole = effort  # for what serves all questions
+        self._plans = plans
 
-    def know(self, ticks: Iterable[PlanTick]) -> None:
-        """Take in a plan from the initial state."""
-        self._runs.follow(ticks)
+    def know_plan(self, goals: Sequence[Goal]) -> None:
+        """Know what a plan for `goals` leads through, from where the longest run that is known ends."""
+        if self._plans is not None:
+            begin = self._runs.furthest
+            self._runs.follow(begin, self._plans(begin.state, goals))
 
     def recall(self, known: Evidence) -> bool:
         """Prove again what was `known` before an edit; returns whether all runs of it can still be taken.
@@ -119,14 +165,25 @@ class FarInquiry(ReachabilityQuery):
             self._level[supervised] += 1
             yield
 
-    def reached(self, target: Function, *, supervised: bool = True, faults: bool = True) -> Function:
-        """Some of the states of `target` that are reached; none only if none of them is."""
+    def reached(
+        self, target: Function, *, supervised: bool = True, faults: bool = True, goal: Expression | None = None
+    ) -> Function:
+        """Some of the states of `target` that are reached; none only if none of them is.
+
+        Where that is not soon found out, a plan for `goal` is tried first.
+        """
         asked = self.effort
         try:
             for _ in self._closer(supervised):
                 self.effort = NodeLimit(_SOON, whole=asked)
                 with suppress(TooMuchError):
                     return self._gone_back(target, supervised, faults)
+                if goal is not None:
+                    self.know_plan((Goal("", goal),))
+                    goal = None
+                    found = target & self._runs.known(supervised=supervised, faults=faults)
+                    if found.satisfiable():
+                        return found
             self.effort = asked
             return self._gone_back(target, supervised, faults)
         finally:
@@ -327,12 +384,12 @@ def from_afar(
     `known` of the model before an edit is proven again; where that leaves something open, all is found out anew.
     """
     asked = Questions(automaton, [each for subject in subjects for each in subject.expressions], safe)
-    work = partial(_work, automaton, supervisor, planning)
+    plans = Plans(automaton, supervisor, planning)
     if known is not None:
-        again = _answers(asked, subjects, supervisor, partial(_resumed, asked, work, known))
+        again = _answers(asked, subjects, supervisor, partial(_resumed, asked, plans, known))
         if not any(each.kind == UNKNOWN for each in again.findings):
             return again
-    return _answers(asked, subjects, supervisor, partial(_anew, asked, work))
+    return _answers(asked, subjects, supervisor, partial(_anew, asked, plans))
 
 
 def _answers(
@@ -356,27 +413,24 @@ def _answers(
     return FarAnswers(found, inquiry.evidence(supervisor))
 
 
-_Work = Callable[[], tuple[PlanTick, ...]]
-
-
-def _anew(asked: Questions, work: _Work, whole: NodeLimit) -> FarInquiry | None:
-    inquiry = begun(asked, whole)
+def _anew(asked: Questions, plans: Plans, whole: NodeLimit) -> FarInquiry | None:
+    inquiry = begun(asked, whole, plans)
     if inquiry is not None:
-        inquiry.know(work())
+        inquiry.know_plan(plans.all_goals)
     return inquiry
 
 
-def _resumed(asked: Questions, work: _Work, known: Evidence, whole: NodeLimit) -> FarInquiry | None:
+def _resumed(asked: Questions, plans: Plans, known: Evidence, whole: NodeLimit) -> FarInquiry | None:
     """An inquiry that goes on from what was `known`; None where that is not soon proven again."""
     with suppress(TooMuchError):
-        inquiry = FarInquiry(asked, whole, known.ordered(asked.bearing))
+        inquiry = FarInquiry(asked, whole, known.ordered(asked.bearing), plans)
         if not inquiry.recall(known):
-            inquiry.know(work())
+            inquiry.know_plan(plans.all_goals)
         return inquiry
     return None
 
 
-def begun(asked: Questions, whole: NodeLimit) -> FarInquiry | None:
+def begun(asked: Questions, whole: NodeLimit, plans: Plans | None = None) -> FarInquiry | None:
     """An inquiry in the first order of variables in which it soon begins, or begins at all."""
     automaton = asked.automaton
     names = sorted(asked.bearing, key=list(automaton.variables).index)
@@ -384,24 +438,9 @@ def begun(asked: Questions, whole: NodeLimit) -> FarInquiry | None:
         return None
     for most in (_FIRST, MOST_EFFORT):
         for order in orders(automaton, names):
-            inquiry = FarInquiry(asked, NodeLimit(most, whole=whole), order)
+            inquiry = FarInquiry(asked, NodeLimit(most, whole=whole), order, plans)
             with suppress(TooMuchError):
                 inquiry.perhaps_reached()
                 inquiry.whole = whole
                 return inquiry
     return None
-
-
-def _work(automaton: Automaton, supervisor: Supervisor, seconds: float) -> tuple[PlanTick, ...]:
-    """A plan for the goals of all operations from the initial state, or of as many as one is soon found for."""
-    if automaton.one_at_a_time or not automaton.operations:
-        return ()
-    from sequence_planner.planning.planner import Planner, PlannerError  # noqa: PLC0415 - few models need it
-
-    goals = goals_of(automaton, automaton.operations)
-    request = PlanRequest(initial_state(automaton), goals, seconds, contract=Contract.FAST)
-    try:
-        answer = Planner(automaton, supervisor).answer(request)
-    except PlannerError:
-        return ()
-    return () if answer.plan is None else answer.plan.ticks

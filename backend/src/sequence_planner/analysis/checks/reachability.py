@@ -148,8 +148,13 @@ class ReachabilityQuery:
             raise TooMuchError
         return Plant(automaton, names, self._order if set(self._order) == set(names) else None)
 
-    def reached(self, target: Function, *, supervised: bool = True, faults: bool = True) -> Function:
-        """Those states of `target` that are reached with or without the supervisor, and counting on faults or not."""
+    def reached(
+        self, target: Function, *, supervised: bool = True, faults: bool = True, goal: Expression | None = None
+    ) -> Function:
+        """Those states of `target` that are reached with or without the supervisor, and counting on faults or not.
+
+        A plan for `goal` may show that some of them are.
+        """
         if not faults and self.plant.helpful is self.plant.uncontrollable:
             faults = True
         if (supervised, faults) not in self._reached:

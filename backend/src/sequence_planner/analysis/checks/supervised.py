@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
+from sequence_planner.analysis.analysis import QuestionCounts
 from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding, Possibility, Subject
 from sequence_planner.analysis.checks.large_reachability import from_afar
@@ -44,6 +45,13 @@ class SupervisionQuestion:
     def left(self) -> list[Subject]:
         """That of which nothing is known."""
         return [each.subject for each in self._found if each.kind == UNKNOWN]
+
+    @property
+    def counts(self) -> QuestionCounts:
+        """How many of the questions are answered."""
+        found = {each.subject.name for each in self._found}
+        left = len(self.left)
+        return QuestionCounts(len(self._subjects) - len(found), len(found) - left, left)
 
     def look(self) -> None:
         """Find out what does not take too much effort."""

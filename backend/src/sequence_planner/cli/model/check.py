@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.cache import cache, content_key, read, write
 from sequence_planner.analysis.report import Document, FindingDocument, error_document, findings_of
+from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.cli.analysing import (
     USUAL_DEADLINE,
     Deadline,
@@ -44,6 +44,7 @@ class Told(Document):
 
     findings: list[FindingDocument]
     summary: dict[str, object]
+    questions: list[str]
     line: str
 
 
@@ -86,7 +87,7 @@ def check(
     else:
         lines = [line for each in told.findings for line in finding_lines(each, runs)]
         counts = [counts_line(told.findings)] if told.findings else []
-        typer.echo("\n".join([*lines, *counts, told.line]))
+        typer.echo("\n".join([*lines, *counts, *told.questions, told.line]))
     if told.findings:
         raise typer.Exit(FINDINGS)
 
@@ -98,9 +99,7 @@ def _key(model: Path, emulator: bool) -> str | None:
 
 
 def _told_before(of: str | None) -> Told | None:
-    where = cache()
-    found = None if of is None or where is None else read(where, "check", of)
-    return Told.model_validate_json(found) if isinstance(found, str) else None
+    return None if of is None else read(of, Told)
 
 
 def _told(model: Path, limits: Limits, of: str | None, *, emulator: bool, json: bool) -> Told:
@@ -116,10 +115,11 @@ def _told(model: Path, limits: Limits, of: str | None, *, emulator: bool, json: 
         else:
             typer.echo(str(error), err=True)
         raise typer.Exit(UNUSABLE) from error
-    told = Told(findings=found.findings, summary=_summary(found), line=_summary_line(found))
-    where = cache()
-    if of is not None and where is not None and found.found.unfinished is None and of == _key(model, emulator):
-        write(where, "check", of, told.model_dump_json())
+    told = Told(
+        findings=found.findings, summary=_summary(found), questions=_question_lines(found), line=_summary_line(found)
+    )
+    if of is not None and found.found.unfinished is None and of == _key(model, emulator):
+        write(of, told)
     return told
 
 
@@ -167,8 +167,23 @@ def _summary(checked: Checked) -> dict[str, object]:
         "effects": len(automaton.effects),
         "operations": len(automaton.operations),
         "specifications": len(automaton.specifications),
+        "questions": None if (questions := checked.found.questions) is None else asdict(questions),
         "guarded_abilities": None if (guarded := _guarded(checked)) is None else sorted(guarded),
     }
+
+
+def _question_lines(checked: Checked) -> list[str]:
+    """Say how many questions are answered, where not everything is always possible."""
+    questions = checked.found.questions
+    if questions is None or not questions.impossible + questions.open:
+        return []
+    what = (
+        ("start or operation", "starts and operations")
+        if checked.model.station
+        else ("event or goal", "events and goals")
+    )
+    number = counted(questions.possible + questions.impossible + questions.open, *what)
+    return [f"{number}: {questions.possible} always possible, {questions.impossible} not, {questions.open} not known"]
 
 
 def _guarded(checked: Checked) -> set[str] | None:

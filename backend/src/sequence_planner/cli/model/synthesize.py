@@ -11,8 +11,15 @@ from sequence_planner.analysis.report import AnalysisDocument, GuardDocument
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect
 from sequence_planner.automaton.plain.events import NUMBER_SIGN, event_of
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
-from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, analysed, finding_lines
-from sequence_planner.cli.loading import usable_automaton
+from sequence_planner.cli.analysing import (
+    USUAL_DEADLINE,
+    Deadline,
+    Found,
+    Limits,
+    analysed,
+    finding_lines,
+    read_within,
+)
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json
 from sequence_planner.core.numerals import counted
 from sequence_planner.language.printer import print_assignment, print_expression
@@ -156,7 +163,7 @@ def synthesize(
     The exit code is 1 when there are findings.
     """
     limits = Limits(deadline, memory)
-    automaton = usable_automaton(model)
+    automaton = read_within(model, limits)
     found = analysed(automaton, limits, counts=True)
     if json:
         print_json(_document(automaton, found))

@@ -12,8 +12,8 @@ from math import inf, prod
 import structlog
 from pydantic import JsonValue, ValidationError
 
-from sequence_planner.analysis.cache import cache, remember, remembered
 from sequence_planner.analysis.mutual_exclusion import NeverTogether, Pair, find_never_together
+from sequence_planner.analysis.store import key, read, write
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Kind, State, reads, target
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet
@@ -559,13 +559,12 @@ class ConsistencyMonitor:
         automaton = self._execution.automaton
         if not automaton.names(Kind.ESTIMATED):
             return
-        where = cache()
-        if where is not None:
-            self._known = await asyncio.to_thread(remembered, where, automaton, NeverTogether)
+        of = await asyncio.to_thread(key, automaton)
+        self._known = await asyncio.to_thread(read, of, NeverTogether)
         if self._known is None:
             await asyncio.sleep(after)
             self._known = await find_never_together(automaton, self._execution.supervisor, MOST_WORK)
-            if where is not None and self._known is not None:
-                await asyncio.to_thread(remember, where, automaton, self._known)
+            if self._known is not None:
+                await asyncio.to_thread(write, of, self._known)
             pairs, exact = len(self.impossible()), self._known is not None and self._known.fits is not None
             LOG.info("what is never together", known=self._known is not None, pairs=pairs, exact=exact)
