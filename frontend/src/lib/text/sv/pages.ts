@@ -18,7 +18,7 @@ export const pages: Text['pages'] = {
 	watch: 'Operatörsvy',
 	account: 'Konto',
 	journal: 'Journal',
-	watches: 'Bärbara enheter',
+	watches: 'Enheter',
 	people: 'Användare',
 	keys: 'API-nycklar',
 	webhooks: 'Webhooks',

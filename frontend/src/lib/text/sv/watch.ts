@@ -46,7 +46,7 @@ export const watch: Text['watch'] = {
 		title: 'Para ihop klockan',
 		code: (digits) => `Kod med ${digits} siffror`,
 		pair: 'Para ihop',
-		where: 'Koden står på sidan Bärbara enheter.',
+		where: 'Koden står på sidan Enheter.',
 		waiting: 'Väntar',
 		confirmBefore: 'Bekräfta',
 		confirmAfter: 'på stationens sida.',
