@@ -19,6 +19,7 @@ from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.documents import (
     AbilityDocument,
+    AlarmDocument,
     EffectDocument,
     OperationDocument,
     SpecificationDocument,
@@ -128,6 +129,7 @@ def test_errors_are_said_as_shown(station: Path, line: str, finding: str) -> Non
         OperationDocument,
         SpecificationDocument,
         WorkMasterDocument,
+        AlarmDocument,
         WorkStepDocument,
     ],
     ids=lambda part: part.__name__,

@@ -39,10 +39,11 @@ def folder() -> Path:
 def key(automaton: Automaton) -> str:
     """Return what a model and the program have in common with others only if the same is found of them.
 
-    Places count, as what is found names them. In which order a job has its operations does not.
+    Places count, as what is found names them. In which order a job has its operations and what alarms
+    there are does not.
     """
     masters = {name: replace(master, operations={}) for name, master in automaton.work_masters.items()}
-    content = pickle.dumps((replace(automaton, work_masters=masters), dict(automaton.places)))
+    content = pickle.dumps((replace(automaton, work_masters=masters, alarms={}), dict(automaton.places)))
     # Equal texts may be one text or several, which a pickle tells; after one of them they are as after all others.
     content = pickle.dumps(pickle.loads(content))
     return hashlib.sha256(program() + content).hexdigest()

@@ -147,14 +147,29 @@ class WorkMaster(Immutable):
     brings: tuple[Assignment, ...] = ()
 
 
+class AlarmDeclaration(Immutable):
+    """An alarm of the model, raised when `when` has held for `delay` seconds. Its texts are by language; one that is
+    written in no language in particular is under the empty one.
+    """
+
+    name: str
+    resource: str | None
+    when: Expression
+    priority: str
+    title: Mapping[str, str]
+    consequence: Mapping[str, str]
+    action: Mapping[str, str]
+    delay: float
+
+
 class Automaton(Immutable):
     """All of it. `flags` are in an order in which none depends on a later one.
 
     A station's automaton goes by the tick. With `one_at_a_time` it is a plain automaton: it has neither flags nor
     finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
     `initial` describes the initial states of one that has several; each declared initial value then is that of one of
-    them. `goals` are formulas over its runs. `places` says where a part was written, by its name; `reactions` which
-    effects are written with an ability.
+    them. `goals` are formulas over its runs. `alarms` bear on nothing that it does. `places` says where a part was
+    written, by its name; `reactions` which effects are written with an ability.
     """
 
     name: str
@@ -172,6 +187,7 @@ class Automaton(Immutable):
     one_at_a_time: bool = False
     initial: Expression | None = None
     goals: tuple[Expression, ...] = ()
+    alarms: Mapping[str, AlarmDeclaration] = uncompared(default={})
     places: Mapping[str, Place] = uncompared(default={})
     reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
 

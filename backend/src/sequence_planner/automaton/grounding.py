@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from sequence_planner.automaton.automaton import (
     Ability,
+    AlarmDeclaration,
     Automaton,
     Effect,
     Flag,
@@ -58,6 +59,7 @@ from sequence_planner.model.documents import (
     OperationDocument,
     SpecificationDocument,
     TimeoutsDocument,
+    Words,
     WorkMasterDocument,
 )
 from sequence_planner.model.fields import Predicate
@@ -571,6 +573,52 @@ def _executing(meaning: Meaning, text: SourceText, scope: NameScope) -> Expressi
     return flags_read[0] if len(flags_read) == 1 else Or(flags_read)
 
 
+# Alarms, which read the state and are read by nothing.
+
+
+def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclaration]:
+    """All alarms by name, with the resource before those of one."""
+    found = {}
+    for resource, documents in ((None, station.station.alarms), *((n, d.alarms) for n, d in station.resources.items())):
+        for name, document in documents.items():
+            meaning.declarations.check_name(name)
+            full = str(name) if resource is None else f"{resource}.{name}"
+            scope = meaning.scope({}, *(() if resource is None else (f"{resource}.",)))
+            found[full] = AlarmDeclaration(
+                full,
+                resource,
+                alarm_condition(meaning, document.when, scope),
+                document.priority,
+                _by_language(document.title) or {"": readable(None, name, {}).capitalize()},
+                _by_language(document.consequence),
+                _by_language(document.action),
+                document.delay,
+            )
+    return found
+
+
+def alarm_condition(meaning: Meaning, text: Predicate, scope: NameScope) -> Expression:
+    """The condition of an alarm. What it read of an operation would become a variable, and no alarm makes any."""
+    apart = Meaning(meaning.declarations, meaning.findings)
+    when = apart.predicate(text, scope)
+    if isinstance(text, SourceText):
+        for seen in occurrences(when):
+            if seen.name in apart.activities:
+                message = "an alarm reads variables and the flags of abilities: write what the operation waits for"
+                meaning.findings.add_within(text, seen.span, message)
+    return when
+
+
+def _by_language(text: Words | None) -> dict[str, str]:
+    if text is None:
+        return {}
+    if isinstance(text, SourceText):
+        return {"": str(text)}
+    return {
+        language: str(said) for language in type(text).model_fields if (said := getattr(text, language)) is not None
+    }
+
+
 # The automaton of a station, put together from its parts.
 
 
@@ -586,6 +634,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
     operations = ground_operations(meaning, station.operations)
     specifications = ground_specifications(meaning, station.specifications, station.resources)
     work_masters = ground_work_masters(meaning, station.work_masters, operations)
+    alarms = ground_alarms(meaning, station)
     rest = meaning.predicate(station.station.rest, meaning.scope({}))
     if isinstance(station.station.rest, SourceText):
         declarations.places.setdefault("rest", station.station.rest.place)
@@ -603,6 +652,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
         specifications=specifications,
         rest=rest,
         work_masters=work_masters,
+        alarms=alarms,
         places=declarations.places,
         reactions=reactions,
     )

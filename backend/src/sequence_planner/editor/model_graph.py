@@ -41,7 +41,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 # The layers are those of the paper: 0 what nodes of ROS 2 measure and are told, 1 the abilities of resources with what
 # they estimate, 2 operations and specifications, 3 the order of work. All ties are uses that `gather` finds, once each.
 
-_LAYERS = {"work_master": 3, "operation": 2, "specification": 2, "ability": 1, "effect": 1}
+_LAYERS = {"work_master": 3, "operation": 2, "specification": 2, "ability": 1, "effect": 1, "alarm": 1}
 _OF_FILE = {OPERATIONS: "operation", SPECIFICATIONS: "specification", WORK_MASTERS: "work_master"}
 _FROM_ROS = (Manner.FEEDS, Manner.SENDS)
 _OF_SECTION = {"topics": "topic", "services": "service", "actions": "action"}
@@ -224,7 +224,7 @@ class _Things:
 
     def _resource(self, part: ModelPart, place: Usage | None) -> str | None:
         """The resource to which it belongs: for what is of ROS 2, that in whose file it stands."""
-        if part.kind in ("variable", "ability", "flow"):
+        if part.kind in ("variable", "ability", "flow", "alarm"):
             return part.owner
         if part.kind == "resource":
             return part.name

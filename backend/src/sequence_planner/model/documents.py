@@ -316,6 +316,41 @@ class TopicDocument(DocumentPart):
         return self
 
 
+class WordsDocument(DocumentPart):
+    """A text for people in several languages."""
+
+    en: Given[SourceText] = None
+    """English, which is told where a language has no text of its own."""
+    sv: Given[SourceText] = None
+    """Swedish."""
+
+    @model_validator(mode="after")
+    def _says_something(self) -> WordsDocument:
+        if not self.model_fields_set:
+            raise ValueError("say it in one language at least: `en` or `sv`")
+        return self
+
+
+Words = SourceText | WordsDocument
+
+
+class AlarmDocument(DocumentPart):
+    """An alarm that people are told while a condition holds. It changes nothing of what the station does."""
+
+    when: Predicate
+    """It is raised when this holds, and cleared when this does not; while that is unknown it stays as it is."""
+    title: Given[Words] = None
+    """What is wrong; a text, or one for each language: `{en: …, sv: …}`."""
+    priority: Literal["high", "medium", "low"] = "medium"
+    """`high`: act now. `medium`: a person is needed soon. `low`: a notice that nobody has to acknowledge."""
+    consequence: Given[Words] = None
+    """What comes of it if nobody does anything."""
+    action: Given[Words] = None
+    """What to do."""
+    delay: Seconds = 0.0
+    """Seconds for which the condition must have held before it is raised."""
+
+
 class ResourceDocument(DocumentPart):
     """A resource: its topics, its variables by who writes them, and what it can do."""
 
@@ -337,6 +372,8 @@ class ResourceDocument(DocumentPart):
     """Variables written by abilities, which no message carries."""
     abilities: dict[SourceText, AbilityDocument] = Field(default_factory=dict)
     """What the resource can do."""
+    alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
+    """What people are told of the resource when something is wrong with it."""
 
 
 class StationDocument(DocumentPart):
@@ -352,6 +389,8 @@ class StationDocument(DocumentPart):
     """Named values, in order."""
     estimated: dict[SourceText, VariableDocument] = Field(default_factory=dict)
     """Variables of the station as a whole, which abilities of every resource may write."""
+    alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
+    """What people are told of the station as a whole when something is wrong."""
     rest: Predicate = True
     """The states to which the station can always be brought back."""
     takeover: Literal["confirm", "automatic"] = "confirm"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -47,10 +48,9 @@ def ids(node: ast.expr) -> set[str]:
             return {text}
         case ast.IfExp(body=body, orelse=orelse):
             return ids(body) | ids(orelse)
-        case ast.JoinedStr(values=parts):
-            known = [part.value if isinstance(part, ast.Constant) else "*" for part in parts]
-            start, end = str(known[0]).rstrip("*"), str(known[-1]).lstrip("*")
-            return {name for name in PHRASES if name.startswith(start) and name.endswith(end)}
+        case ast.JoinedStr(values=[ast.Constant(), *_] as parts):
+            known = (re.escape(str(part.value)) if isinstance(part, ast.Constant) else "[a-z]+" for part in parts)
+            return {name for name in PHRASES if re.fullmatch("".join(known), name)}
     return set()
 
 

@@ -30,6 +30,7 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 		{ kind: 'resource', file: '', path: null, section: 'resources' },
 		{ kind: 'enumeration', file: STATION, path: ['enumerations'], section: 'enumerations' },
 		{ kind: 'variable', file: STATION, path: ['estimated'], section: 'variables' },
+		{ kind: 'alarm', file: STATION, path: ['alarms'], section: 'station_alarms' },
 		{ kind: 'operation', file: 'operations.yaml', path: [], section: 'operations' },
 		{ kind: 'specification', file: 'specifications.yaml', path: [], section: 'specifications' },
 		{ kind: 'work_master', file: 'work_masters.yaml', path: [], section: 'work_masters' },
@@ -56,6 +57,8 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 			return { type: 'bool', ...given };
 		case 'ability':
 			return { ...title, enabled: false };
+		case 'alarm':
+			return { ...title, when: false };
 		case 'effect':
 			return { kind: 'executing', when: false, do: [], ...given };
 		case 'operation':

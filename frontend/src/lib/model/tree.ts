@@ -13,6 +13,7 @@ export type EntryKind =
 	| 'action'
 	| 'ability'
 	| 'effect'
+	| 'alarm'
 	| 'operation'
 	| 'specification'
 	| 'work_master'
@@ -31,6 +32,8 @@ export type SectionName =
 	| 'output'
 	| 'estimated'
 	| 'abilities'
+	| 'alarms'
+	| 'station_alarms'
 	| 'operations'
 	| 'specifications'
 	| 'work_masters'
@@ -61,7 +64,8 @@ export const IN_RESOURCE = {
 	measured: 'variable',
 	output: 'variable',
 	estimated: 'variable',
-	abilities: 'ability'
+	abilities: 'ability',
+	alarms: 'alarm'
 } as const satisfies Partial<Record<SectionName, EntryKind>>;
 
 export type InResource = keyof typeof IN_RESOURCE;
@@ -136,7 +140,8 @@ export function treeOf(
 			path: [],
 			children: [
 				section('enumerations', STATION, ['enumerations'], entriesIn('enumeration', STATION, ['enumerations'], station)),
-				section('variables', STATION, ['estimated'], entriesIn('variable', STATION, ['estimated'], station))
+				section('variables', STATION, ['estimated'], entriesIn('variable', STATION, ['estimated'], station)),
+				section('station_alarms', STATION, ['alarms'], entriesIn('alarm', STATION, ['alarms'], station))
 			]
 		},
 		section('resources', '', [], resources),
@@ -245,6 +250,7 @@ export function partOf(node: Node): string | null {
 		case 'variable':
 		case 'ability':
 		case 'flow':
+		case 'alarm':
 			return `${node.kind}:${own(node.name)}`;
 		case 'effect':
 			return `effect:${own(String(node.path[1]))}.${node.name}`;

@@ -35,6 +35,7 @@ const ORDER = [
 	'specification',
 	'station',
 	'ability',
+	'alarm',
 	'estimated',
 	'output',
 	'measured',

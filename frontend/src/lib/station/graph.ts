@@ -18,6 +18,7 @@ const KINDS = {
 	operation: true,
 	specification: true,
 	ability: true,
+	alarm: true,
 	effect: false,
 	variable: true,
 	topic: true,

@@ -6,7 +6,7 @@ export const LOOSE = ['missing', 'unfed', 'unsent', 'unwritten', 'unneeded'] as 
 export type Loose = (typeof LOOSE)[number];
 
 /** What a station is for: all else is needed for these. */
-const PURPOSES: ReadonlySet<string> = new Set(['station', 'work_master', 'operation', 'specification']);
+const PURPOSES: ReadonlySet<string> = new Set(['station', 'work_master', 'operation', 'specification', 'alarm']);
 const TO_ROS: ReadonlySet<string> = new Set(['topic', 'service', 'action']);
 const WRITING: readonly Manner[] = ['writes', 'effect', 'feeds', 'brings', 'commands'];
 

@@ -7,6 +7,7 @@ export const SIGNS: Readonly<Record<Kind, string>> = {
 	specification: '⊘',
 	station: '⌂',
 	ability: '▶',
+	alarm: '△',
 	estimated: '≈',
 	output: '⇤',
 	measured: '⇥',

@@ -109,6 +109,7 @@ def _names(automaton: Automaton) -> list[str]:
         automaton.operations,
         automaton.specifications,
         automaton.work_masters,
+        automaton.alarms,
         (effect.name for effect in automaton.effects),
     )
     return [name for group in groups for name in group]
@@ -146,6 +147,12 @@ def _lines(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
             for step, before in master.operations.items():
                 yield f"  {step}" + (f" after {', '.join(sorted(before))}" if before else "")
             yield from _actions("brings", master.brings)
+    for alarm in automaton.alarms.values():
+        if _chosen(alarm.name, wanted):
+            title = alarm.title.get("en") or next(iter(alarm.title.values()))
+            after = f", for {alarm.delay:g} s" if alarm.delay else ""
+            yield from ("", f"alarm {alarm.name}: {title} ({alarm.priority})")
+            yield f"  when        {print_expression(alarm.when)}{after}"
     if not wanted and automaton.rest is not None:
         yield from ("", f"rest  {print_expression(automaton.rest)}")
 

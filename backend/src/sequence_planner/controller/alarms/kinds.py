@@ -28,7 +28,8 @@ class AlarmGroup(StrEnum):
     RECOVERY = "recovery"  # the remedy is a plan, a correction or a decision of a person
     PEOPLE = "people"
     SYSTEM = "system"
-    MODEL = "model"
+    MODEL = "model"  # a condition that the model does not allow
+    PROCESS = "process"  # what an engineer declared in the model
 
 
 @dataclass(frozen=True)
@@ -161,3 +162,5 @@ DEPLOYMENT_UNDONE = _kind("deployment-undone", Priority.HIGH, AlarmGroup.SYSTEM)
 NOT_EMULATED = _kind("not-emulated", Priority.HIGH, AlarmGroup.SYSTEM)
 NO_SUPERVISOR = _kind("no-supervisor", Priority.HIGH, AlarmGroup.SYSTEM)
 MODEL_UNUSABLE = _kind("model-unusable", Priority.HIGH, AlarmGroup.SYSTEM)
+
+MODEL = _kind("model", Priority.MEDIUM, AlarmGroup.PROCESS, 1)

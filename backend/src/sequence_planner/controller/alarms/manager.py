@@ -20,6 +20,7 @@ from sequence_planner.controller.alarms.alarm import (
 from sequence_planner.controller.alarms.device_conditions import DeviceAlarms
 from sequence_planner.controller.alarms.kinds import Cause, Priority
 from sequence_planner.controller.alarms.message import Message, message
+from sequence_planner.controller.alarms.model_conditions import ModelAlarms
 from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
 from sequence_planner.controller.alarms.station_conditions import StationAlarms
 from sequence_planner.controller.commands.alarms import (
@@ -372,6 +373,7 @@ class AlarmManager(StationAlarms):
         self.who_can = WhoCan(execution, run)
         self._devices = DeviceAlarms(execution, feeds, network, commander, self.who_can)
         self.still = StallDetector(execution, lambda: outside.certain)
+        self._declared = ModelAlarms(execution.automaton)
         self._plans = PlanAlarms(execution, feeds, self.still, self.who_can)
         self._following = ConsequenceGraph(execution.automaton, self._touched)
         self._folding = Folding()
@@ -388,7 +390,8 @@ class AlarmManager(StationAlarms):
         self.who_can.look(self._devices.untold, moment.monotonic)
         of_devices = tuple(self._devices.causes(moment, unused))
         of_plans = self._plans.causes(planner_trouble, moment.monotonic, self._devices.untold)
-        causes = (*of_devices, *of_plans, *self.causes())
+        of_model = self._declared.causes(self._execution.state, moment.monotonic)
+        causes = (*of_devices, *of_plans, *self.causes(), *of_model)
         folded = self._folding.fold(self._following.trace(causes), self._lives.out_of_service, moment.monotonic)
         self._lives.look(folded.alarms, folded.folded, moment)
         self._keep(moment)

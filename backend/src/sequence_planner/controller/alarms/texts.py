@@ -354,6 +354,8 @@ TEXTS: Final[dict[str, str]] = {
         "The station does not run.",
         "Change the draft of the model, or take an older revision back into it, and deploy it.",
     ),
+    # What the model declares, in its own words.
+    **_kind("model", "{title}", "{title} (over)", "{consequence}", "{action}"),
     # What comes of it: which operations wait.
     "wait.standstill": "Nothing is started. {waiting}",
     "wait.not-started": "Production is not started, so nothing waits for it.",

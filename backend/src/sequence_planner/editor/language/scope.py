@@ -22,6 +22,7 @@ from sequence_planner.automaton.grounding import (
     Meaning,
     Steps,
     Writing,
+    alarm_condition,
     brought_by,
     check_acknowledgement,
     check_steps,
@@ -191,6 +192,8 @@ def field_of_resource(
         case (str(section), str(name), *rest) if section in _SECTIONS:
             written: Mapping[SourceText, VariableDocument] = getattr(document, section)
             return field_of_variable(resource, name, written, _SECTIONS[section], tuple(rest), meaning)
+        case ("alarms", str(), "when"):
+            return TextField(FieldKind.CONDITION, alarm_condition, resource=resource)
     return None
 
 
@@ -289,6 +292,8 @@ def field_of_station(station: Station, path: EntryPath, meaning: Meaning) -> Tex
     match path:
         case ("rest",):
             return TextField(FieldKind.CONDITION, condition)
+        case ("alarms", str(), "when"):
+            return TextField(FieldKind.CONDITION, alarm_condition)
         case ("estimated", str(name), *rest):
             documents = station.station.estimated
             return field_of_variable(None, name, documents, Kind.ESTIMATED, tuple(rest), meaning)

@@ -52,6 +52,7 @@ class Manner(StrEnum):
     EXCLUDES = "excludes"
     ORDERS = "orders"
     ZONE = "zone"
+    ALARMS = "alarms"  # people are told
     REST = "rest"  # the station at rest
     GUARD = "guard"  # of a start
     PROGRESS = "progress"  # what is so while an ability is executing, and when it has finished
@@ -72,6 +73,7 @@ class Manner(StrEnum):
 
 _ROS = ("topic", "service", "action")
 _BY_KEY = {
+    "alarm": {"when": Manner.ALARMS},
     "ability": {
         "enabled": Manner.GUARD,
         "executing": Manner.PROGRESS,
@@ -181,6 +183,7 @@ class _Walk:
                 if isinstance(value, SourceText):
                     self._add(value_of(str(name), str(value)), where.to(index), value, declares=True)
         self._variables(None, entry(content, "estimated"), top.to("estimated"))
+        self._alarms(None, content, top)
         self._read.condition(entry(content, "rest"), top.to("rest"))
 
     def resource(self, resource: str, file: str, content: object) -> None:
@@ -193,6 +196,7 @@ class _Walk:
             self._variables(resource, entry(content, section), top.to(section))
         for name, ability in pairs(entry(content, "abilities")):
             self._ability(resource, name, ability, top.to("abilities", name))
+        self._alarms(resource, content, top)
 
     def _variables(self, resource: str | None, section: object, where: Where) -> None:
         for name, document in pairs(section):
@@ -224,6 +228,13 @@ class _Walk:
             self._add(ModelPart("effect", part.full, str(effect)), below, effect, declares=True)
             self._read.condition(entry(inner, "when"), below.to("when"))
             self._read.actions(entry(inner, "do"), below.to("do"))
+
+    def _alarms(self, resource: str | None, content: object, top: Where) -> None:
+        for name, document in pairs(entry(content, "alarms")):
+            part = ModelPart("alarm", resource, str(name))
+            at = top.to("alarms", name).within(f"alarm {part.full}", TextContext(resource, part.full))
+            self._add(part, at, name, declares=True)
+            self._read.condition(entry(document, "when"), at.to("when"))
 
     def operations(self, content: object) -> None:
         """Preconditions, goals and formulas."""

@@ -37,6 +37,7 @@ KINDS: Mapping[str, str] = {
     "variable": "the variable",
     "ability": "the ability",
     "effect": "the effect",
+    "alarm": "the alarm",
     "operation": "the operation",
     "specification": "the specification",
     "work_master": "the work master",
@@ -49,7 +50,7 @@ KINDS: Mapping[str, str] = {
 }
 # Kinds whose names are those of ROS 2, and known in the whole station.
 ROS_KINDS = frozenset({"topic", "service", "action", "message"})
-_OF_RESOURCE = frozenset({"variable", "ability", "flow"})
+_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm"})
 _WITHIN = frozenset({"effect", "parameter"})
 
 
@@ -168,6 +169,7 @@ class Declared:
             self.parts.append(ModelPart("enumeration", None, str(name)))
             self.parts += [ModelPart("value", str(name), value) for value in self.enumerations[str(name)]]
         self._read_variables(None, "estimated", entry(station, "estimated"))
+        self.parts += [ModelPart("alarm", None, str(each)) for each, _ in pairs(entry(station, "alarms"))]
         for resource, found in self.resources.items():
             self._read_resource(resource, found)
         self._read_others(content)
@@ -209,6 +211,7 @@ class Declared:
             self.abilities[part.full] = parameters(entry(document, "parameters"))
             self._note(part, self.abilities[part.full], part.full)
             self.parts += [ModelPart("effect", part.full, str(each)) for each, _ in pairs(entry(document, "effects"))]
+        self.parts += [ModelPart("alarm", resource, str(each)) for each, _ in pairs(entry(found, "alarms"))]
         self.parts += [ModelPart("flow", resource, str(flow)) for flow, _ in pairs(entry(found, "flows"))]
         self.sent |= {str(each) for each, topic in pairs(entry(found, "topics")) if entry(topic, "direction") == "out"}
         for kind in ("topic", "service", "action"):
