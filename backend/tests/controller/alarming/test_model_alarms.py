@@ -10,12 +10,13 @@ import pytest
 from pydantic import JsonValue
 
 from controller.alarming.scene import Told, acknowledge, alarms_of, shelve
+from controller.carrying_out import carry_out
 from controller.rig import Rig, never
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.controller.alarms.alarm import KIND, aside_from
 from sequence_planner.controller.alarms.message import Wording
 from sequence_planner.controller.alarms.model_conditions import ModelAlarms
-from sequence_planner.controller.commands.commands import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import AlarmState, AlarmView
 from sequence_planner.core.clock import Timestamp
@@ -149,7 +150,7 @@ def test_the_battery_of_the_agv_is_low_and_is_charged() -> None:
         {"en": "The battery of the AGV is low", "sv": "AGV:ns batteri är lågt"}
     )
     assert on.after(1, agv__battery=4)[key].state is AlarmState.RETURNED
-    on.alarms.carry_out(acknowledge(key, alarm.since), on.now)
+    carry_out(on.alarms, acknowledge(key, alarm.since), on.now)
     assert on.after(1) == {}
     assert on.life(key) == ["came", "returned", "acknowledged"]
 
@@ -159,7 +160,7 @@ def test_a_nutrunner_that_turns_unasked_is_told_and_cannot_be_shelved() -> None:
     assert on.after(4, nutrunner__tool_is_running_forward=True) == {}
     assert on.after(2)[key].priority == "high"
     with pytest.raises(CommandRefused, match="as long as its cause lasts"):
-        on.alarms.carry_out(shelve(key, 60), on.now)
+        carry_out(on.alarms, shelve(key, 60), on.now)
     assert on.after(1, nutrunner__tool_is_running_forward=False)[key].state is AlarmState.RETURNED
 
 
@@ -175,7 +176,7 @@ def test_a_full_buffer_is_a_notice_that_goes_with_the_next_part() -> None:
 def test_what_is_shelved_stays_so_over_a_start_and_in_its_own_words() -> None:
     on, key = Watched("docking_agv"), "model:agv.battery_low"
     on.after(3, agv__battery=1)
-    on.alarms.carry_out(shelve(key, 600), on.now)
+    carry_out(on.alarms, shelve(key, 600), on.now)
     (kept,) = [content for kind, content in on.told.notes if kind == KIND]
     again = Watched("docking_agv", RestoredState(aside=aside_from(json.loads(json.dumps(kept)))))
     alarm = again.after(0.2)[key]
