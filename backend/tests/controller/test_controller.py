@@ -10,11 +10,11 @@ from typing import NoReturn
 import pytest
 
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, StartProduction
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.service import start_when_alone
+from sequence_planner.controller.views.station import Priority
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production

@@ -10,12 +10,11 @@ from controller.alarming.causes import cause
 from controller.bench_of_jobs import Bench
 from controller.carrying_out import carry_out
 from sequence_planner.controller.alarms.alarm import Alarm
-from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.commands.jobs import SetByOrder, TakeJob
 from sequence_planner.controller.commands.tasks import ReportProblem
 from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.controller.views.jobs import Around, job_views
-from sequence_planner.controller.views.station import AlarmView
+from sequence_planner.controller.views.station import AlarmView, Priority
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode

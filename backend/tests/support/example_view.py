@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.alarms.kinds import AlarmGroup, Priority
 from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.commands.approvals import CorrectionAct
 from sequence_planner.controller.views.station import (
     AbilityView,
+    AlarmGroup,
     AlarmMessages,
     AlarmState,
     AlarmView,
@@ -23,6 +23,7 @@ from sequence_planner.controller.views.station import (
     PackML,
     PlanStepView,
     PlanView,
+    Priority,
     ResourceView,
     StationIdentity,
     StationStanding,

@@ -22,7 +22,6 @@ from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.alarm import aside_again
-from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
 from sequence_planner.controller.commands.audit import StandingNotes
@@ -56,7 +55,7 @@ from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.builder import Doubts, ViewBuilder
 from sequence_planner.controller.views.metrics import FiguresView
 from sequence_planner.controller.views.part import View
-from sequence_planner.controller.views.station import StationIdentity, StationView
+from sequence_planner.controller.views.station import Priority, StationIdentity, StationView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
 from sequence_planner.execution.events import TickOutcome

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,28 +16,22 @@ from sequence_planner.analysis.report import AnalysisDocument, document_of, erro
 from sequence_planner.analysis.worker import analysing
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.alarms.alarm import Alarm
-from sequence_planner.controller.alarms.kinds import MODEL_UNUSABLE, NO_SUPERVISOR
-from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.preparing import preparing_view
 from sequence_planner.controller.views.station import (
     DeploymentState,
     DeploymentView,
-    PackML,
-    PlanView,
     StandbyView,
     StationIdentity,
-    StationStanding,
     StationView,
     TaskView,
 )
 from sequence_planner.core.actor import SYSTEM
-from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.journal.entry import LONGEST_REASON, Entry, Outcome
 from sequence_planner.model.exchange import exchanging
 from sequence_planner.model.files import Contents, Files, put_in_place, read_contents, read_files
@@ -332,6 +327,28 @@ class Preparation:
             if self.controller is not None:
                 self.controller.know(self.analysis, self._guards)
 
+    def view(
+        self,
+        identity: StationIdentity,
+        began: float,
+        standby: StandbyView | None,
+        deployment: DeploymentView | None,
+        control: ControlView | None,
+    ) -> StationView:
+        """The station as it is shown meanwhile; `control` is that with which it begins."""
+        return preparing_view(
+            identity,
+            time.time(),
+            began,
+            self.analysis,
+            self.trouble,
+            standby,
+            deployment,
+            control=control,
+            unusable=self.unusable,
+            too_large=self.too_large,
+        )
+
     def refusal(self) -> CommandRefused:
         """Return why nothing can be commanded yet."""
         if self.unusable:
@@ -343,103 +360,6 @@ class Preparation:
         if self._others is not None:
             return CommandRefused("other-controller", "Somebody else commands the devices", f"{self._others}.")
         return CommandRefused(PREPARING, "The station is being prepared", "Try again in a moment.", 503)
-
-
-def preparing_view(
-    identity: StationIdentity,
-    now: float,
-    began: float,
-    analysis: AnalysisDocument | None,
-    trouble: str | None,
-    standby: StandbyView | None = None,
-    deployment: DeploymentView | None = None,
-    *,
-    mode: Mode = Mode.AUTOMATIC,
-    control: ControlView | None = None,
-    unusable: bool = False,
-    too_large: bool = False,
-) -> StationView:
-    """Return what is shown while the safe set is being computed; with `trouble`, there is none and the station is not
-    run.
-
-    `mode` and `control` are those with which it begins, as far as they are known. It is `unusable` where the model
-    means nothing at all, and `too_large` where that set cannot be computed.
-    """
-    alarms = {}
-    if trouble is not None:
-        if unusable:
-            cause = MODEL_UNUSABLE.cause("", {"trouble": trouble})
-        elif too_large:
-            cause = NO_SUPERVISOR.cause(
-                "",
-                {
-                    "what": message("no-supervisor.too-large", trouble=trouble),
-                    "action": message("no-supervisor.smaller"),
-                },
-            )
-        else:
-            what, action = message("no-supervisor.unmet"), message("no-supervisor.see")
-            cause = NO_SUPERVISOR.cause("", {"what": what, "action": action})
-        alarms[cause.key] = Alarm(cause, began).view()
-    plan = PlanView(
-        status=PlanStatus.IDLE,
-        reason=_why_no_plan(trouble, unusable=unusable),
-        steps=[],
-        ticks=0,
-        minimal_ticks=False,
-        minimal_starts=False,
-        replanned=0,
-        replacement=None,
-        contract=None,
-        engine="",
-        milliseconds=None,
-        why=None,
-    )
-    return StationView(
-        station=identity,
-        tick=0,
-        time=now,
-        revision=0,
-        mode=mode,
-        packml=PackML.RESETTING,
-        standing=StationStanding.PREPARING,
-        silent=[],
-        failing=[],
-        stepping=False,
-        production=Production.PREPARING,
-        unconfirmed=False,
-        undecided={},
-        control=control,
-        resources={},
-        variables={},
-        abilities={},
-        operations={},
-        by_order=False,
-        jobs={},
-        plan=plan,
-        errand=None,
-        last_errand=None,
-        forces={},
-        out_of_service=[],
-        questions=[],
-        last_correction=None,
-        who_can=None,
-        approvals={},
-        tasks={},
-        topics={},
-        overrides={},
-        alarms=alarms,
-        way_back=None,
-        analysis=analysis,
-        standby=standby,
-        deployment=deployment,
-    )
-
-
-def _why_no_plan(trouble: str | None, *, unusable: bool) -> str:
-    if trouble is None:
-        return "the safe states are being computed"
-    return "the model cannot be used" if unusable else "there is no supervisor"
 
 
 async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) -> None:

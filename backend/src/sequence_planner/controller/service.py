@@ -30,7 +30,6 @@ from sequence_planner.controller.preparation import (
     Preparation,
     UnusableModel,
     analyse,
-    preparing_view,
 )
 from sequence_planner.controller.previous_run import as_it_ended, how_it_ended, last_known_mode, what_is_known
 from sequence_planner.controller.restore import RestoredState
@@ -401,18 +400,8 @@ class _Life:
         identity, began, known = _identity(self._running, ""), time.time(), self._preparation
         while True:
             standby = None if self.keeper is None else standby_view(self.keeper)
-            view = preparing_view(
-                identity,
-                time.time(),
-                began,
-                known.analysis,
-                known.trouble,
-                standby,
-                self._deployment.view(),
-                mode=self._begins_in,
-                control=self._deployment.control,
-                unusable=known.unusable,
-                too_large=known.too_large,
+            view = known.view(identity, began, standby, self._deployment.view(), self._deployment.control).model_copy(
+                update={"mode": self._begins_in}
             )
             self._link.publish(view)
             await asyncio.sleep(SHOW_EVERY)

@@ -125,11 +125,11 @@ def user(where: Where) -> ModelPart | None:
         return None if resource is None else ModelPart("resource", None, resource)
     section, name = str(path[0]), str(path[1])
     if resource is None:
-        kinds = {"enumerations": "enumeration", "estimated": "variable"}
+        kinds = {"enumerations": "enumeration", "estimated": "variable", "alarms": "alarm"}
         return ModelPart(kinds[section], None, name) if section in kinds else None
     if section in _OF_SECTION:
         return ModelPart(_OF_SECTION[section], None, name)
-    kind = {"abilities": "ability", "flows": "flow"}.get(section, "variable")
+    kind = {"abilities": "ability", "flows": "flow", "alarms": "alarm"}.get(section, "variable")
     return ModelPart(kind, resource, name)
 
 

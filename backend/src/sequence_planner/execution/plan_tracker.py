@@ -66,8 +66,12 @@ def why_violated(automaton: Automaton, names: Iterable[str]) -> str:
 
 def violation(automaton: Automaton, name: str) -> str:
     """That the formula of an operation was violated."""
-    operation = automaton.operations[name]
-    return f"`{print_expression(operation.local or TRUE)}` of {operation.title} was violated"
+    return f"`{formula_of(automaton, name)}` of {automaton.operations[name].title} was violated"
+
+
+def formula_of(automaton: Automaton, name: str) -> str:
+    """The formula of an operation, as it is written."""
+    return print_expression(automaton.operations[name].local or TRUE)
 
 
 def _titles(automaton: Automaton, names: Iterable[str]) -> str:

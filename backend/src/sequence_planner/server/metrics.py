@@ -27,12 +27,11 @@ from pydantic import BaseModel, JsonValue
 from sqlalchemy import Connection, text
 
 from sequence_planner.auth.roles import Scope
-from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskFigures
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.metrics import DistributionView, FiguresView
-from sequence_planner.controller.views.station import AlarmState, PackML, StationView
+from sequence_planner.controller.views.station import AlarmState, PackML, Priority, StationView
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, Production

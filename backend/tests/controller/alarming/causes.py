@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.alarms.kinds import AlarmGroup, AlarmKind, Cause, Priority
+from sequence_planner.controller.alarms.kinds import AlarmKind, Cause
 from sequence_planner.controller.alarms.message import as_it_was
+from sequence_planner.controller.views.station import AlarmGroup, Priority
 
 
 def cause(key: str, *follows: str, priority: Priority = Priority.MEDIUM, text: str = "") -> Cause:

@@ -6,13 +6,12 @@ import dataclasses
 
 from controller.alarming.scene import acknowledge, alarms
 from controller.carrying_out import carry_out
-from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.tasks import ProblemKind
 from sequence_planner.controller.features.tasks import TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import AlarmState, QuestionView
+from sequence_planner.controller.views.station import AlarmState, Priority, QuestionView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome

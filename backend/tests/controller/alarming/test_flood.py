@@ -11,14 +11,13 @@ from controller.alarming.scene import Told, acknowledge, shelve, suppress
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.alarm import aside_from
-from sequence_planner.controller.alarms.kinds import Priority
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import AlarmState, AlarmView
+from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind

@@ -20,11 +20,11 @@ from hypothesis.stateful import (
 
 from controller.alarming.causes import cause as plain_cause
 from sequence_planner.controller.alarms.alarm import Alarm
-from sequence_planner.controller.alarms.kinds import Cause, Priority
-from sequence_planner.controller.alarms.manager import OFTEN, QUIET, AlarmRegistry
+from sequence_planner.controller.alarms.kinds import Cause
 from sequence_planner.controller.alarms.message import as_it_was
+from sequence_planner.controller.alarms.registry import OFTEN, QUIET, AlarmRegistry
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.views.station import AlarmState, AlarmView
+from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
 
 FAR = 1000.0  # seconds after which nothing counts as coming and going
@@ -48,7 +48,7 @@ class Scene:
     def look(self, *causes: Cause, folded: tuple[str, ...] = (), after: float = FAR) -> dict[str, AlarmView]:
         """So many seconds later these causes are there."""
         self.seconds += after
-        self.lives.look({each.key: each for each in causes}, folded, self.now)
+        self.lives.observe({each.key: each for each in causes}, folded, self.now)
         return self.lives.view()
 
     @property
@@ -136,7 +136,7 @@ def test_a_clock_that_is_set_ends_no_shelving() -> None:
     on = Scene()
     on.look(cause("a"))
     on.lives.shelve("a", "Eva", "known", on.later(600))
-    on.lives.look({"a": cause("a")}, (), Timestamp(on.now.epoch + 86400, on.now.monotonic + 1))
+    on.lives.observe({"a": cause("a")}, (), Timestamp(on.now.epoch + 86400, on.now.monotonic + 1))
     assert on.lives.view()["a"].state is AlarmState.SHELVED
 
 
@@ -148,7 +148,7 @@ def test_what_is_out_of_service_stays_so_and_in_sight_until_it_is_restored() -> 
     assert on.look(cause("a"))["a"].state is AlarmState.OUT_OF_SERVICE
     with pytest.raises(CommandRefused):
         on.lives.shelve("a", "Otto", "known", on.later(60))
-    on.lives.restore("a")
+    on.lives.put_back("a")
     assert on.look(cause("a"))["a"].state is AlarmState.UNACKNOWLEDGED
 
 
@@ -312,7 +312,7 @@ class Living(RuleBasedStateMachine):
     def take_back(self, key: str, restoring: bool) -> None:
         was = self.expected.get(key)
         may = was is not None and was.state is (AlarmState.OUT_OF_SERVICE if restoring else AlarmState.SHELVED)
-        self.asked(may, lambda: self.on.lives.restore(key) if restoring else self.on.lives.unshelve(key))
+        self.asked(may, lambda: self.on.lives.put_back(key) if restoring else self.on.lives.unshelve(key))
         if may and was is not None:
             was.state, was.until = self.rises(key), None
             if not was.there:

@@ -14,14 +14,12 @@ from sequence_planner.controller.alarms.kinds import (
     NO_PLAN,
     UNDECIDED,
     UNSAFE_STATE,
-    AlarmGroup,
     AlarmKind,
     Cause,
-    Priority,
 )
 from sequence_planner.controller.alarms.message import Argument, Item, Message, as_it_was, message, quoted
 from sequence_planner.controller.recovery.who_can import WhoCan
-from sequence_planner.controller.views.station import AlarmMessages, AlarmState, AlarmView
+from sequence_planner.controller.views.station import AlarmGroup, AlarmMessages, AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production

@@ -24,6 +24,7 @@ from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import ServiceKind
 
 GRACE = 30.0  # seconds after the start for devices to be heard first
 STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
@@ -45,8 +46,9 @@ class DeviceAlarms:
         # Resources whose silence is too young to be told.
         self.untold: Collection[str] = frozenset(execution.automaton.resources)
 
-    def causes(self, moment: Timestamp, unused: Collection[str]) -> Iterator[Cause]:
-        """All that there are now. That an `unused` resource is silent is nothing to be told."""
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """All that there are now. That a resource is silent which is out of service is nothing to be told."""
+        unused = self._execution.conduct.out_of(ServiceKind.RESOURCE)
         self._began = moment.monotonic if self._began is None else self._began
         yield from self._silences(moment.monotonic, unused)
         yield from self._mismatches()

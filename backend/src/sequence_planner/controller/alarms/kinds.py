@@ -4,32 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Final
 
 from sequence_planner.controller.alarms.message import PLACE, Argument, Message
 from sequence_planner.controller.alarms.texts import TEXTS
-
-
-class Priority(StrEnum):
-    """Urgency of an alarm, after ISA-18.2."""
-
-    HIGH = "high"
-    MEDIUM = "medium"
-    LOW = "low"
-
-
-class AlarmGroup(StrEnum):
-    """What a kind of alarm is about."""
-
-    DEVICE = "device"  # a device fails; an unsafe state can follow from it
-    COMMUNICATION = "communication"
-    PLAN = "plan"
-    RECOVERY = "recovery"  # the remedy is a plan, a correction or a decision of a person
-    PEOPLE = "people"
-    SYSTEM = "system"
-    MODEL = "model"  # a condition that the model does not allow
-    PROCESS = "process"  # what an engineer declared in the model
+from sequence_planner.controller.views.station import AlarmGroup, Priority
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class Message:
         name, one, several = place.groups()
         argument = self.arguments[name]
         if one is None:
-            return worded(argument)
+            return in_english(argument)
         assert isinstance(argument, int | float | Sequence) and not isinstance(argument, str)
         return one if (argument if isinstance(argument, int | float) else len(argument)) == 1 else several
 
@@ -55,7 +55,7 @@ def message(id: str, /, **arguments: Argument) -> Message:
     return Message(id, arguments)
 
 
-def worded(argument: Argument) -> str:
+def in_english(argument: Argument) -> str:
     """An argument in English."""
     if isinstance(argument, float):
         return f"{argument:g}"
@@ -66,7 +66,7 @@ def worded(argument: Argument) -> str:
 
 def listed(items: Collection[Item]) -> str:
     """As in `a, b and c`, or with how many others there are; in English."""
-    every = [worded(item) for item in items]
+    every = [in_english(item) for item in items]
     if len(every) > _NAMED + 1:
         every = [*every[:_NAMED], str(message("list.more", count=len(every) - _NAMED))]
     return str(message("list.and", most=", ".join(every[:-1]), last=every[-1])) if len(every) > 1 else "".join(every)

@@ -30,12 +30,11 @@ from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.controller.views.wording import end_text, value_text
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.plan_tracker import why_none
+from sequence_planner.execution.plan_tracker import formula_of, why_none
 from sequence_planner.execution.state import OutOfService
 from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
-from sequence_planner.language.printer import print_expression
-from sequence_planner.language.syntax import TRUE, variables
+from sequence_planner.language.syntax import variables
 from sequence_planner.planning.problem import PlanAnswer, Verdict
 
 START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
@@ -236,7 +235,7 @@ class PlanAlarms:
             yield LOCAL.cause(
                 f"{name}:{since.epoch}",
                 {
-                    "formula": print_expression(operation.local or TRUE),
+                    "formula": formula_of(self._execution.automaton, name),
                     "operation": operation.title,
                     "consequence": message("local.not-planned") if active else message("local.reached"),
                     "action": message("local.by-hand") if active else message("local.check"),

@@ -9,7 +9,6 @@ from typing import Annotated
 from pydantic import Field
 
 from sequence_planner.analysis.report import AnalysisDocument
-from sequence_planner.controller.alarms.kinds import AlarmGroup, Priority
 from sequence_planner.controller.alarms.message import Message
 from sequence_planner.controller.commands.approvals import Act
 from sequence_planner.controller.commands.tasks import ProblemKind
@@ -19,6 +18,27 @@ from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Pr
 from sequence_planner.planning.problem import Contract
 
 # Alarms, as they are shown.
+
+
+class Priority(StrEnum):
+    """Urgency of an alarm, after ISA-18.2."""
+
+    HIGH = "high"
+    MEDIUM = "medium"
+    LOW = "low"
+
+
+class AlarmGroup(StrEnum):
+    """What a kind of alarm is about."""
+
+    DEVICE = "device"  # a device fails; an unsafe state can follow from it
+    COMMUNICATION = "communication"
+    PLAN = "plan"
+    RECOVERY = "recovery"  # the remedy is a plan, a correction or a decision of a person
+    PEOPLE = "people"
+    SYSTEM = "system"
+    MODEL = "model"  # a condition that the model does not allow
+    PROCESS = "process"  # what an engineer declared in the model
 
 
 class AlarmState(StrEnum):
