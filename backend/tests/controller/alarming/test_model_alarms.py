@@ -11,7 +11,6 @@ from pydantic import JsonValue
 
 from controller.alarming.scene import Told, acknowledge, alarms_of, shelve
 from controller.carrying_out import carry_out
-from controller.rig import Rig, never
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.controller.alarms.alarm import KIND, aside_from
 from sequence_planner.controller.alarms.message import Wording
@@ -23,6 +22,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.language.types import Value
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.source import ModelError
+from support.simulated import Rig, never
 
 MODELS = Path(__file__).parents[4] / "models"
 
