@@ -123,7 +123,7 @@ class Watched:
     def after(self, seconds: float, **measured: Value) -> Mapping[str, AlarmView]:
         """The alarms of the model so much later, where devices report these values all the while."""
         for name, value in measured.items():
-            self.rig.devices.put(name.replace("__", "."), value)
+            self.rig.devices.set_value(name.replace("__", "."), value)
         for _ in range(round(seconds * 10)):
             self.rig.now += 0.1
             self.rig.tick()
