@@ -32,6 +32,7 @@ from stations.processes import part
 from websockets.asyncio.client import connect
 
 from sequence_planner.controller.controller import Controller
+from sequence_planner.controller.features.records import Records
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.program import main as program
 
@@ -233,7 +234,7 @@ class Parts:
 
 def controller(arguments: Sequence[str]) -> None:
     """The controller's command, with its ticks timed."""
-    step, journalled = Controller._step, Controller._journalled
+    step, journalled = Controller._step, Records._journalled
     waiting: deque[tuple[int, float]] = deque()
     notes = Path(os.environ[NOTES]).open("a", buffering=1)  # noqa: SIM115 - until the process ends
 
@@ -242,16 +243,16 @@ def controller(arguments: Sequence[str]) -> None:
         step(self, moment)
         if self.execution.ticks > before:
             now = time.perf_counter()
-            waiting.append((self._recorder.last, now))
+            waiting.append((self.records.recorder.last, now))
             notes.write(json.dumps({"step": now - began}) + "\n")
 
-    def heard(self: Controller) -> None:
+    def heard(self: Records) -> None:
         journalled(self)
-        while waiting and waiting[0][0] <= self._writer.durable:
+        while waiting and waiting[0][0] <= self.writer.durable:
             notes.write(json.dumps({"durable": time.perf_counter() - waiting.popleft()[1]}) + "\n")
 
     Controller._step = timed  # type: ignore[method-assign]
-    Controller._journalled = heard  # type: ignore[method-assign]
+    Records._journalled = heard  # type: ignore[method-assign]
     sys.argv = ["sequence-planner", *arguments]
     program()
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from sequence_planner.automaton.automaton import Kind
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
@@ -112,12 +113,10 @@ class Trouble:
         while True:
             await asyncio.sleep(self.chance.uniform(0, 2 * CALM))
             self.chance.choice(acts)()
-            for task in list(self.controller.desk.open.values()):
+            for id_, task in self.controller.view().tasks.items():
                 if self.chance.random() < 0.7:
                     try:
-                        await self.controller.command(
-                            AcknowledgeTask(actor=SYSTEM, task=task.id, revision=task.revision)
-                        )
+                        await self.controller.command(AcknowledgeTask(actor=SYSTEM, task=id_, revision=task.revision))
                     except CommandRefused:
                         continue
 
@@ -182,7 +181,7 @@ async def _disturbed(seconds: float, seed: str, clock: Clock, database: Database
     network = MemoryNetwork()
     devices = Devices(network, chance.randrange(1000))
     transport = network.join(station.registry, "sequence_planner", asyncio.get_running_loop())
-    controller = Controller(IDENTITY, station, supervisor, transport, database)
+    controller = build_controller(IDENTITY, station, supervisor, transport, database)
     controller.take_command()
     trouble = Trouble(controller, devices, chance, seen.seen)
     with watched(seen, clock):

@@ -12,6 +12,7 @@ from contextlib import ExitStack, contextmanager
 from functools import cache
 
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.views.station import StationIdentity
@@ -66,7 +67,7 @@ class Plant:
     def controller(self, supervisor: Supervisor) -> Controller:
         """A controller that runs, and waits for production to be started."""
         identity = StationIdentity(name="mixer", title="", description="", transport=self._kind, emulated=True)
-        controller = Controller(identity, self.station, supervisor, self.join("sequence_planner"), self._database)
+        controller = build_controller(identity, self.station, supervisor, self.join("sequence_planner"), self._database)
         controller.take_command()
         self._running.append(asyncio.create_task(controller.run()))
         return controller

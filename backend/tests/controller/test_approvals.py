@@ -6,6 +6,7 @@ import asyncio
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 
 import pytest
 from hypothesis import strategies as st
@@ -18,6 +19,7 @@ from hypothesis.stateful import (
 )
 
 from sequence_planner.automaton.automaton import Kind
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.approvals import (
     Act,
     ApproveRequest,
@@ -39,7 +41,9 @@ from sequence_planner.controller.commands.recovery import (
     UndoCorrection,
 )
 from sequence_planner.controller.controller import Controller
-from sequence_planner.controller.features.approvals import PATIENCE, SHOWN
+from sequence_planner.controller.features.approvals import PATIENCE, SHOWN, Approvals
+from sequence_planner.controller.features.control_lock import ControlLock
+from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.controller.views.station import ApprovalState, ApprovalView
 from sequence_planner.core.actor import SYSTEM, Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
@@ -58,6 +62,7 @@ ANOTHER_EVA = person("Eva", session="another browser")
 KEY = Actor(kind=ActorKind.KEY, id="k1", name="MES")
 PART, OTHER, MOVING, GOTO = "parts[left]", "parts[right]", "arm.moving", "arm.goto"
 FULL = CorrectionAct(values={PART: "full"})
+Kept = TypeVar("Kept")
 MOVES = ForceAct(name=MOVING, value=True, seconds=60)
 DUAL = {
     "station.yaml": ("type: fill, initial: empty", "type: fill, initial: empty, approval: dual"),
@@ -79,13 +84,17 @@ def controller(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Controller]
 
     async def made() -> Controller:
         transport = MemoryNetwork().join(station.registry, "sequence_planner", asyncio.get_running_loop())
-        return Controller(IDENTITY, station, supervisor, transport, database)
+        return build_controller(IDENTITY, station, supervisor, transport, database)
 
     with journal() as database:
         one = asyncio.run(made())
         yield one
-        for each in (one._questions, one._doubting, one._adviser):  # its life was never begun, which would end them
-            each.close()
+        for close in one._parts.close:  # its life was never begun, which would end them
+            close()
+
+
+def feature(controller: Controller, kind: type[Kept]) -> Kept:
+    return next(each for each in controller.viewing._shown if isinstance(each, kind))
 
 
 @dataclass
@@ -105,13 +114,13 @@ class Cell:
 
     @property
     def approvals(self) -> dict[str, ApprovalView]:
-        return self.controller._approvals.view(self.moment)
+        return feature(self.controller, Approvals).view(self.moment)
 
     def value(self, name: str) -> object:
         return self.controller.execution.state[name]
 
     def do(self, command: Command) -> None:
-        self.controller._bus.execute(command, self.moment)
+        self.controller._parts.commands.execute(command, self.moment)
 
     def refusal(self, command: Command) -> str:
         with pytest.raises(CommandRefused) as refused:
@@ -120,7 +129,7 @@ class Cell:
 
     def control(self, actor: Actor | None) -> None:
         """Let somebody be in control, or nobody."""
-        held = self.controller._in_control.view()
+        held = feature(self.controller, ControlLock).view()
         if held is not None:
             self.do(WithdrawControl(actor=SYSTEM, session=held.session))
         if actor is not None:
@@ -143,7 +152,7 @@ class Cell:
     def begin(self) -> None:
         """As in the beginning; nothing waits, and what waited is forgotten."""
         execution = self.controller.execution
-        self.controller._approvals._requests.clear()
+        feature(self.controller, Approvals)._requests.clear()
         for name in list(execution.conduct.forces):
             execution.release(name)
         execution.correct({PART: "empty", OTHER: "empty"}, "test", "begins", self.moment)
@@ -169,7 +178,7 @@ def test_two_people_correct_what_asks_for_two(cell: Cell) -> None:
     assert cell.value(PART) == "full"
     assert cell.approvals[request].state is ApprovalState.APPROVED
     assert cell.approvals[request].answered_by == "Adam"
-    last = cell.controller._corrections.last
+    last = feature(cell.controller, Corrections).last
     assert last is not None
     assert (last.by, last.why) == ("Eva + Adam", WHY)
     cell.now += SHOWN

@@ -10,10 +10,10 @@ from typing import NoReturn
 import pytest
 
 from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, StartProduction
-from sequence_planner.controller.controller import Controller
-from sequence_planner.controller.service import start_when_alone
+from sequence_planner.controller.features.automatic_start import start_when_alone
 from sequence_planner.controller.views.station import Priority
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
@@ -287,7 +287,7 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
         registry = cell()[0].registry
         transport = MemoryNetwork().join(registry, "sequence_planner", asyncio.get_running_loop())
         station = ReadyStation(blinking, StationPipelines({}, {}), registry)
-        controller = Controller(IDENTITY, station, everything_is_safe, transport, database)
+        controller = build_controller(IDENTITY, station, everything_is_safe, transport, database)
         controller.take_command()
         running = asyncio.create_task(controller.run())
         await until_async(lambda: "restless" in controller.view().alarms)

@@ -12,8 +12,8 @@ import pytest
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, TakeControl, TakeStep
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, DecideOutputs
+from sequence_planner.controller.features.automatic_start import go_on, start_when_alone
 from sequence_planner.controller.previous_run import what_is_known
-from sequence_planner.controller.service import go_on, start_when_alone
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import SqliteFile

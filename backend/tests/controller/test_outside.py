@@ -10,7 +10,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.recovery.safe_state import SafeStateDifference, SafeStateMonitor
-from sequence_planner.controller.views.builder import way_back
+from sequence_planner.controller.views.execution import way_back
 from sequence_planner.controller.views.station import AlarmState, DifferenceView, SpecificationView, WayBackView
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import PlanStatus

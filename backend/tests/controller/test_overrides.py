@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from pipelines.station_writing import station_with
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import ClearOverride, SetOverride, StartProduction, TakeControl
 from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines
@@ -167,7 +168,7 @@ def test_the_controller_sets_shows_and_tells_what_passes(tmp_path: Path) -> None
         tank = network.join(station.registry, "tank", loop)
         orders: list[object] = []
         tank.subscribe("/tank/order", "tank_msgs/msg/Order", QualityOfService.RELIABLE, orders.extend)
-        controller = Controller(IDENTITY, station, supervisor, transport, database)
+        controller = build_controller(IDENTITY, station, supervisor, transport, database)
         controller.take_command()
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)

@@ -6,7 +6,7 @@ import pytest
 
 from controller.test_conduct import Station
 from sequence_planner.automaton.automaton import State
-from sequence_planner.controller.output_gate import OutputGate
+from sequence_planner.controller.io.output_gate import OutputGate
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 

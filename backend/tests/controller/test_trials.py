@@ -15,8 +15,8 @@ from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.trials import Trials
-from sequence_planner.controller.views.builder import last_operator_plan_view, operator_plan_view
 from sequence_planner.controller.views.details import AbilityDefinitionView, TrialView
+from sequence_planner.controller.views.execution import last_operator_plan_view, operator_plan_view
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Final, Literal
 
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.approvals import ForceVariable
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import (
@@ -214,9 +215,9 @@ class Life:
         """Do the tasks that people are given, until cancelled."""
         while True:
             await asyncio.sleep(0.05)
-            for task in list(self.controller.desk.open.values()):
+            for id_, task in self.controller.view().tasks.items():
                 if time.time() - task.created > TASK:
-                    command = AcknowledgeTask(actor=SYSTEM, task=task.id, revision=task.revision)
+                    command = AcknowledgeTask(actor=SYSTEM, task=id_, revision=task.revision)
                     with contextlib.suppress(CommandRefused):
                         await self.controller.command(command)
 
@@ -244,8 +245,8 @@ async def life(
     )
     transport = network.join(station.registry, "sequence_planner", asyncio.get_running_loop())
     known = what_is_known(database, station.automaton)
-    controller = Controller(identity, station, supervisor, transport, database, known)
-    controller._recorder._snapshot_every = SNAPSHOT_EVERY
+    controller = build_controller(identity, station, supervisor, transport, database, known)
+    controller.records.recorder._snapshot_every = SNAPSHOT_EVERY
     controller.take_command()
     here = Life(station, controller, around, chance)
     running = asyncio.create_task(controller.run())

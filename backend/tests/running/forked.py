@@ -33,11 +33,11 @@ import structlog
 from running.judging import Judge, Kept
 from running.wire import Wire
 from sequence_planner.controller import planner_client
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.commands.recovery import DecideOutputs
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
-from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.previous_run import what_is_known
 from sequence_planner.controller.views.station import StationIdentity
 from sequence_planner.core.actor import SYSTEM
@@ -120,7 +120,7 @@ class Child:
         self._types = {name: each.topic.type_name for name, each in station.pipelines.incoming.items()}
         transport = network.join(station.registry, "sequence_planner", loop)
         with patch.object(planner_client, "planner_process", lambda automaton, supervisor: NearPlanner(planner)):
-            controller = Controller(
+            controller = build_controller(
                 IDENTITY, station, supervisor, transport, database, what_is_known(database, station.automaton)
             )
         controller.take_command()
@@ -157,7 +157,7 @@ class Child:
     async def _tell_durable(self) -> None:
         said = 0
         while True:
-            if (durable := self._controller._writer.durable) != said:
+            if (durable := self._controller.records.writer.durable) != said:
                 said = durable
                 self._say("durable", said)
             await asyncio.sleep(0.002)
@@ -185,8 +185,8 @@ class Child:
                         self._say("seen", "outputs decided on")
                     await controller.command(StartProduction(actor=SYSTEM))
                 else:
-                    for task in list(controller.desk.open.values()):
-                        acknowledged = AcknowledgeTask(actor=SYSTEM, task=task.id, revision=task.revision)
+                    for id_, task in controller.view().tasks.items():
+                        acknowledged = AcknowledgeTask(actor=SYSTEM, task=id_, revision=task.revision)
                         await controller.command(acknowledged)
 
 

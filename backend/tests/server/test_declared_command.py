@@ -11,12 +11,12 @@ import pytest
 from pydantic import Field
 
 from sequence_planner.auth.roles import Role
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.audit import CommandAudit
 from sequence_planner.controller.commands.bus import CommandBus, handles
 from sequence_planner.controller.commands.command import Command, CommandRefused, Route, Why
 from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
 from sequence_planner.controller.commands.registry import COMMANDS
-from sequence_planner.controller.controller import Controller as RealController
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
@@ -178,7 +178,7 @@ def test_a_command_that_nobody_handles_or_two_do_is_found_when_the_controller_is
     async def built() -> None:
         transport = MemoryNetwork().join(station.registry, "sequence_planner", asyncio.get_running_loop())
         with journal() as database:
-            RealController(IDENTITY, station, supervisor, transport, database)
+            build_controller(IDENTITY, station, supervisor, transport, database)
 
     with pytest.raises(ValueError, match="no feature handles SetLamp"):
         asyncio.run(built())

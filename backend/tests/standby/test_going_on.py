@@ -16,8 +16,9 @@ from sequence_planner.controller.commands.audit import CommandAudit
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, StartProduction
 from sequence_planner.controller.controller import Controller
+from sequence_planner.controller.features.automatic_start import go_on
 from sequence_planner.controller.preparation import Preparation
-from sequence_planner.controller.service import _follows, go_on
+from sequence_planner.controller.service import _follows
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.execution import StartProduction
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.previous_run import what_is_known
@@ -108,7 +109,7 @@ async def bench(network: MemoryNetwork | None = None, database: Database | None 
     with contextlib.ExitStack() as kept:
         database = database or kept.enter_context(journal())
         known = what_is_known(database, station.automaton)
-        controller = Controller(IDENTITY, station, supervisor, transport, database, known)
+        controller = build_controller(IDENTITY, station, supervisor, transport, database, known)
         controller.take_command()
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)  # what has not begun would not end in good order either

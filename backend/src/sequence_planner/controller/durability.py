@@ -37,7 +37,7 @@ class Lasting:
 
     async def begin(self, controller: Controller, epoch: int | None) -> None:
         """A controller begins its life; `epoch` is that of the lease that it holds."""
-        await self._written(partial(self._last_word.start_life, controller.begun, epoch))
+        await self._written(partial(self._last_word.start_life, controller.records.begun, epoch))
 
     async def settle(
         self, command: Command, controller: Controller, before: int, audited: asyncio.Task[None] | None
@@ -47,13 +47,13 @@ class Lasting:
         `before` is the last record before the command, `audited` ends when it is recorded who gave it. Raises
         `CommandRefused` when the command stops devices and it is nowhere written down that it did.
         """
-        number = controller.last_record
+        number = controller.records.newest
         if number == before and not command.harmless:
             return True
         entry = entry_of(command).model_copy(update={"outcome": Outcome.DONE})
         word = Word(number=number, mode=controller.execution.mode, time=time.time(), entry=entry)
         keeping = asyncio.create_task(self._keep(word)) if command.harmless else None
-        recorded = await controller.until_recorded(number, PATIENCE)
+        recorded = await controller.records.writer.until_durable(number, PATIENCE)
         if recorded and audited is not None:
             recorded = bool((await asyncio.wait({audited}, timeout=PATIENCE))[0])
         if recorded:
@@ -62,7 +62,7 @@ class Lasting:
         if not kept and command.harmless:
             raise _not_kept(self._last_word)
         if kept:
-            controller.note_kept(number, f"{command.actor.name} asked for {described(entry)}")
+            controller.records.note_kept(number, f"{command.actor.name} asked for {described(entry)}")
         return False
 
     async def _keep(self, word: Word) -> bool:

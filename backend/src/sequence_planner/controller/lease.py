@@ -38,7 +38,7 @@ async def held_lease(
         deployed = True
         raise
     finally:
-        recorded = None if preparation.controller is None else preparation.controller.is_recorded
+        recorded = None if preparation.controller is None else preparation.controller.records.is_durable
         await keeper.end(deployed=deployed, settled=keeper.settled_before if recorded is None else recorded)
 
 

@@ -286,15 +286,15 @@ class Preparation:
             self.trouble = "; ".join(warning.message for warning in found.warnings)
             self.supervisor.set_result(None)
         if self.controller is not None:
-            self.controller.know(analysis, self._guards)
+            self.controller.viewing.know(analysis, self._guards)
 
     def give(self, controller: Controller) -> None:
         """From now on the controller is told what else is found."""
         self.controller = controller
         if self._others is not None:
-            controller.wait_to_command()
+            controller.devices.wait_to_command()
         if self.analysis is not None:
-            controller.know(self.analysis, self._guards)
+            controller.viewing.know(self.analysis, self._guards)
 
     def note_others(self, why: str) -> None:
         """Somebody else commands the devices, and is waited for."""
@@ -302,7 +302,7 @@ class Preparation:
             LOG.warning("the controller waits to command the devices", because=why)
         self._others = why
         if self.controller is not None:
-            self.controller.wait_to_command()
+            self.controller.devices.wait_to_command()
 
     def tasks(self) -> dict[str, TaskView]:
         """The open tasks by now."""
@@ -311,7 +311,7 @@ class Preparation:
     def note_unrecorded(self, why: str | None) -> None:
         """Commands cannot be recorded, for this reason; None when they can again."""
         if self.controller is not None:
-            self.controller.note_unrecorded(why)
+            self.controller.alarms.unrecorded = why
 
     def end(self, why: WorkerError) -> None:
         """No more will be found."""
@@ -325,7 +325,7 @@ class Preparation:
         if self.analysis is not None:
             self.analysis = self.analysis.model_copy(update={"pending": None})
             if self.controller is not None:
-                self.controller.know(self.analysis, self._guards)
+                self.controller.viewing.know(self.analysis, self._guards)
 
     def view(
         self,

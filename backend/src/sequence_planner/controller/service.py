@@ -14,14 +14,16 @@ import structlog
 
 from sequence_planner.analysis.store import user_cache
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.audit import CommandAudit
 from sequence_planner.controller.commands.command import Command, CommandRefused
-from sequence_planner.controller.commands.execution import Deploy, StartProduction
+from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.commands.queries import Ask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.durability import Lasting
+from sequence_planner.controller.features.automatic_start import go_on, start_when_alone
 from sequence_planner.controller.io.network import NetworkWatch, network_steps
-from sequence_planner.controller.ipc import ControllerLink, Handle
+from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.lease import held_lease, standby_view, stands_by
 from sequence_planner.controller.preparation import (
     PREPARING,
@@ -37,55 +39,18 @@ from sequence_planner.controller.views.builder import Shown
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationIdentity, StationView
-from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
-from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.journal.last_accepted import LastEnding, LastWord, last_word_file
 from sequence_planner.process.gc_tuning import keep_everything
 from sequence_planner.ros.exclusivity import NotAloneError, require_sole_publisher
 from sequence_planner.ros.transport import Transport
 from sequence_planner.ros.transports.routing import gated
-from sequence_planner.simulation.manual_interface import NODE as EMULATED_DEVICES
 from sequence_planner.simulation.supported import emulation_findings
 from sequence_planner.standby.lease import LeaseKeeper
 from sequence_planner.station import ReadyStation
 
-# Production that is started without a person, where that is allowed; any refusal is looked at again a little later.
-
 LOG = structlog.get_logger(__name__)
-
-
-async def start_when_alone(controller: Controller, handle: Handle, look_every: float = 0.2) -> None:
-    """Let production be started by `handle`, without a person, once emulated devices and nobody else are there, and
-    unless somebody has stopped the station.
-    """
-    said: list[str] = []
-    while controller.execution.production is Production.WAITING:
-        strangers = controller.devices.strangers(f"/{EMULATED_DEVICES}")
-        # What would be refused is not tried again and again, as each try is recorded.
-        strangers += [f"it is not decided what {name} shall be" for name in controller.undecided]
-        if not strangers and controller.execution.mode is Mode.AUTOMATIC:
-            with contextlib.suppress(CommandRefused):  # since the network was looked at, somebody has come
-                await handle(StartProduction(actor=SYSTEM, reason="started with --start"))
-        elif strangers and strangers != said:
-            said = strangers
-            LOG.info("production is not started by itself", because=strangers)
-        await asyncio.sleep(look_every)
-
-
-async def go_on(controller: Controller, handle: Handle, before: str, look_every: float = 0.2) -> None:
-    """Let production go on by `handle` where the command was taken over from the station `before`, as the model allows.
-
-    It waits as long as a person has to decide on an output, or somebody else is still seen on the topics, and ends for
-    good when somebody has stopped the station meanwhile.
-    """
-    why = f"taken over from {before}, as the model allows"
-    while controller.execution.production is Production.WAITING and controller.execution.mode is Mode.AUTOMATIC:
-        if not controller.undecided and not controller.execution.blind and not controller.devices.network.rivals:
-            with contextlib.suppress(CommandRefused):
-                await handle(StartProduction(actor=SYSTEM, reason=why))
-        await asyncio.sleep(look_every)
-
 
 # The controller's process: the station is prepared, the network joined, then it runs and shows itself on the link.
 
@@ -268,15 +233,16 @@ class _Life:
         known = self._deployment.known(RestoredState() if running.start else await self._known(station))
         identity, database = _identity(running, transport.name), self._database
         if keeper is None:
-            controller = Controller(identity, station, supervisor, transport, database, known)
+            controller = build_controller(identity, station, supervisor, transport, database, known)
         else:
             speaking = gated(transport, lambda: keeper.held)
-            controller = Controller(identity, station, supervisor, speaking, database, known, keeper.fence)
+            controller = build_controller(identity, station, supervisor, speaking, database, known, keeper.fence)
         keep_everything()  # a running station must not be held up
         self._preparation.give(controller)
         await self._lasting.begin(controller, None if keeper is None else keeper.epoch)
         if running.emulated:
-            controller.note_unemulated(await asyncio.to_thread(emulation_findings, station))
+            unemulated = await asyncio.to_thread(emulation_findings, station)
+            controller.alarms.unemulated = tuple(map(str, unemulated))
         self._living.create_task(self._take_command(station, controller, known, alone))
         async with _beside(self._show(controller)), _beside(show_network(controller.devices.network, self._link)):
             await controller.run()
@@ -341,7 +307,7 @@ class _Life:
     async def _handle(self, command: Command) -> bool:
         """Record a command and carry it out; whether the journal has what it did. Raises `CommandRefused`."""
         controller = self._preparation.controller
-        before = 0 if controller is None else controller.last_record
+        before = 0 if controller is None else controller.records.newest
         audited = await self._recording.carry_out(command, self._preparation.tasks, self._act)
         if controller is None:
             return True

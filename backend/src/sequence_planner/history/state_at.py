@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.views.builder import force_views, operator_plan_view, packml, service_views
+from sequence_planner.controller.views.execution import force_views, operator_plan_view, packml, service_views
 from sequence_planner.controller.views.jobs import job_views
 from sequence_planner.controller.views.station import StepStatus
 from sequence_planner.execution.executor import Executor

@@ -5,7 +5,7 @@ from __future__ import annotations
 from controller.alarming.scene import Told, alarms_of
 from controller.faulty import FaultyRig
 from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.controller.views.builder import failing
+from sequence_planner.controller.views.execution import failing
 from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority, QuestionView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode

@@ -94,6 +94,10 @@ class AlarmManager(StationAlarms):
         self.look(planner_trouble, moment)
         return self._lives.view()
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"who_can": self.who_can.found}
+
     @property
     def untold(self) -> Collection[str]:
         """The resources whose silence is too young to be told."""

@@ -114,6 +114,10 @@ class Approvals:
         state = ApprovalState.WITHDRAWN if own else ApprovalState.DECLINED
         self._end(command.request, state, moment, command.actor, command.reason)
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"approvals": self.view(moment)}
+
     def view(self, moment: Timestamp) -> dict[str, ApprovalView]:
         """Return what waits, and what was over lately."""
         self._look(moment)

@@ -24,6 +24,10 @@ class ControlLock:
         """Return who is in control; None for nobody."""
         return self._holder
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"control": self._holder}
+
     @handles(TakeControl)
     def take(self, command: TakeControl, moment: Timestamp) -> None:
         """Let the session of the actor be in control, unless another is by now than the one from which it is taken."""

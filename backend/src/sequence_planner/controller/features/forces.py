@@ -9,6 +9,7 @@ from sequence_planner.automaton.automaton import Kind, State
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
 from sequence_planner.controller.commands.bus import handles
 from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.views.execution import force_views
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.printer import print_value
@@ -24,6 +25,10 @@ class Forces:
 
     def __init__(self, execution: Executor) -> None:
         self._execution = execution
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"forces": force_views(self._execution.conduct)}
 
     def check(self, command: ForceVariable) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""

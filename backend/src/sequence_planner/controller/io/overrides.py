@@ -73,6 +73,10 @@ class Overrides:
             return self._clients
         return self._commander if known.is_outgoing else self._feeds.running
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"overrides": self.view(moment)}
+
     def view(self, moment: Timestamp) -> dict[str, OverrideView]:
         """All overrides as they are now."""
         return {name: self._view(name, known, moment) for name, known in self._known.items()}

@@ -520,6 +520,10 @@ class ConsistencyMonitor:
         """The outputs on which a person must decide."""
         return self._outputs.views()
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"undecided": self.undecided, "questions": list(self.questions)}
+
     def told(self, untold: Collection[str]) -> list[str]:
         """Those for which somebody is called, while the silence of resources in `untold` is too young to be told."""
         return self._outputs.told(untold)

@@ -194,6 +194,10 @@ class Corrections:
             return None
         return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"last_correction": self.last}
+
     async def preview(self, values: Mapping[str, GivenValue]) -> CorrectionPreview:
         """Return what the correction would bring about. Raises `CommandRefused`."""
         obstacle = correcting_refused(self._execution)

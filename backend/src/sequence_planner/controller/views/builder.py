@@ -3,44 +3,43 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, Protocol, runtime_checkable
 
 from sequence_planner.analysis.report import AnalysisDocument
-from sequence_planner.automaton.automaton import Automaton, Kind
+from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.sources import AlarmSources
+from sequence_planner.controller.commands.audit import StandingNotes
+from sequence_planner.controller.features.control_lock import ControlLock
+from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.features.tasks import TaskHandler, TaskProblem
-from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.controller.io.network import NetworkWatch
-from sequence_planner.controller.io.outputs import Outputs
+from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.recovery.explain import waits_for
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.execution import (
+    failing,
+    last_operator_plan_view,
+    operator_plan_view,
+    packml,
+    service_views,
+    standing,
+    way_back,
+)
 from sequence_planner.controller.views.jobs import Around, job_views
 from sequence_planner.controller.views.jobs import waits_for as job_waits_for
 from sequence_planner.controller.views.station import (
     AbilityView,
     AlarmView,
-    ApprovalView,
     DiagnosisView,
-    DifferenceView,
     DroppedStepView,
-    ForceView,
-    LastCorrectionView,
-    LastOperatorPlanView,
     OperationView,
-    OperatorPlanView,
-    OverrideView,
     PackML,
     PlanStepView,
     PlanView,
-    QuestionView,
     ReplacementView,
     ResourceView,
-    ServiceView,
-    SpecificationView,
     StationIdentity,
     StationStanding,
     StationView,
@@ -48,25 +47,19 @@ from sequence_planner.controller.views.station import (
     TaskProblemView,
     TaskView,
     TopicView,
-    UndecidedOutputView,
     VariableKind,
     VariableView,
-    WayBackStepView,
-    WayBackView,
-    WhoCanView,
 )
-from sequence_planner.controller.views.wording import diagnosis_view, end_text
+from sequence_planner.controller.views.wording import diagnosis_view
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.forecast import Expected, Forecast
-from sequence_planner.execution.jobs import Jobs
 from sequence_planner.execution.plan_tracker import PlannedStart, Replacement
-from sequence_planner.execution.state import ExecutionState
-from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production, ServiceKind
+from sequence_planner.execution.vocabulary import JobState, Production, ServiceKind
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.types import Value
-from sequence_planner.planning.problem import Contract, Plan, RecoveryPath, WayBackAnswer
+from sequence_planner.planning.problem import Contract, Plan
 from sequence_planner.synthesis.guards import SupervisorGuard
 
 # Whether a view tells more than the one before: a station at rest is not shown anew again and again.
@@ -101,171 +94,18 @@ def _lasting(view: StationView) -> StationView:
     return view.model_copy(update={"time": 0.0, "topics": topics})
 
 
-# What is shown of how a station executes: its PackML state, what is carried out, forced, and out of service.
-
-_ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
-
-
-def packml(execution: Executor) -> PackML:
-    """The state of PackML that fits; `docs/control.md` says what it is made of."""
-    if execution.production is not Production.STARTED:
-        return PackML.IDLE
-    moves = bool(execution.running())
-    if execution.mode is Mode.AUTOMATIC:
-        followed = execution.plan.status is PlanStatus.FOLLOWED and bool(execution.plan.order.goals)
-        return PackML.EXECUTE if moves or followed else PackML.SUSPENDED
-    moves = moves or execution.operator_plan is not None
-    if execution.mode is Mode.RESTART:
-        return PackML.CLEARING if moves else PackML.ABORTED
-    during, after = _ENDING[execution.mode]
-    return during if moves else after
-
-
-_STANDING = {
-    Mode.HOLD: StationStanding.HELD,
-    Mode.RESTART: StationStanding.RESTART,
-    Mode.PAUSED: StationStanding.PAUSED,
-}
-
-
-# What alarms are called that say of a device, or of what it does, that it fails; see `docs/alarms.md`.
-_FAILURES = frozenset({"overdue", "still", "given-up"})
-
-
-def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
-    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of
-    them.
-    """
-    found: set[str] = set()
-    for key, alarm in alarms.items():
-        kind, _, name = key.partition(":")
-        ability = automaton.abilities.get(name)
-        if alarm.ended is not None or kind not in _FAILURES:
-            continue
-        if ability is None:
-            found.add(name)
-        elif ability.human is None:
-            found.add(ability.resource)
-    return [title for name, title in automaton.resources.items() if name in found]
-
-
-def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[str]) -> StationStanding:
-    """Return whether anything starts by itself, while these resources are `silent`."""
-    situation = outside.situation
-    if execution.production is not Production.STARTED:
-        return StationStanding.WAITING
-    if execution.mode is not Mode.AUTOMATIC:
-        return _STANDING[execution.mode]
-    if execution.obstacles or (situation is not None and situation.certain):
-        return StationStanding.STOPPED
-    return StationStanding.SILENT if silent else StationStanding.WORKING
-
-
-def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
-    """Return what is carried out now."""
-    operator_plan = execution.operator_plan
-    if operator_plan is None:
-        return None
-    return OperatorPlanView(
-        kind=operator_plan.kind,
-        title=operator_plan.title,
-        by=operator_plan.by,
-        why=operator_plan.why,
-        since=operator_plan.taken.epoch,
-        ends=end_text(operator_plan.goal, operator_plan.into_safe),
-        into_safe=operator_plan.into_safe,
-        ability=operator_plan.ability,
-    )
-
-
-def last_operator_plan_view(conduct: ExecutionState) -> LastOperatorPlanView | None:
-    """Return how the last one has ended."""
-    last = conduct.last_operator_plan
-    if last is None:
-        return None
-    return LastOperatorPlanView(
-        title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability
-    )
-
-
-def force_views(conduct: ExecutionState) -> dict[str, ForceView]:
-    """Return what is forced."""
-    return {
-        name: ForceView(value=force.value, real=force.real, until=force.until.epoch, by=force.by, why=force.why)
-        for name, force in conduct.forces.items()
-    }
-
-
-def service_views(automaton: Automaton, conduct: ExecutionState) -> list[ServiceView]:
-    """Return what is out of service, since when."""
-    return [
-        ServiceView(
-            of=each.of,
-            name=each.name,
-            title=_title(automaton, each.of, each.name),
-            since=each.since.epoch,
-            by=each.by,
-            why=each.why,
-        )
-        for each in sorted(conduct.service.values(), key=lambda each: (each.since.epoch, each.of, each.name))
-    ]
-
-
-def _title(automaton: Automaton, of: ServiceKind, name: str) -> str:
-    if of is ServiceKind.RESOURCE:
-        return automaton.resources[name]
-    return (automaton.abilities if of is ServiceKind.ABILITY else automaton.operations)[name].title
-
-
-# What is shown of a station outside its safe states.
-
-
-def way_back(automaton: Automaton, outside: SafeStateMonitor, feeds: Mapping[str, str]) -> WayBackView | None:
-    """None while the state is safe. `feeds` names the topic behind each measured variable."""
-    situation = outside.situation
-    if situation is None:
-        return None
-
-    def named(specifications: tuple[str, ...]) -> list[SpecificationView]:
-        return [SpecificationView(name=name, title=automaton.specifications[name].title) for name in specifications]
-
-    awaits = sorted({feeds.get(name, name) for name in situation.awaited})
-    answer = outside.answer if situation.certain else None
-    found = answer if isinstance(answer, WayBackAnswer) else None
-    way = found.way if found is not None else None
-    return WayBackView(
-        violated=named(situation.violated),
-        threatened=named(found.threatened) if found is not None else [],
-        differences=[DifferenceView(name=d.name, now=d.now, safe=d.safe) for d in situation.differences],
-        awaits=awaits,
-        ticks=len(way.ticks) if way is not None else None,
-        steps=_steps(automaton, way) if way is not None else [],
-        breaks=named(way.breaks) if way is not None else [],
-        reason=str(outside.way())
-        if situation.certain
-        else f"Whether the state is safe depends on {', '.join(awaits)}.",
-    )
-
-
-def _steps(automaton: Automaton, way: RecoveryPath) -> list[WayBackStepView]:
-    abilities = [(tick, automaton.abilities[name]) for tick, name in way.starts]
-    return [WayBackStepView(tick=tick, ability=a.name, title=a.title, resource=a.resource) for tick, a in abilities]
-
-
 # The document a running station shows, built from all that is known of it at one moment.
 
 # How many coming steps a task names as what moves next.
 _NEXT_MOVES = 2
 
 
-@dataclass(frozen=True)
-class Doubts:
-    """The things that a person has to decide or to look at, the last correction, and what waits for a second person."""
+@runtime_checkable
+class ShowsPart(Protocol):
+    """A feature that has a part of the document."""
 
-    undecided: dict[str, UndecidedOutputView]
-    questions: list[QuestionView]
-    last_correction: LastCorrectionView | None
-    approvals: dict[str, ApprovalView]
+    def view_part(self, moment: Timestamp) -> Mapping[str, object]:
+        """Members of `StationView` as they are now."""
 
 
 class ViewBuilder:
@@ -276,17 +116,25 @@ class ViewBuilder:
         identity: StationIdentity,
         execution: Executor,
         outside: SafeStateMonitor,
-        feeds: Inputs,
-        network: NetworkWatch,
+        devices: Devices,
         beliefs: Beliefs,
+        tasks: TaskHandler,
+        records: Records,
+        alarms: AlarmSources,
+        in_control: ControlLock,
     ) -> None:
         self._identity = identity
         self._execution = execution
         self._outside = outside
-        self._feeds = feeds
-        self._network = network
+        self._feeds, self._network, self._commander = devices.feeds, devices.network, devices.commander
         self._beliefs = beliefs
-        self._feeding = feeds.heard_on
+        self._desk = tasks
+        self._records = records
+        self._alarms = alarms
+        self._in_control = in_control
+        self._standing = StandingNotes(records.add_note)
+        self._feeding = self._feeds.heard_on
+        self._shown: Sequence[ShowsPart] = ()
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._active_since: dict[str, float] = {}
         self._timetable = Forecast(execution)
@@ -294,11 +142,11 @@ class ViewBuilder:
         self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
         self.analysis: AnalysisDocument | None = None
-        self.who_can: WhoCanView | None = None
         self.guards: Mapping[str, SupervisorGuard] = {}  # that the supervisor adds, as far as they are known
 
-    def note(self, outcome: TickOutcome, now: float) -> None:
+    def note(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: remember what has changed."""
+        now = moment.epoch
         for operation in outcome.completed:
             self.completed[operation] += 1
         for name in self._execution.automaton.variables:
@@ -310,23 +158,25 @@ class ViewBuilder:
         if self._execution.plan.replacement is not self._replaced[0]:
             self._replaced = (self._execution.plan.replacement, now)
 
+    def show(self, features: Iterable[object]) -> None:
+        """Take the parts of those that have one."""
+        self._shown = [feature for feature in features if isinstance(feature, ShowsPart)]
+
+    def know(self, analysis: AnalysisDocument, guards: Mapping[str, SupervisorGuard] | None) -> None:
+        """Take note of what synthesis has found beside the supervisor, to be shown."""
+        self.analysis, self.guards = analysis, guards or {}
+
     def since(self, name: str) -> float | None:
         """Return when a variable was first seen with the value that it has; None before the first tick."""
         seen = self._since.get(name)
         return None if seen is None else seen[1]
 
-    def view(
-        self,
-        desk: TaskHandler,
-        commander: Outputs,
-        overrides: dict[str, OverrideView],
-        alarms: dict[str, AlarmView],
-        control: ControlView | None,
-        doubts: Doubts,
-        jobs: Jobs,
-        moment: Timestamp,
-    ) -> StationView:
-        """The whole document, with the `jobs` as far as they are durable."""
+    def view(self, moment: Timestamp) -> StationView:
+        """The whole document, with the jobs as far as they are durable."""
+        alarms, jobs = self._alarms.current(moment), self._records.jobs
+        parts: dict[str, Any] = {}
+        for feature in self._shown:
+            parts |= feature.view_part(moment)
         execution, conduct = self._execution, self._execution.conduct
         resources = self._resources(moment)
         unused = conduct.out_of(ServiceKind.RESOURCE)
@@ -345,31 +195,24 @@ class ViewBuilder:
             stepping=conduct.stepping,
             production=execution.production if self._network.commands else Production.PREPARING,
             unconfirmed=self._beliefs.unconfirmed,
-            undecided=doubts.undecided,
-            control=control,
             resources=resources,
             variables=self._variables(),
             abilities=self._abilities(),
             operations=self._operations(),
             by_order=jobs.by_order,
-            jobs=job_views(execution, jobs, self._around(desk, alarms, control is not None, moment)),
+            jobs=job_views(execution, jobs, self._around(alarms, moment)),
             plan=self._plan(),
             errand=operator_plan_view(execution),
             last_errand=last_operator_plan_view(conduct),
-            forces=force_views(conduct),
             out_of_service=service_views(execution.automaton, conduct),
-            questions=doubts.questions,
-            last_correction=doubts.last_correction,
-            approvals=doubts.approvals,
-            who_can=self.who_can,
-            tasks=self._tasks(desk, stands in (StationStanding.WORKING, StationStanding.SILENT)),
-            topics=self._topics(commander, moment),
-            overrides=overrides,
+            tasks=self._tasks(stands in (StationStanding.WORKING, StationStanding.SILENT)),
+            topics=self._topics(moment),
             alarms=alarms,
             way_back=way_back(self._execution.automaton, self._outside, self._feeding),
             analysis=self.analysis,
             standby=None,
             deployment=None,
+            **parts,
         )
 
     @property
@@ -377,26 +220,27 @@ class ViewBuilder:
         """The state that PackML has for it now."""
         return packml(self._execution) if self._network.commands else PackML.RESETTING
 
-    def job_waits(
-        self, desk: TaskHandler, alarms: dict[str, AlarmView], controlled: bool, moment: Timestamp
-    ) -> dict[str, list[str]]:
-        """Return what each job waits for that was taken and is neither paused nor over."""
-        around, told = self._around(desk, alarms, controlled, moment), (JobState.WAITING, JobState.RUNNING)
-        jobs = self._execution.conduct.jobs.under_way
-        return {job.id: job_waits_for(self._execution, job, around) for job in jobs if job.state in told}
+    def note_standing(self, moment: Timestamp) -> None:
+        """Write down how the station stands, where that has changed for good."""
+        if not self._network.commands or not self._standing.due(moment):
+            return
+        around, told = self._around(self._alarms.current(moment), moment), (JobState.WAITING, JobState.RUNNING)
+        jobs = [job for job in self._execution.conduct.jobs.under_way if job.state in told]
+        waits = {job.id: job_waits_for(self._execution, job, around) for job in jobs}
+        self._standing.look(self.packml, waits, moment)
 
-    def _around(self, desk: TaskHandler, alarms: dict[str, AlarmView], controlled: bool, moment: Timestamp) -> Around:
+    def _around(self, alarms: dict[str, AlarmView], moment: Timestamp) -> Around:
         execution, ahead = self._execution, self._execution.plan.order.ahead
         name = ahead[0].ability if ahead and execution.conduct.jobs.under_way else None
         waits = [] if name is None else waits_for(execution, name, self._feeding, self.guards.get(name))
         return Around(
             moment.monotonic,
             self._consequences.held_up,
-            desk.open,
-            desk.problems,
+            self._desk.open,
+            self._desk.problems,
             alarms,
             next_waits=tuple(waits),
-            controlled=controlled,
+            controlled=self._in_control.view() is not None,
         )
 
     def _resources(self, moment: Timestamp) -> dict[str, ResourceView]:
@@ -526,7 +370,7 @@ class ViewBuilder:
             waits_for=waiting,
         )
 
-    def _tasks(self, desk: TaskHandler, goes_on: bool) -> dict[str, TaskView]:
+    def _tasks(self, goes_on: bool) -> dict[str, TaskView]:
         abilities = self._execution.automaton.abilities
         names = self._execution.plan.order.names if goes_on else ()
         moves = [abilities[name].title for name in names if abilities[name].human is None]
@@ -539,12 +383,12 @@ class ViewBuilder:
                 text=task.text,
                 created=task.created,
                 next_moves=moves[:_NEXT_MOVES],
-                problem=_problem(desk.problems.get(id_)),
+                problem=_problem(self._desk.problems.get(id_)),
             )
-            for id_, task in desk.open.items()
+            for id_, task in self._desk.open.items()
         }
 
-    def _topics(self, commander: Outputs, moment: Timestamp) -> dict[str, TopicView]:
+    def _topics(self, moment: Timestamp) -> dict[str, TopicView]:
         views = {}
         for name, feed in self._feeds.topics.items():
             views[name] = TopicView(
@@ -558,7 +402,7 @@ class ViewBuilder:
                 peers=self._network.peers[name],
                 trouble=self._network.troubles.get(name) or feed.trouble,
             )
-        for name, command in commander.topics.items():
+        for name, command in self._commander.topics.items():
             views[name] = TopicView(
                 type=command.pipeline.topic.type_name,
                 direction="out",

@@ -1,0 +1,66 @@
+"""Builds what people do at a station that is not as it should be: corrections, plans, tests, forces, approvals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
+from sequence_planner.controller.commands.command import Command
+from sequence_planner.controller.features.approvals import Approvals
+from sequence_planner.controller.features.control_lock import ControlLock
+from sequence_planner.controller.features.forces import Forces
+from sequence_planner.controller.planner_client import AdvisorClient
+from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.corrections import Corrections
+from sequence_planner.controller.recovery.explain import ConditionContext
+from sequence_planner.controller.recovery.proposals import Offers
+from sequence_planner.controller.recovery.stalls import StallDetector
+from sequence_planner.controller.recovery.trials import Trials
+from sequence_planner.controller.recovery.why_not import WhyNot
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """The features, and who answers why something does not start."""
+
+    corrections: Corrections
+    offers: Offers
+    trials: Trials
+    forces: Forces
+    approvals: Approvals
+    why_not: WhyNot
+
+
+def build_recovery(
+    execution: Executor,
+    adviser: AdvisorClient,
+    beliefs: Beliefs,
+    consistency: ConsistencyMonitor,
+    still: StallDetector,
+    in_control: ControlLock,
+    around: ConditionContext,
+    real_devices: Callable[[], Sequence[str]],
+    perform: Callable[[Command, Timestamp], None],
+) -> Recovery:
+    """Build them. `perform` carries out what two people have agreed on."""
+    forces = Forces(execution)
+
+    def require_feasible(command: ApprovedCommand) -> None:
+        if isinstance(command, ForceVariable):
+            forces.check(command)
+        else:
+            corrections.check(command)
+
+    approvals = Approvals(execution, in_control, require_feasible, perform)
+    corrections = Corrections(execution, adviser, beliefs, consistency, approvals.require_one)
+    return Recovery(
+        corrections=corrections,
+        offers=Offers(execution, adviser, corrections, consistency.impossible, still),
+        trials=Trials(execution, around, real_devices),
+        forces=forces,
+        approvals=approvals,
+        why_not=WhyNot(execution, around, adviser),
+    )

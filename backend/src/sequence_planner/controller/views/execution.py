@@ -1,0 +1,174 @@
+"""Views of how a station executes: its PackML state, what is carried out, forced, out of service, and its way back."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
+from sequence_planner.controller.views.station import (
+    AlarmView,
+    DifferenceView,
+    ForceView,
+    LastOperatorPlanView,
+    OperatorPlanView,
+    PackML,
+    ServiceView,
+    SpecificationView,
+    StationStanding,
+    WayBackStepView,
+    WayBackView,
+)
+from sequence_planner.controller.views.wording import end_text
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.state import ExecutionState
+from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production, ServiceKind
+from sequence_planner.planning.problem import RecoveryPath, WayBackAnswer
+
+_ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
+
+
+def packml(execution: Executor) -> PackML:
+    """The state of PackML that fits; `docs/control.md` says what it is made of."""
+    if execution.production is not Production.STARTED:
+        return PackML.IDLE
+    moves = bool(execution.running())
+    if execution.mode is Mode.AUTOMATIC:
+        followed = execution.plan.status is PlanStatus.FOLLOWED and bool(execution.plan.order.goals)
+        return PackML.EXECUTE if moves or followed else PackML.SUSPENDED
+    moves = moves or execution.operator_plan is not None
+    if execution.mode is Mode.RESTART:
+        return PackML.CLEARING if moves else PackML.ABORTED
+    during, after = _ENDING[execution.mode]
+    return during if moves else after
+
+
+_STANDING = {
+    Mode.HOLD: StationStanding.HELD,
+    Mode.RESTART: StationStanding.RESTART,
+    Mode.PAUSED: StationStanding.PAUSED,
+}
+
+
+# What alarms are called that say of a device, or of what it does, that it fails; see `docs/alarms.md`.
+_FAILURES = frozenset({"overdue", "still", "given-up"})
+
+
+def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
+    """Return what the resources are called that do not do what they should, as `alarms` say; people are none of
+    them.
+    """
+    found: set[str] = set()
+    for key, alarm in alarms.items():
+        kind, _, name = key.partition(":")
+        ability = automaton.abilities.get(name)
+        if alarm.ended is not None or kind not in _FAILURES:
+            continue
+        if ability is None:
+            found.add(name)
+        elif ability.human is None:
+            found.add(ability.resource)
+    return [title for name, title in automaton.resources.items() if name in found]
+
+
+def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[str]) -> StationStanding:
+    """Return whether anything starts by itself, while these resources are `silent`."""
+    situation = outside.situation
+    if execution.production is not Production.STARTED:
+        return StationStanding.WAITING
+    if execution.mode is not Mode.AUTOMATIC:
+        return _STANDING[execution.mode]
+    if execution.obstacles or (situation is not None and situation.certain):
+        return StationStanding.STOPPED
+    return StationStanding.SILENT if silent else StationStanding.WORKING
+
+
+def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
+    """Return what is carried out now."""
+    errand = execution.operator_plan
+    if errand is None:
+        return None
+    return OperatorPlanView(
+        kind=errand.kind,
+        title=errand.title,
+        by=errand.by,
+        why=errand.why,
+        since=errand.taken.epoch,
+        ends=end_text(errand.goal, errand.into_safe),
+        into_safe=errand.into_safe,
+        ability=errand.ability,
+    )
+
+
+def last_operator_plan_view(conduct: ExecutionState) -> LastOperatorPlanView | None:
+    """Return how the last one has ended."""
+    last = conduct.last_operator_plan
+    if last is None:
+        return None
+    return LastOperatorPlanView(
+        title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability
+    )
+
+
+def force_views(conduct: ExecutionState) -> dict[str, ForceView]:
+    """Return what is forced."""
+    return {
+        name: ForceView(value=force.value, real=force.real, until=force.until.epoch, by=force.by, why=force.why)
+        for name, force in conduct.forces.items()
+    }
+
+
+def service_views(automaton: Automaton, conduct: ExecutionState) -> list[ServiceView]:
+    """Return what is out of service, since when."""
+    return [
+        ServiceView(
+            of=each.of,
+            name=each.name,
+            title=_title(automaton, each.of, each.name),
+            since=each.since.epoch,
+            by=each.by,
+            why=each.why,
+        )
+        for each in sorted(conduct.service.values(), key=lambda each: (each.since.epoch, each.of, each.name))
+    ]
+
+
+def _title(automaton: Automaton, of: ServiceKind, name: str) -> str:
+    if of is ServiceKind.RESOURCE:
+        return automaton.resources[name]
+    return (automaton.abilities if of is ServiceKind.ABILITY else automaton.operations)[name].title
+
+
+# What is shown of a station outside its safe states.
+
+
+def way_back(automaton: Automaton, outside: SafeStateMonitor, feeds: Mapping[str, str]) -> WayBackView | None:
+    """None while the state is safe. `feeds` names the topic behind each measured variable."""
+    situation = outside.situation
+    if situation is None:
+        return None
+
+    def named(specifications: tuple[str, ...]) -> list[SpecificationView]:
+        return [SpecificationView(name=name, title=automaton.specifications[name].title) for name in specifications]
+
+    awaits = sorted({feeds.get(name, name) for name in situation.awaited})
+    answer = outside.answer if situation.certain else None
+    found = answer if isinstance(answer, WayBackAnswer) else None
+    way = found.way if found is not None else None
+    return WayBackView(
+        violated=named(situation.violated),
+        threatened=named(found.threatened) if found is not None else [],
+        differences=[DifferenceView(name=d.name, now=d.now, safe=d.safe) for d in situation.differences],
+        awaits=awaits,
+        ticks=len(way.ticks) if way is not None else None,
+        steps=_steps(automaton, way) if way is not None else [],
+        breaks=named(way.breaks) if way is not None else [],
+        reason=str(outside.way())
+        if situation.certain
+        else f"Whether the state is safe depends on {', '.join(awaits)}.",
+    )
+
+
+def _steps(automaton: Automaton, way: RecoveryPath) -> list[WayBackStepView]:
+    abilities = [(tick, automaton.abilities[name]) for tick, name in way.starts]
+    return [WayBackStepView(tick=tick, ability=a.name, title=a.title, resource=a.resource) for tick, a in abilities]
