@@ -43,7 +43,7 @@ class Role(StrEnum):
 
 
 class Scope(StrEnum):
-    """What the bearer of a key may do."""
+    """Role of an API key."""
 
     READ = "read"  # the station as a viewer sees it
     AUDIT = "audit"  # the record of who did what

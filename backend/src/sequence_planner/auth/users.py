@@ -49,7 +49,7 @@ DEMONSTRATOR = Person(
     must_change_password=False,
     revision=0,
 )
-"""Whoever sits at a demonstration: no person of the database, without a password, and not an administrator."""
+"""Visitor of a demonstration: no person of the database, without a password, and not an administrator."""
 
 _PARTS = [PEOPLE.c[name] for name in Person.model_fields]
 _RESERVED = {name_shape(name) for name in (DEMONSTRATOR.name, SYSTEM.name, UNKNOWN)}

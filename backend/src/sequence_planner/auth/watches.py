@@ -41,7 +41,7 @@ NOTED_EVERY = 60.0  # seconds; how exactly it is known when a watch was last see
 
 
 class WatchState(StrEnum):
-    """How far a watch has come."""
+    """Progress of a watch's registration."""
 
     WAITING = "waiting"
     ACTIVE = "active"

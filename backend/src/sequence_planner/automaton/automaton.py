@@ -16,7 +16,7 @@ State = Mapping[str, Value | None]
 
 
 class Kind(StrEnum):
-    """Who writes a variable."""
+    """Writer of a variable."""
 
     MEASURED = "measured"
     OUTPUT = "output"

@@ -48,7 +48,7 @@ class ChainEnd(BaseModel):
 
 
 class How(StrEnum):
-    """How it came that a backup was made."""
+    """Reason for which a backup was made."""
 
     ASKED = "asked"  # by somebody on the page
     SCHEDULE = "schedule"

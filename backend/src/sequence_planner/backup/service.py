@@ -271,7 +271,7 @@ _UNFINISHED: Final = ("tmp", ".lock")  # how git's files begin or end that are b
 
 
 class Step(StrEnum):
-    """How far the making of a backup has come."""
+    """Progress of a backup."""
 
     COPYING = "copying"  # the database and what else belongs to it; the journal in the copy is verified
     WRITING = "writing"  # all of that to the one file
@@ -397,7 +397,7 @@ _LOOKED_AT: Final = 200  # of the newest records of each kind
 
 
 class Doing(StrEnum):
-    """What is done with a backup, as the journal calls it."""
+    """Action on a backup, by its name in the journal."""
 
     MAKING = "make-backup"
     CHECKING = "check-backup"

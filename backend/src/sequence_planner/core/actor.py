@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class ActorKind(StrEnum):
-    """What kind of somebody acts."""
+    """Kind of an actor."""
 
     PERSON = "person"
     DEMONSTRATION = "demonstration"  # whoever sits at a demonstration; may command emulated devices only

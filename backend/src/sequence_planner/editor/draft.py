@@ -265,7 +265,7 @@ Differences = Mapping[str, tuple[str | None, str | None]]
 
 
 class ChangeKind(StrEnum):
-    """What a change is."""
+    """Kind of a change."""
 
     EDIT = "edit"
     UNDO = "undo"

@@ -48,7 +48,7 @@ _OF_SECTION = {"topics": "topic", "services": "service", "actions": "action"}
 
 
 class Standing(StrEnum):
-    """Where a thing comes from."""
+    """Origin of a node."""
 
     DECLARED = "declared"
     IMPLIED = "implied"  # by messages or stages, or given with ROS 2

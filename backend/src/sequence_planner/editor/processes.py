@@ -303,13 +303,13 @@ class PlaceInText(TextAt):
 
 
 class ProblemsView(View):
-    """What is wrong with a text; nothing where it is none that names stand in."""
+    """Problems of a text; none where it has no names."""
 
     problems: tuple[ProblemView, ...]
 
 
 class HoverAnswer(View):
-    """What stands at the place; null where no name does."""
+    """The name at the place; null where there is none."""
 
     hover: HoverView | None
 

@@ -351,7 +351,7 @@ class PlanTracker:
         self._rest()
 
     def _rest(self) -> None:
-        """Whatever has been asked or said about another plan is of no interest any more."""
+        """Drop questions and answers about another plan."""
         self.answer = self._asked = self._asked_better = self._none = self.diagnosis = self.replacement = None
         self._none_while_blind = self._undecided = False
 

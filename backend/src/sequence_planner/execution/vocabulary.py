@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class Mode(StrEnum):
-    """How the station executes (see `docs/semantics.md`)."""
+    """Mode of execution (see `docs/semantics.md`)."""
 
     AUTOMATIC = "automatic"
     PAUSED = "paused"  # what runs may finish, nothing is started
@@ -15,7 +15,7 @@ class Mode(StrEnum):
 
 
 class Production(StrEnum):
-    """Whether outputs may be published: nothing is, until a person has started production."""
+    """State of production: nothing is published until a person has started it."""
 
     PREPARING = "preparing"  # the safe set is being computed, or the links are being checked
     WAITING = "waiting"  # ready; waits for a person to start production
@@ -23,7 +23,7 @@ class Production(StrEnum):
 
 
 class PlanStatus(StrEnum):
-    """What can be said about the plan."""
+    """Status of the plan."""
 
     IDLE = "idle"  # no operation is active, so there is nothing to plan
     PLANNING = "planning"  # none yet, a worker is at it
@@ -33,7 +33,7 @@ class PlanStatus(StrEnum):
 
 
 class JobState(StrEnum):
-    """Where a job stands."""
+    """State of a job."""
 
     WAITING = "waiting"  # taken, but what its product brings is not there yet
     RUNNING = "running"
@@ -49,7 +49,7 @@ class JobState(StrEnum):
 
 
 class ServiceKind(StrEnum):
-    """What can be taken out of service."""
+    """Kinds of things that can be taken out of service."""
 
     RESOURCE = "resource"
     ABILITY = "ability"

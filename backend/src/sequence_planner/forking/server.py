@@ -35,7 +35,7 @@ ABOVE: Final = 300  # no place has such a number
 _PATIENCE: Final = 5.0  # seconds for the whole of a request: its parts are sent one right after the other
 _OWN = "sequence_planner."  # what is imported here; anything else is imported by the process that needs it
 Life = Callable[[], None]
-"""What a process does from its beginning to its end."""
+"""Main function of a process."""
 
 
 @dataclass

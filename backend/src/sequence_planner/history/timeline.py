@@ -93,7 +93,7 @@ class PastPlanView(View):
 
 
 class PastView(View):
-    """How the station was. `running` are the abilities under way, `active` the active operations."""
+    """State of the station at a record. `running` are the abilities under way, `active` the active operations."""
 
     tick: int
     revision: int
@@ -120,7 +120,7 @@ class MomentView(View):
 
 
 class BranchView(View):
-    """How the station would have gone on: the records that it would have written, and how it would have been then.
+    """Result of a simulation: the records that the station would have written, and its state after them.
 
     `seconds` is the time that was simulated. With `cut` these are the first records only.
     """

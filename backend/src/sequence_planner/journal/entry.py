@@ -12,7 +12,7 @@ LONGEST_REASON, LONGEST_SUBJECT = 500, 400  # characters
 
 
 class Outcome(StrEnum):
-    """How far an act has come. A command on the station is recorded before its effect, and again when it is known."""
+    """Progress of an act. A command on the station is recorded before its effect, and again when that is known."""
 
     REQUESTED = "requested"
     DONE = "done"

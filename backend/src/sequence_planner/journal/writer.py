@@ -195,7 +195,7 @@ class RunWriter:
     trouble: str | None
     """Why nothing can be written now, for people. It is tried again, and None when it works again."""
     latency: Distribution
-    """How long records took to be durable."""
+    """Times that records took to be durable."""
 
     def __init__(self, database: Database, told: Callable[[], None], fence: Fence = lambda _: True) -> None:
         with database.reading() as connection:

@@ -21,7 +21,7 @@ _OF_STATION: Final = ""  # in the database, in place of an order
 
 
 class EventKind(StrEnum):
-    """What has happened. A kind is never renamed; new ones may come."""
+    """Kind of an event. A kind is never renamed; new ones may come."""
 
     STORED = "job-order-stored"
     UPDATED = "job-order-updated"

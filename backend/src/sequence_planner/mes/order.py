@@ -20,7 +20,7 @@ from sequence_planner.core.actor import Actor
 
 
 class OrderState(StrEnum):
-    """Where an order stands."""
+    """State of an order."""
 
     NOT_ALLOWED_TO_START = "NotAllowedToStart"
     ALLOWED_TO_START = "AllowedToStart"
@@ -31,7 +31,7 @@ class OrderState(StrEnum):
 
 
 class OrderCommand(StrEnum):
-    """What may be asked of an order."""
+    """Requests that an order accepts."""
 
     START = "Start"
     REVOKE_START = "RevokeStart"

@@ -21,7 +21,7 @@ _FORM: Final = ConfigDict(frozen=True, extra="forbid")
 
 
 class JobOutcome(StrEnum):
-    """How an order ended."""
+    """Outcome of an order."""
 
     COMPLETED = "completed"
     STOPPED = "stopped"  # not everything that was ordered was made

@@ -109,4 +109,4 @@ JOB_ANSWERS: Final = Table(
     Column("content", Text, nullable=False),
     Column("time", Double, nullable=False, index=True),
 )
-"""What was answered to a request with an `Idempotency-Key`."""
+"""Answers to requests with an `Idempotency-Key`."""

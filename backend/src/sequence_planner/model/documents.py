@@ -68,27 +68,27 @@ Moment = Annotated[float, Field(ge=0, le=86_400)]
 
 
 class ExampleStepDocument(DocumentPart):
-    """What happens at one moment of an example, and what is so then."""
+    """One moment of an example: what comes, and what is expected then."""
 
     at: Moment
     """Seconds from the beginning of the example."""
     given: Given[Mapping[SourceText, Any]] = None
-    """What comes; without it only time passes."""
+    """The input; without it only time passes."""
     gives: Given[Mapping[SourceText, Any]] = None
-    """What comes of it; `null` is unknown. What is not mentioned may be anything."""
+    """The expected output; `null` is unknown. Fields not mentioned may have any value."""
 
 
 class ExampleDocument(DocumentPart):
     """An example of what a pipeline does: `given` and `gives`, or `steps` with time."""
 
     name: SourceText
-    """What it is an example of."""
+    """The behaviour it shows."""
     given: Given[Mapping[SourceText, Any]] = None
     """The fields of a message (incoming), the records by alias (a merge), or the variables (outgoing)."""
     gives: Given[Mapping[SourceText, Any]] = None
     """The variables (incoming) or fields of the message (outgoing) that come of it; `null` is unknown."""
     steps: Given[Annotated[list[ExampleStepDocument], Field(min_length=1)]] = None
-    """What happens when, in the order of time."""
+    """Its steps in order of time."""
 
     @model_validator(mode="after")
     def _one_form(self) -> ExampleDocument:
@@ -111,7 +111,7 @@ class FlowDocument(DocumentPart):
     pipeline: list[StageDocument] = Field(default_factory=list)
     """Stages."""
     examples: list[ExampleDocument] = Field(default_factory=list)
-    """What comes of what, checked by `check`."""
+    """Examples with expected outputs, checked by `check`."""
 
     @model_validator(mode="after")
     def _has_sources(self) -> FlowDocument:
@@ -167,7 +167,7 @@ class StartDocument(DocumentPart):
     """The start of an ability: a further guard beside `enabled`, and the actions."""
 
     when: Predicate = True
-    """What must hold for a start beside `enabled`."""
+    """Condition for a start beside `enabled`."""
     do: list[SourceText] = Field(default_factory=list)
     """Actions on outputs and estimates, such as `wanted := closed`."""
 
@@ -182,14 +182,14 @@ class FinishDocument(DocumentPart):
 
 
 class EffectDocument(DocumentPart):
-    """How measured variables are expected to react; `takes` is its shortest and longest time in seconds."""
+    """Expected reaction of measured variables; `takes` is its shortest and longest time in seconds."""
 
     kind: Literal["starting", "executing", "finishing"]
     """For the reader: when in a run it is expected."""
     when: Predicate
     """The condition under which it happens, on measured and output variables."""
     do: list[SourceText] = Field(min_length=1)
-    """What changes, all at once: actions on measured variables."""
+    """Actions on measured variables, all taken at once."""
     takes: Duration = (0.5, 0.5)
     """Seconds, or the fewest and the most; emulated devices take so long."""
     fault: bool = False
@@ -200,13 +200,13 @@ class HumanDocument(DocumentPart):
     """A person carries the ability out: what the watch says, and the measured variable that is the acknowledgement."""
 
     task: SourceText
-    """What the watch says."""
+    """Text shown on the watch."""
     acknowledgement: SourceText
     """A measured `bool` of the resource."""
 
 
 class CancelDocument(DocumentPart):
-    """What is done when a running ability is called off."""
+    """Actions taken when a running ability is called off."""
 
     do: list[SourceText] = Field(min_length=1)
     """Actions on outputs and estimates."""
@@ -220,9 +220,9 @@ class TimeoutsDocument(DocumentPart):
     finish: Given[Seconds] = None
     """By when it must have finished."""
     then: Literal["alarm", "replan"] = "alarm"
-    """What is done beside the alarm: nothing, or it is called off and a plan is made again."""
+    """The reaction beside the alarm: none, or the ability is called off and a plan is made again."""
     retries: Annotated[int, Field(ge=0, le=100)] = 0
-    """How often it is tried again by such a plan, until it is taken out of service and done without."""
+    """Number of retries by such a plan before it is taken out of service and done without."""
 
     @model_validator(mode="after")
     def _says_when(self) -> TimeoutsDocument:
@@ -259,9 +259,9 @@ class AbilityDocument(DocumentPart):
     finish: Given[FinishDocument] = None
     """The finish. An ability without one is done with its start."""
     cancel: Given[CancelDocument] = None
-    """What calls a running ability off."""
+    """Calling off a running ability."""
     effects: dict[SourceText, EffectDocument] = Field(default_factory=dict)
-    """How the device is expected to react."""
+    """The device's expected reaction."""
 
     @model_validator(mode="after")
     def _has_an_end(self) -> AbilityDocument:
@@ -274,11 +274,11 @@ class QualityDocument(DocumentPart):
     """The quality of service of a topic, in full."""
 
     reliability: Literal["reliable", "best_effort"] = "reliable"
-    """Whether lost messages are sent again."""
+    """`reliable` has lost messages sent again; `best_effort` does not."""
     durability: Literal["volatile", "transient_local"] = "volatile"
-    """Whether those who come later get the last messages."""
+    """With `transient_local`, late joiners get the last messages."""
     depth: Annotated[int, Field(ge=1, le=10_000)] = 10
-    """How many messages are kept."""
+    """Number of messages kept."""
     deadline: Given[Annotated[float, Field(ge=0.001, le=86_400)]] = None
     """Seconds within which the next message comes."""
     liveliness: Given[Annotated[float, Field(ge=0.001, le=86_400)]] = None
@@ -299,13 +299,13 @@ class TopicDocument(DocumentPart):
     quality: Literal["reliable", "sensor_data", "latched"] | QualityDocument = "reliable"
     """The topic's quality of service, by name or in full."""
     ros: Literal[1, 2] = 2
-    """Which ROS the device speaks: 2, or 1, which is reached through a rosbridge server."""
+    """Version of ROS that the device speaks: 2, or 1, which is reached through a rosbridge server."""
     ignore: list[SourceText] = Field(default_factory=list)
     """Fields that are no variables."""
     pipeline: list[StageDocument] = Field(default_factory=list)
     """Stages, where names alone do not tell what belongs together."""
     examples: list[ExampleDocument] = Field(default_factory=list)
-    """What comes of what, checked by `check`."""
+    """Examples with expected outputs, checked by `check`."""
 
     @model_validator(mode="after")
     def _timing_fits_direction(self) -> TopicDocument:
@@ -371,7 +371,7 @@ class ResourceDocument(DocumentPart):
     estimated: dict[SourceText, VariableDocument] = Field(default_factory=dict)
     """Variables written by abilities, which no message carries."""
     abilities: dict[SourceText, AbilityDocument] = Field(default_factory=dict)
-    """What the resource can do."""
+    """Abilities of the resource."""
     alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
     """What people are told of the resource when something is wrong with it."""
 
@@ -394,7 +394,7 @@ class StationDocument(DocumentPart):
     rest: Predicate = True
     """The states to which the station can always be brought back."""
     takeover: Literal["confirm", "automatic"] = "confirm"
-    """Where a hot standby has taken the command over: whether a person confirms that production goes on."""
+    """After a hot standby has taken command: with `true`, a person confirms that production goes on."""
 
 
 class OperationDocument(DocumentPart):
@@ -414,9 +414,9 @@ class OperationDocument(DocumentPart):
     local: Given[Predicate] = None
     """A formula that holds from its activation to its goal, such as `not bad U good`."""
     priority: int = 0
-    """When not all active operations can be planned together, the lowest are left out first."""
+    """Rank: if not all active operations can be planned together, the lowest are left out first."""
     repeat: bool = True
-    """Whether it can become active again once it was completed; else only after it was reset."""
+    """If true, it can become active again once completed; otherwise only after a reset."""
 
 
 class SpecificationDocument(DocumentPart):
@@ -431,7 +431,7 @@ class SpecificationDocument(DocumentPart):
     forbidden: Given[Predicate] = None
     """States that must never be."""
     never: Given[Predicate] = None
-    """What must not be `while` something else holds."""
+    """Condition that must not hold `while` another one does."""
     during: Given[Predicate] = Field(default=None, alias="while")
     """While what `never` must not be."""
     exclusive: Given[list[SourceText]] = Field(default=None, min_length=2)

@@ -45,7 +45,7 @@ class TransitionDocument(DocumentPart):
     event: SourceText
     """Its name; several transitions may share one."""
     controllable: StrictBool
-    """Whether a supervisor can keep it from happening."""
+    """True if a supervisor can keep it from happening."""
     guard: Predicate = True
     """The condition under which it can happen."""
     updates: dict[SourceText, UpdateDocument] = Field(default_factory=dict, alias="set")
@@ -62,7 +62,7 @@ class PlainDocument(DocumentPart):
     initial: Predicate
     """The initial states."""
     transitions: list[TransitionDocument] = Field(default_factory=list)
-    """What can happen, one at a time."""
+    """Events, of which one happens at a time."""
     forbidden: list[Predicate] = Field(default_factory=list)
     """Conditions that must never hold."""
     marked: Predicate = True

@@ -18,7 +18,7 @@ DEPTH: Final = 60  # ticks up to which it is proven that there is no plan: each 
 
 
 class Contract(StrEnum):
-    """What is wanted of a plan."""
+    """Contract of a plan."""
 
     MINIMAL = "minimal"  # the fewest ticks, then the fewest starts, proven
     FAST = "fast"  # soon, nearly as short, and without needless starts

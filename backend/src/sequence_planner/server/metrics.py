@@ -147,7 +147,7 @@ MOST_APART = 2.0  # seconds between the time that a view tells and the time here
 
 
 class ReadinessCheck(StrEnum):
-    """What is looked at."""
+    """The metrics."""
 
     CONTROLLER = "controller"  # it is heard
     PREPARED = "prepared"  # the safe states are known, and the devices are its own to command

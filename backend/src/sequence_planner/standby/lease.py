@@ -139,9 +139,9 @@ class Lease:
     seen: Seen | None = None
     """The last that was seen of it; None if nobody has ever held it."""
     taken_from: str | None = None
-    """Who else had held it before it was taken here."""
+    """Previous holder, where it was another one."""
     settled_before: bool = False
-    """Whether all that was accepted before it was taken here is known to be in the journal."""
+    """True if all that was accepted before it was taken here is known to be in the journal."""
     unsettled: int | None = None
     """The epoch in which an earlier process of this very station held it, which has ended, and of which this one alone
     knows what is not recorded: it does not wait for it."""

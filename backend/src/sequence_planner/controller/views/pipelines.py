@@ -29,7 +29,7 @@ class TypedEdgeView(View):
 
 
 class EndView(View):
-    """What a field becomes at the end: a variable of the station, or a field of the outgoing message."""
+    """End of a field: a variable of the station, or a field of the outgoing message."""
 
     field: str
     becomes: str

@@ -416,7 +416,7 @@ class StationStanding(StrEnum):
 
 
 class VariableKind(StrEnum):
-    """Who writes a variable."""
+    """Writer of a variable."""
 
     MEASURED = "measured"
     OUTPUT = "output"

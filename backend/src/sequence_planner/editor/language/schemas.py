@@ -8,7 +8,7 @@ from sequence_planner.controller.views.part import Value, View
 
 
 class NameKind(StrEnum):
-    """What a word of a text is."""
+    """Kind of a word in a text."""
 
     MEASURED = "measured"
     OUTPUT = "output"
@@ -42,7 +42,7 @@ class OptionView(View):
 
 
 class CompletionView(View):
-    """What can stand in place of the text between `start` and `end`, the most useful first."""
+    """Completions for the text between `start` and `end`, the most useful first."""
 
     start: int
     end: int
@@ -50,7 +50,7 @@ class CompletionView(View):
 
 
 class DeclarationView(View):
-    """Where something is declared: a file of the station, and line and column from 1."""
+    """Place of a declaration: a file of the station, and line and column from 1."""
 
     file: str
     line: int

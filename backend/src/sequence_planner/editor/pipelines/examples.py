@@ -197,7 +197,7 @@ def run_written(
 
 
 def run_trial(number: int, graph: DraftPipelines, question: Trial) -> RunsView:
-    """What comes of these records."""
+    """Results of these records."""
     view = pipeline_of(graph, question.pipeline)
     what = obstacle(graph, view)
     runs = [] if what is not None else [_tried(graph, view, question)]

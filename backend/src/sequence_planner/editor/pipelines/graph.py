@@ -456,7 +456,7 @@ class DraftPipelines:
 
 
 def type_view(type_: FieldType) -> TypeView:
-    """What values a type has."""
+    """Values of a type."""
     kind, values, least, most, element, length, fields = TypeKind.REAL, None, None, None, None, None, None
     match type_:
         case BooleanType():

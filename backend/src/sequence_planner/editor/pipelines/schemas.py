@@ -20,7 +20,7 @@ EntryEdit = Annotated[AddEntry | RemoveEntry | MoveEntry | SetEntry, Field(discr
 
 
 class Part(StrEnum):
-    """What of a resource a pipeline belongs to."""
+    """The part of a resource that a pipeline belongs to."""
 
     TOPIC = "topic"
     FLOW = "flow"
@@ -33,7 +33,7 @@ class Part(StrEnum):
 
 
 class Soundness(StrEnum):
-    """Whether something of a pipeline is sound."""
+    """Verdict on a part of a pipeline."""
 
     GOOD = "good"
     WRONG = "wrong"
@@ -41,7 +41,7 @@ class Soundness(StrEnum):
 
 
 class TypeKind(StrEnum):
-    """What values a type has."""
+    """Values of a type."""
 
     BOOL = "bool"
     ENUMERATION = "enumeration"
@@ -126,7 +126,7 @@ class SourceView(View):
 
 
 class DraftEndView(View):
-    """What a field becomes at the end: a variable of the station, or a field of the outgoing message."""
+    """End of a field: a variable of the station, or a field of the outgoing message."""
 
     field: str
     becomes: str
@@ -234,7 +234,7 @@ class StageOfferView(View):
 
 
 class TargetView(View):
-    """What a field at an edge could become: a variable, or a field of the outgoing message; `edits` make it so."""
+    """Possible end of a field at an edge: a variable, or a field of the outgoing message; `edits` make it so."""
 
     field: str
     name: str
@@ -254,7 +254,7 @@ class SourceOfferView(View):
 
 
 class FitsView(View):
-    """What could be put at an edge of a pipeline: stages, what its fields could become, and further sources."""
+    """Suggestions at an edge of a pipeline: stages, ends of its fields, and further sources."""
 
     number: int
     stages: list[StageOfferView]
@@ -370,7 +370,7 @@ class Everything(Question):
 
 
 class Fitting(Question):
-    """What could be put at an edge, which counts from 0. With a `field` of it, what that could become is told too."""
+    """Suggestions at an edge, counted from 0; with a `field` of it, its possible ends too."""
 
     pipeline: PipelineId
     edge: Annotated[int, Field(ge=0, le=100_000, strict=True)]
@@ -378,13 +378,13 @@ class Fitting(Question):
 
 
 class Preview(Question):
-    """What edits would bring about."""
+    """Preview of edits."""
 
     edits: Annotated[list[Edit], Field(min_length=1, max_length=100)]
 
 
 class Examples(Question):
-    """How the examples of a pipeline end: all of them, or those of that name."""
+    """Results of a pipeline's examples: all, or those of that name."""
 
     pipeline: PipelineId
     name: Annotated[str, Field(min_length=1, max_length=500)] | None = None
@@ -398,7 +398,7 @@ class TrialStep(Question):
 
 
 class Trial(Question):
-    """What comes of these records."""
+    """Results of these records."""
 
     pipeline: PipelineId
     steps: Annotated[list[TrialStep], Field(min_length=1, max_length=100)]

@@ -16,7 +16,7 @@ MORE = "more"  # the kind of the last of them where there are more
 
 
 class CheckState(StrEnum):
-    """How far a check has come."""
+    """Progress of a check."""
 
     WAITING = "waiting"
     CHECKING = "checking"
@@ -25,7 +25,7 @@ class CheckState(StrEnum):
 
 
 class SummaryView(View):
-    """How much there is in a model that can be used."""
+    """Sizes of a model that can be used."""
 
     title: str
     variables: int

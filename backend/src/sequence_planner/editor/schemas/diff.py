@@ -8,7 +8,7 @@ from sequence_planner.controller.views.part import Value, View
 
 
 class Difference(StrEnum):
-    """What has become of a part."""
+    """Change of a part."""
 
     NEW = "new"
     GONE = "gone"
@@ -16,7 +16,7 @@ class Difference(StrEnum):
 
 
 class Changed(View):
-    """What a part says of itself, `before` and `after`; null is nothing."""
+    """A property of a part, `before` and `after`; null is none."""
 
     part: str
     before: str | None

@@ -22,7 +22,7 @@ from sequence_planner.model.yaml.reader import read_text
 
 
 class FileState(StrEnum):
-    """How a file of the draft differs from that of the station."""
+    """Difference of a draft's file from that of the station."""
 
     SAME = "same"
     CHANGED = "changed"
@@ -100,7 +100,7 @@ class UsageView(View):
 
 
 class UsagesView(View):
-    """Where a part is named, and which of these places outside of it could not be without it.
+    """Places where a part is named, and those of them outside of it that could not be without it.
 
     `unwritten` are entries that use it though nothing in them names it, such as a topic whose message has a field of
     that name; they stand at their own names. `unread` are texts that make no sense and hold the name, and files that
@@ -138,7 +138,7 @@ class RevisionsView(View):
 
 
 class WorkshopView(View):
-    """What all who look at the draft are shown: its files, and what the check of it has found so far."""
+    """The draft as everybody sees it: its files, and what the check has found so far."""
 
     number: int
     files: dict[str, FileMark]

@@ -71,7 +71,7 @@ class Player:
         self._execution: Executor | None = None
         self._program = VERSION  # that has written the records
         self.now = Timestamp(0.0, 0.0)
-        """When the last that has a time has happened."""
+        """Time of the last record that has one."""
 
     @property
     def execution(self) -> Executor:

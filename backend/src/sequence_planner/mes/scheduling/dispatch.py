@@ -18,7 +18,7 @@ _LOOK: Final = 100  # tasks that are looked at whenever something may start, the
 
 Rank: TypeAlias = tuple[float, float]
 Rule: TypeAlias = Callable[[Instance, int], Rank]
-"""Which rank a job has; the lowest comes first, of equal ones the one that was stored first."""
+"""Rank of a job; the lowest comes first, of equal ones the one that was stored first."""
 
 
 def by_priority(problem: Instance, job: int) -> Rank:

@@ -144,7 +144,7 @@ class Instance:
 
 
 Starts = Sequence[int]
-"""When each task starts; of one that has started it is 0."""
+"""Start of each task; 0 for one that has started."""
 
 
 def instance(works: Sequence[JobWork], exclusive: Iterable[Collection[str]], now: float) -> Instance:

@@ -187,7 +187,7 @@ class TableDocument(StageDeclaration):
     about: ClassVar[str] = "From several values to several others, by rows."
 
     fields: Annotated[list[CombinedField], Field(min_length=1)]
-    """What is looked at."""
+    """The metrics."""
     variables: Annotated[list[GivenField], Field(min_length=1)]
     """What it gives."""
     rows: Annotated[list[TableRowDocument], Field(min_length=1), ExampleValue([{"when": [ANY], "gives": [0]}])]

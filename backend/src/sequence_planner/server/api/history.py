@@ -69,7 +69,7 @@ async def read_audit(
     since: Annotated[float | None, Query(allow_inf_nan=False)] = None,
     until: Annotated[float | None, Query(allow_inf_nan=False)] = None,
 ) -> AuditAnswer:
-    """What was done, refused or failed; only that of one action or of one actor (by id), where these are named, and
+    """Acts that were done, refused or failed; only those of one action or one actor (by id), where these are named, and
     that from `since` to before `until` (seconds since the epoch).
     """
     records = await identity.read(
@@ -195,7 +195,7 @@ async def read_history(
     name: Texts = None,
     text: Texts = None,
 ) -> HistoryAnswer:
-    """What has happened, only of some kinds, such as `mode-changed,forced`, or with some parts, such as
+    """Records of events, only of some kinds, such as `mode-changed,forced`, or with some parts, such as
     `started,ended`, where these are named.
 
     `who` asks for what that person did, `name` for what has to do with one of these abilities, variables or operations
@@ -214,7 +214,7 @@ async def read_history(
 
 @history_router.get("/line", dependencies=[OPERATOR], responses=refused(404, 409))
 async def timeline(identity: Identity, archive: TheArchive, since: Seconds, until: Seconds) -> LineView:
-    """What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it."""
+    """Events after `since` and up to `until` (seconds since the epoch), as a time line shows them."""
     found = await _read(identity, archive, partial(line, since=since, until=until))
     if found is None:
         raise _empty()
@@ -270,7 +270,7 @@ async def state_at(request: Request, number: Number) -> MomentView:
     responses=refused(404, 409, 503, 504),
 )
 async def branch_history(request: Request, number: Number, body: BranchBody) -> BranchView:
-    """How the station would have gone on from there, with emulated devices. Nothing of it reaches the station."""
+    """Simulate from a past record with emulated devices. Nothing of it reaches the station."""
     question = TakeBranch(number, body.seconds, dict(body.corrections), BRANCHING)
     found = await _asked(request, question, BRANCHING + LOOKING_BACK)
     assert isinstance(found, BranchView)

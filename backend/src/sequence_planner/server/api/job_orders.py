@@ -204,7 +204,7 @@ class NewOrderBody(OrderBody):
 
 
 class CommandBody(Body):
-    """What is asked of the order, and why."""
+    """A request about an order, with its reason."""
 
     command: OrderCommand
     reason: Reason = None
@@ -356,14 +356,14 @@ class EquipmentAnswer(BaseModel):
 
 
 class HeldAnswer(BaseModel):
-    """How many orders that are not over the station holds at most, and holds now."""
+    """Number of unfinished orders that the station can hold, and holds now."""
 
     most: int
     now: int
 
 
 class CapabilitiesAnswer(BaseModel):
-    """What may be ordered, and what it is made with.
+    """A work master: a product that may be ordered, and the operations that make it.
 
     `personnel` are the resources whose abilities people carry out, `equipment` all others. Only while `by_order` the
     station works on orders: it is for people there to let it.
@@ -380,7 +380,7 @@ class CapabilitiesAnswer(BaseModel):
 
 @capabilities_router.get("")
 async def capabilities(request: Request, identity: Identity, view: LiveView) -> CapabilitiesAnswer:
-    """What may be ordered, and what it is made with."""
+    """A work master: a product that may be ordered, and the operations that make it."""
     masters = await desk_of(request).work_masters()
     if masters is None:
         detail = "The station is being prepared, so it is not known yet what it can do. Try again in a moment."
@@ -509,7 +509,7 @@ async def read_job_responses(
 
 @job_responses_router.get("/{id}", responses=refused(404, 410))
 async def read_job_response(id: OrderId, identity: Identity) -> ResponseAnswer:
-    """What was made of an order; 404 `no-job-response` until it is over, 410 `job-order-gone` long after that."""
+    """Job response of an order; 404 `no-job-response` until it is over, 410 `job-order-gone` long after that."""
 
     def chosen(connection: Connection) -> StoredResponse | None:
         orders.require_kept(connection, id)
@@ -540,7 +540,7 @@ order_of_work_router = interface(
 
 
 class ExpectedOperation(BaseModel):
-    """When an operation is expected to start and to end."""
+    """Expected start and end of an operation."""
 
     operation: str
     start: float
@@ -550,7 +550,7 @@ class ExpectedOperation(BaseModel):
 
 
 class ExpectedOrder(BaseModel):
-    """When an order is expected to be worked, and by how many seconds it is expected to be late."""
+    """Expected start and end of an order, and by how many seconds it is expected to be late."""
 
     id: str
     late: float
@@ -687,7 +687,7 @@ class OrderOfWorkDesk:
 
 @order_of_work_router.get("")
 async def read_schedule(request: Request, limit: Annotated[int, Query(ge=1, le=MOST)] = MOST) -> OrderOfWorkAnswer:
-    """When orders are expected to be worked, in the order in which they are to begin; only the first `limit`."""
+    """Expected times of orders, sorted by start; only the first `limit`."""
     desk: OrderOfWorkDesk = request.app.state.order_of_work
     if desk.found is None:
         return OrderOfWorkAnswer(

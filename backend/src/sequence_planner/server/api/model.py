@@ -126,7 +126,7 @@ async def draft_files(
 
 @model_router.get("/check", dependencies=[VIEWER])
 async def check_model(shop: TheWorkshop) -> CheckView:
-    """What is found in the draft, as far as that has come."""
+    """Findings in the draft so far."""
     return await shop.checked()
 
 
@@ -173,7 +173,7 @@ async def rename_part(body: RenameBody, shop: TheWorkshop, actor: Actor) -> Resp
 
 @model_router.get("/usages", dependencies=[VIEWER], response_model=UsagesView, responses=refused(422))
 async def usages(shop: TheWorkshop, part: PartId) -> Response:
-    """Where a part of the model, such as `variable:robot.pose`, is named, and what could not be without it."""
+    """Places where a part of the model, such as `variable:robot.pose`, is named, and those that need it."""
     try:
         return found(await shop.usages(part))
     except EditError as error:
@@ -359,7 +359,7 @@ draft_pipelines_router = interface("/model/pipelines", tags=["model"], responses
 
 
 class RecordBody(Body):
-    """What the station has heard or said last of a pipeline becomes an example of this name in the draft."""
+    """Make an example of this name in the draft from the last message of a pipeline."""
 
     pipeline: PipelineId
     name: Annotated[str, Field(min_length=1, max_length=200)]
@@ -375,7 +375,7 @@ async def draft_pipelines(shop: TheWorkshop) -> Response:
     "/suggestions", dependencies=[VIEWER, JSON_ONLY], response_model=FitsView, responses=refused(422)
 )
 async def suggest_stages(body: Fitting, shop: TheWorkshop) -> Response:
-    """What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow."""
+    """Suggestions at an edge: kinds of stages, ends of its fields, and further sources of a flow."""
     return await _found(shop, body)
 
 
@@ -383,7 +383,7 @@ async def suggest_stages(body: Fitting, shop: TheWorkshop) -> Response:
     "/preview", dependencies=[VIEWER], response_model=PreviewView, openapi_extra=takes(Preview)
 )
 async def preview_pipelines(body: UnreadBody, shop: TheWorkshop) -> Response:
-    """What edits would bring about; nothing is changed."""
+    """Preview of edits; nothing is changed."""
     return await _found(shop, body)
 
 
@@ -391,7 +391,7 @@ async def preview_pipelines(body: UnreadBody, shop: TheWorkshop) -> Response:
     "/examples", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422)
 )
 async def run_examples(body: Examples, shop: TheWorkshop) -> Response:
-    """How the examples of a pipeline end, with the record at every edge."""
+    """Results of a pipeline's examples, with the record at every edge."""
     return await _found(shop, body)
 
 
@@ -399,7 +399,7 @@ async def run_examples(body: Examples, shop: TheWorkshop) -> Response:
     "/test-runs", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422)
 )
 async def run_pipeline_test(body: Trial, shop: TheWorkshop) -> Response:
-    """What comes of a message, or of several in time that is told, with the record at every edge."""
+    """Results of a message, or of several at given times, with the record at every edge."""
     return await _found(shop, body)
 
 
@@ -434,19 +434,19 @@ language_router = interface(
 
 @language_router.post("/check", response_model=ProblemsView)
 async def check_text(body: TextAt, shop: TheWorkshop) -> Response:
-    """What is wrong with a text, as the check of the whole draft would find it there."""
+    """Problems of a text, as the check of the whole draft would find them there."""
     return found(await shop.ask(LanguageQuestionKind.CHECK, body))
 
 
 @language_router.post("/completion", response_model=CompletionView)
 async def complete_text(body: PlaceInText, shop: TheWorkshop) -> Response:
-    """What can stand at a place in a text."""
+    """Completions at a place in a text."""
     return found(await shop.ask(LanguageQuestionKind.COMPLETION, body))
 
 
 @language_router.post("/hover", response_model=HoverAnswer)
 async def explain_text(body: PlaceInText, shop: TheWorkshop) -> Response:
-    """What the name at a place in a text is."""
+    """Description of the name at a place in a text."""
     return found(await shop.ask(LanguageQuestionKind.HOVER, body))
 
 

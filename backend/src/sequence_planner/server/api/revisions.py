@@ -69,7 +69,7 @@ class RestoreBody(Body):
 
 
 class Simulation(StrEnum):
-    """What becomes of emulated devices: they go on as they stand, or they and the station begin as the model says."""
+    """Treatment of emulated devices: they go on as they stand, or they and the station begin as the model says."""
 
     KEEP = "keep"
     RESET = "reset"
@@ -122,7 +122,7 @@ async def restore_revision(id: Id, body: RestoreBody, shop: TheWorkshop, actor: 
 
 @router.get("/comparison", dependencies=[VIEWER], response_model=ComparisonView, responses=refused(404))
 async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> Response:
-    """How two versions differ, in text and in behaviour: revisions by their ids, the draft, or what runs."""
+    """Difference of two versions in text and in behaviour: revisions by their ids, the draft, or what runs."""
     files = await _files(shop, old), await _files(shop, new)
     return await _found("compared", *files, shop.folder)
 
@@ -131,7 +131,7 @@ async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> R
 async def transfer(
     shop: TheWorkshop, view: LiveView, simulation: Annotated[Simulation, Query()] = Simulation.KEEP
 ) -> Response:
-    """Whether the station could take the draft as it is now, or with the simulation reset.
+    """Check if the station could take the draft as it is now, or with the simulation reset.
 
     Where no station may run the draft, as its check has not ended or has found errors, `obstacle` says what a
     deployment would be refused with.
@@ -143,7 +143,7 @@ async def transfer(
 
 @router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], response_model=WhatIfView, responses=refused(404))
 async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> Response:
-    """How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
+    """Simulate the station with the draft, from its present state or from a past record; nothing of it reaches
     the station. It ends when who asked leaves.
     """
     draft = await shop.open()

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 class SessionPerson(BaseModel):
-    """Who is signed in; `issuer` is the provider that vouches for the person, who has no password here then."""
+    """The signed-in person; `issuer` is the provider that vouches for them: they have no password here then."""
 
     id: str
     name: str
@@ -188,13 +188,13 @@ class BeginBody(Body):
 
 
 class BegunAnswer(BaseModel):
-    """Where the browser is to go."""
+    """Address for the browser to go to."""
 
     location: str
 
 
 class ProviderAnswerBody(Body):
-    """What the provider has sent back with the browser: `state` and either a `code` or an `error`; `iss` is itself."""
+    """Answer of the provider, by the browser: `state` and either a `code` or an `error`; `iss` is the provider."""
 
     state: Brought
     code: Brought | None = None
@@ -272,7 +272,7 @@ Typed = Annotated[str, Field(min_length=1, max_length=LONGEST)]
 
 
 class SignInBody(Body):
-    """Who wants to sign in."""
+    """Credentials of a person who signs in."""
 
     name: Typed
     password: Typed
@@ -299,7 +299,7 @@ class FirstAdministratorBody(Body):
 
 @session_router.get("/session", dependencies=[EVERYBODY], responses=refused(503))
 async def session(request: Request) -> SessionAnswer:
-    """Who is signed in here; nobody is an answer too."""
+    """The signed-in person, if any."""
     shown = credentials(request)
     bearer = await bearer_of(request, Credentials(session=shown.session))
     return await answered(request, bearer.signed_in)

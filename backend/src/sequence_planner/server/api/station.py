@@ -52,7 +52,7 @@ class Answer(BaseModel):
 
 
 class StationAnswer(Answer):
-    """What is running, and how; and all that people have asked of it, or that it asks of them."""
+    """State of the running station, with requests of people to it and of it to people."""
 
     station: StationIdentity
     revision: int  # of the state: counts up with every change, and what was previewed holds for one
@@ -122,13 +122,13 @@ class TopicsAnswer(Answer):
 
 
 class OverridesAnswer(Answer):
-    """What a person may set, and what is set."""
+    """Variables that a person may force, and forces that are set."""
 
     overrides: dict[str, OverrideView]
 
 
 class AnalysisAnswer(Answer):
-    """What synthesis has found of the station; null before it has found anything."""
+    """Findings of the synthesis; null before there are any."""
 
     analysis: AnalysisDocument | None
 
@@ -141,7 +141,7 @@ class AlarmsAnswer(Answer):
 
 @router.get("/station")
 async def station(view: LiveView) -> StationAnswer:
-    """What is running, its mode, whether production has been started, and what people have asked of it."""
+    """The running station: its mode, whether production has been started, and requests of people."""
     return StationAnswer(**{name: getattr(view, name) for name in StationAnswer.model_fields})
 
 
@@ -189,7 +189,7 @@ async def topics(view: LiveView) -> TopicsAnswer:
 
 @router.get("/overrides")
 async def overrides(view: LiveView) -> OverridesAnswer:
-    """What a person may set within which bounds, what is set, and when it expires."""
+    """Variables that a person may force within which bounds, forces that are set, and when they expire."""
     return OverridesAnswer(tick=view.tick, time=view.time, overrides=view.overrides)
 
 
@@ -201,5 +201,5 @@ async def analysis(view: LiveView) -> AnalysisAnswer:
 
 @router.get("/alarms")
 async def alarms(view: LiveView) -> AlarmsAnswer:
-    """What wants a person's attention now."""
+    """Alarms that want a person's attention now."""
     return AlarmsAnswer(tick=view.tick, time=view.time, alarms=view.alarms)

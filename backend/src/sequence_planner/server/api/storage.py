@@ -45,7 +45,7 @@ from sequence_planner.server.services.retention import RetentionService, Retenti
 
 
 class BackupTroubleAnswer(BaseModel):
-    """What is in the way: of which kind, and in words with what to do."""
+    """An obstacle: its kind, and in words with what to do."""
 
     kind: Trouble
     detail: str
@@ -70,7 +70,7 @@ class BackupContentAnswer(BaseModel):
 
 
 class BackupCheckedAnswer(BaseModel):
-    """How a backup was found when it was last read as a whole, which is also done when it is made."""
+    """Result of the last verification of a backup, which is also done when it is made."""
 
     time: float
     by: str
@@ -92,7 +92,7 @@ class BackupAnswer(BaseModel):
 
 
 class BackupBusyAnswer(BaseModel):
-    """What is done just now; `step` is null until it has begun."""
+    """The work under way; `step` is null until it has begun."""
 
     doing: Doing
     file: str
@@ -102,7 +102,7 @@ class BackupBusyAnswer(BaseModel):
 
 
 class BackupAttemptAnswer(BaseModel):
-    """How what was done last ended: `requested` where the server ended before."""
+    """Result of the last work: `requested` if the server ended before it."""
 
     doing: Doing
     file: str
@@ -234,7 +234,7 @@ Backups = Annotated[BackupService, Depends(_backup_desk)]
 
 @backups_bodiless.get("")
 async def list_backups(desk: Backups) -> BackupsAnswer:
-    """Which backups there are, what is being done, and what would be in the way of another."""
+    """All backups, the work under way, and what would keep another from being made."""
     try:
         looked, recorded = await desk.look(), await desk.recorded()
     except FolderSilentError as error:
@@ -303,7 +303,7 @@ class StorageSizesAnswer(BaseModel):
 
 
 class StorageDayAnswer(BaseModel):
-    """What has come in a day that begins at `since`: so many records, and about so many bytes."""
+    """Records of the day that begins at `since`, and about how many bytes they take."""
 
     since: float
     records: int
@@ -365,7 +365,7 @@ class StorageBusyAnswer(BaseModel):
 
 
 class StorageRunAnswer(BaseModel):
-    """What was done last: how many records and job orders were cut, and how many files removed."""
+    """Result of the last clean-up: numbers of records and job orders cut, and of files removed."""
 
     time: float
     records: int
@@ -541,7 +541,7 @@ Retention = Annotated[RetentionService, Depends(_retention_desk)]
 
 @storage_bodiless.get("")
 async def storage(desk: Retention) -> StorageAnswer:
-    """How much there is of what, how it grows, since when what is kept, and what is in the way."""
+    """Stored amounts, their growth, how long each is kept, and what keeps them from being cut."""
     return storage_answer(desk, await desk.look())
 
 

@@ -177,7 +177,7 @@ class PersonBody(Body):
 
 
 class PersonChangeBody(Body):
-    """What is to change; what is left out stays as it is."""
+    """Changes of a person; fields left out stay as they are."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1})
     role: Role | None = None

@@ -110,7 +110,7 @@ class ConfirmationBody(Body):
 
 
 class WatchSelfAnswer(BaseModel):
-    """What a watch is told of itself."""
+    """A watch's own data."""
 
     id: str
     name: str
@@ -215,7 +215,7 @@ async def revoke_wearable(watch: Identifier, identity: Identity, actor: Actor) -
 
 @router.get("/self", dependencies=[watch_only(waiting=True)])
 async def this_wearable(request: Request) -> WatchSelfAnswer:
-    """What the watch that asks is called, whose tasks it shows, and whether it was confirmed yet."""
+    """The asking watch: its name, whose tasks it shows, and if it was confirmed yet."""
     watch: Watch = request.state.watch
     return _itself(watch)
 

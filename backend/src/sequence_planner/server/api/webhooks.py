@@ -39,7 +39,7 @@ Number = Annotated[StrictInt, Field(ge=0, le=LARGEST_NUMBER)]
 
 
 class AllowedAnswer(BaseModel):
-    """Where webhooks may go: hosts with their ports, and networks; with `loopback` also to this machine."""
+    """Allowed destinations of webhooks: hosts with their ports, and networks; with `loopback` also this machine."""
 
     hosts: list[str]
     networks: list[str]
@@ -86,7 +86,7 @@ class AgainBody(Body):
 
 
 class AgainAnswer(BaseModel):
-    """How many events are sent again."""
+    """Number of events that are sent again."""
 
     events: int
 
