@@ -1,16 +1,7 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { alarm } from '#lib/testing/view.ts';
-import {
-	acknowledge,
-	acknowledgeAlarm,
-	decideOutputs,
-	putBack,
-	reportProblem,
-	setMode,
-	solveProblem,
-	takeControl,
-	takeOut
-} from './send.ts';
+import { acknowledge, reportProblem, solveProblem } from '#lib/task/send.ts';
+import { acknowledgeAlarm, decideOutputs, putBack, setMode, takeControl, takeOut } from './send.ts';
 
 afterEach(() => vi.unstubAllGlobals());
 

@@ -4,7 +4,7 @@
  * A command succeeds or is refused; a refusal carries words for the person. What a command did is never taken from its
  * answer: it shows in the stream.
  */
-import type { Alarm, ApprovedAct, CorrectionPreview, Mode, OutOfService, ProblemKind, Value, WayOffer, WhyNot } from '#lib/contract.ts';
+import type { Alarm, ApprovedAct, CorrectionPreview, Mode, OutOfService, Value, WayOffer, WhyNot } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { command, request, type Answer } from '#lib/rest/request.ts';
 
@@ -162,28 +162,6 @@ export function declineRequest(id: string, act: ApprovedAct): Promise<Refusal | 
 /** Lets a forced variable be as it comes. */
 export function releaseForce(name: string): Promise<Refusal | null> {
 	return command('DELETE', `/api/v1/forces/${encodeURIComponent(name)}`);
-}
-
-/** Says that the task `id` is done as it was shown in `revision`. 404 or 409: it is gone. */
-export function acknowledge(id: string, revision: number): Promise<Refusal | null> {
-	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/acknowledgement`, { body: { revision } });
-}
-
-/** Says that the task `id` cannot be done as it was shown in `revision`. 404 or 409: it is gone. */
-export function reportProblem(
-	id: string,
-	revision: number,
-	what: ProblemKind | null,
-	reason: string
-): Promise<Refusal | null> {
-	const why = reason.trim();
-	const body = why === '' ? { revision, what } : { revision, what, reason: why };
-	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/problem`, { body });
-}
-
-/** Says that it can be done after all. */
-export function solveProblem(id: string, revision: number): Promise<Refusal | null> {
-	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/problem/solved`, { body: { revision } });
 }
 
 /** Takes control over from the session `over`, null when nobody is believed to hold it. 409: another holds it by now. */
