@@ -80,6 +80,8 @@ enumerations:
 estimated:
   slots: {for: {where: side}, type: load, initial: none}
   count: {type: 0..3}
+alarms:
+  crowded: {when: count == 3, title: {en: Crowded, sv: "Trångt"}} # the last place
 rest: >-
   robot.pose == home and
   not robot.busy and slots[left] == none
@@ -129,6 +131,8 @@ measured:
   is_seen_again: {type: bool}
 output:
   target: {type: goal}
+alarms:
+  seen_busy: {when: 'is_seen and busy and not load(left).executing', delay: 2} # own names
 abilities:
   move:
     title: "Move to {to}"

@@ -71,13 +71,14 @@ MOVE, LOAD = f"{ROBOT}: ability robot.move", f"{ROBOT}: ability robot.load"
                 f"{MOVE}: effects.arrives.do[0]",
             ],
         ),
-        ("variable:count", [f"{MOVE}: finish.do[0]", f"{MOVE}: finish.do[0]", f"{MOVE}: finish.do[0]"]),
+        ("variable:count", [*[f"{MOVE}: finish.do[0]"] * 3, "station: alarm crowded: when"]),
         (
             "variable:robot.busy",
             [
                 "operations: operation bring: local",
                 f"{STATE}: pipeline[3].expression.is_out",
                 f"{STATE}: examples[0].gives.busy",
+                f"{ROBOT}: alarm robot.seen_busy: when",
                 f"{LOAD}: executing",
                 "station: station: rest",
             ],
@@ -88,6 +89,7 @@ MOVE, LOAD = f"{ROBOT}: ability robot.move", f"{ROBOT}: ability robot.load"
                 f"{OTHER}: flow other.far: pipeline[0].expression.far_seen",
                 f"{ROBOT}: flow robot.watched: pipeline[0].expression.is_seen",
                 f"{ROBOT}: flow robot.again: pipeline[0].rename.is_seen",
+                f"{ROBOT}: alarm robot.seen_busy: when",
                 f"{LOAD}: human.acknowledgement",
             ],
         ),
@@ -199,6 +201,7 @@ def test_a_parameter_stands_before_a_variable_and_a_flag_before_another_name() -
 def test_what_depends_on_a_part_that_is_deleted() -> None:
     assert places(dependants(CELL, parse_part("ability:robot.load")).found) == [
         "operations: operation bring: local",
+        f"{ROBOT}: alarm robot.seen_busy: when",
         f"{MOVE}: start.when",
         "specifications: specification one: exclusive[1]",
     ]

@@ -72,6 +72,8 @@ def test_all_of_a_sound_model_is_there_or_follows_from_its_messages(name: str, t
         ("variable:slots", 1, None),
         ("variable:robot.pose", 0, "robot"),
         ("variable:robot.busy", 0, "robot"),  # nobody declares it
+        ("alarm:robot.seen_busy", 1, "robot"),
+        ("alarm:crowded", 1, None),
         ("topic:/robot/state", 0, "robot"),
         ("service:/other/look", 0, "other"),
         ("action:/other/go", 0, "other"),
@@ -120,20 +122,22 @@ def ties(whole: ModelGraph, part: str) -> set[str]:
                 "topic:/robot/command example",
             },
         ),
-        ("ability:robot.load", {"specification:one excludes", "operation:bring formula", "ability:robot.move guard"}),
+        ("ability:robot.load", {"specification:one excludes", "operation:bring formula", "ability:robot.move guard"}
+         | {"alarm:robot.seen_busy alarms"}),
         (
             "variable:robot.busy",
             {
                 "topic:/robot/state feeds",
                 "topic:/robot/state reads",
                 "topic:/robot/state example",
+                "alarm:robot.seen_busy alarms",
                 "ability:robot.load progress",
                 "operation:bring formula",
                 "station rest",
             },
         ),
         ("variable:robot.is_seen", {"flow:robot.watched feeds", "flow:robot.again reads", "flow:other.far reads"}
-         | {"ability:robot.load acknowledgement"}),
+         | {"ability:robot.load acknowledgement", "alarm:robot.seen_busy alarms"}),
         ("variable:other.go", {"action:/other/go sends", "ability:other.go_there guard"}
          | {"ability:other.go_there commands"}),
         ("variable:other.at", {"action:/other/go sends", "ability:other.go_there writes"}
