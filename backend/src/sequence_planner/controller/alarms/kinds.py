@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from sequence_planner.controller.alarms.message import PLACE, Argument, Message
-from sequence_planner.controller.alarms.texts import TEXTS
+from sequence_planner.controller.alarms.message import Argument, Message, places
 from sequence_planner.controller.views.station import AlarmGroup, Priority
 
 
@@ -61,7 +60,7 @@ class AlarmKind:
 
     def _said(self, what: str, arguments: Mapping[str, Argument]) -> Message:
         name = f"{self.name}.{what}"
-        return Message(name, {place[1]: arguments[place[1]] for place in PLACE.finditer(TEXTS[name])})
+        return Message(name, {place: arguments[place] for place in places(name)})
 
 
 @dataclass(frozen=True)

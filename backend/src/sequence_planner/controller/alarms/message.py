@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Final
 
 from typing_extensions import TypeAliasType
@@ -48,6 +49,12 @@ class Wording:
     def __str__(self) -> str:
         """Return it in English, or in the first language that there is."""
         return self.words.get("en") or next(iter(self.words.values()), "")
+
+
+@cache
+def places(id: str, /) -> tuple[str, ...]:
+    """The names of the arguments that a text of the catalogue has a place for."""
+    return tuple(dict.fromkeys(place[1] for place in PLACE.finditer(TEXTS[id])))
 
 
 def message(id: str, /, **arguments: Argument) -> Message:
