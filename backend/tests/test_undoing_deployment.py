@@ -23,7 +23,7 @@ from sequence_planner.controller.deployment_folder import (
 )
 from sequence_planner.controller.preparation import Deploying, LastDeployment
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.model import files
 from sequence_planner.model.exchange import exchanging
 from sequence_planner.model.files import put_in_place, read_contents, read_files, write_files

@@ -17,7 +17,7 @@ from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.auth.sessions import SignedIn
 from sequence_planner.controller.commands.execution import WithdrawControl
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.server import metrics
 from sequence_planner.server.http.credentials import watch_cookie

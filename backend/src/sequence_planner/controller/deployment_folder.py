@@ -14,7 +14,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.model.exchange import brought_back, exchanging
 from sequence_planner.model.files import Contents, read_contents, restore_contents, write_contents
 

@@ -21,7 +21,7 @@ from sequence_planner.controller.commands.execution import Deploy
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.controller.views.preparing import preparing_view
 from sequence_planner.controller.views.station import (
     DeploymentState,

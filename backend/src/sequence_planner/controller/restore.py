@@ -14,7 +14,7 @@ from sqlalchemy import Connection
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.controller.alarms.alarm import PutAside
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.controller.views.station import BeliefView, DeploymentView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace

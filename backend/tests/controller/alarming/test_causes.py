@@ -216,7 +216,7 @@ def test_an_errand_that_the_station_has_stopped_is_an_alarm_until_it_works_again
     rig.execution.change_mode(Mode.RESTART, "Eva", now)
     for by, expected in (("Eva", set[str]()), (None, {f"errand:{now.epoch}"})):
         last = LastOperatorPlan("Bring the robot home", False, "the station departed from it", now, by)
-        rig.execution.conduct = replace(rig.execution.conduct, last_errand=last)
+        rig.execution.conduct = replace(rig.execution.conduct, last_operator_plan=last)
         assert there(shown, now) == expected
     rig.execution.change_mode(Mode.AUTOMATIC, "Eva", now)
     assert there(shown, now) == set()

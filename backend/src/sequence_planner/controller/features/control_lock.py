@@ -9,7 +9,7 @@ from __future__ import annotations
 from sequence_planner.controller.commands.bus import handles
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.clock import Timestamp
 

@@ -11,3 +11,13 @@ class View(BaseModel):
     """Base of all parts of a document: immutable, and nothing beside what is declared."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class ControlView(View):
+    """The session that is in control; `taken_from` is who was before it, where control was taken over."""
+
+    session: str
+    person: str
+    name: str
+    since: float
+    taken_from: str | None

@@ -6,7 +6,7 @@ from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.controller.alarms.alarm import Alarm
 from sequence_planner.controller.alarms.kinds import MODEL_UNUSABLE, NO_SUPERVISOR
 from sequence_planner.controller.alarms.message import message
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.controller.views.station import (
     DeploymentView,
     PackML,

@@ -12,8 +12,7 @@ from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.controller.alarms.message import Message
 from sequence_planner.controller.commands.approvals import Act
 from sequence_planner.controller.commands.tasks import ProblemKind
-from sequence_planner.controller.views.control_lock import ControlView
-from sequence_planner.controller.views.part import Value, View
+from sequence_planner.controller.views.part import ControlView, Value, View
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.planning.problem import Contract
 

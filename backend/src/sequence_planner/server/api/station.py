@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.views.control_lock import ControlView
+from sequence_planner.controller.views.part import ControlView
 from sequence_planner.controller.views.station import (
     AbilityView,
     AlarmView,
