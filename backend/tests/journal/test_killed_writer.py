@@ -30,7 +30,7 @@ from sequence_planner.db.database import Database
 
 async def write():
     writer = RunWriter(Database.open(sys.argv[1]), lambda: print("durable", writer.durable, flush=True))
-    writer.begin()
+    writer.start()
     print("child", os.getpid(), flush=True)
     number = writer.durable
     while True:

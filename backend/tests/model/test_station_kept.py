@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.model.source import ModelError
-from sequence_planner.station import prepare_station, read_station
+from sequence_planner.station import ReadStation, prepare_station, read_station
 from support.places import MODELS, SINGLE_BOLT
+
+KEPT = f"{ReadStation.__name__}-*"  # the name of a file in the cache
 
 
 @pytest.fixture
@@ -23,7 +25,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize("name", ["bolt_tightening", "truck_engine_station"])
 def test_what_is_kept_is_what_the_files_mean(name: str, cache: Path) -> None:
     first, again, read = prepare_station(MODELS / name), prepare_station(MODELS / name), read_station(MODELS / name)
-    assert list(cache.glob("station-*"))
+    assert list(cache.glob(KEPT))
     for station in (first, again):
         assert station.automaton == read.automaton
         assert dict(station.automaton.places) == dict(read.automaton.places)
@@ -50,6 +52,6 @@ def test_a_change_is_seen(tmp_path: Path, cache: Path) -> None:
 
 def test_what_is_damaged_is_read_anew(cache: Path) -> None:
     expected = prepare_station(SINGLE_BOLT).automaton
-    for kept in cache.glob("station-*"):
-        kept.write_bytes(kept.read_bytes()[:-10])
+    (kept,) = cache.glob(KEPT)
+    kept.write_bytes(kept.read_bytes()[:-10])
     assert prepare_station(SINGLE_BOLT).automaton == expected

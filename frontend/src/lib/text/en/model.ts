@@ -80,7 +80,7 @@ export const model = {
 	},
 	/** Fields by their keys in the files. */
 	field: {
-		consequence: 'What comes of it',
+		consequence: 'Consequence',
 		action: 'What to do',
 		delay: 'Raised after',
 		name: 'Name',
