@@ -35,7 +35,7 @@ def test_the_command_goes_from_one_to_the_other_and_back_and_nothing_is_lost(
         first.wait(lambda: standby(first)["standing_by"] == ["press-b"], "nobody is told who stands by")
         refused = second.ask("PUT", "mode", {"mode": "paused"})
         assert refused.status_code == httpx.codes.SERVICE_UNAVAILABLE
-        assert refused.json()["type"] == "/problems/standby"
+        assert refused.json()["type"] == "/problems/on-standby"
         assert "press-a commands the devices" in refused.json()["detail"]
         first.get_back_to_work()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
 from sequence_planner.model.source import SourceText
@@ -316,12 +316,21 @@ class TopicDocument(DocumentPart):
         return self
 
 
+def _said(text: SourceText) -> SourceText:
+    if not text.strip():
+        raise ValueError("write a text: this one is empty")
+    return text
+
+
+SaidText = Annotated[SourceText, AfterValidator(_said)]
+
+
 class WordsDocument(DocumentPart):
     """A text for people in several languages."""
 
-    en: Given[SourceText] = None
+    en: Given[SaidText] = None
     """English, which is told where a language has no text of its own."""
-    sv: Given[SourceText] = None
+    sv: Given[SaidText] = None
     """Swedish."""
 
     @model_validator(mode="after")
@@ -331,7 +340,16 @@ class WordsDocument(DocumentPart):
         return self
 
 
-Words = SourceText | WordsDocument
+def _form_of_words(content: object) -> str | None:
+    if isinstance(content, dict | WordsDocument):
+        return "words"
+    return "text" if isinstance(content, str) else None
+
+
+Words = Annotated[
+    Annotated[SaidText, Tag("text")] | Annotated[WordsDocument, Tag("words")],
+    Discriminator(_form_of_words, "words", "a text, or one for each language: `{en: …, sv: …}`"),
+]
 
 
 class AlarmDocument(DocumentPart):

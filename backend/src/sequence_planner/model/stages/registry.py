@@ -65,7 +65,12 @@ class StageDocument(DocumentPart):
 
 
 def add_kind(declaration: type[StageDeclaration]) -> None:
-    """Have a kind of stage as a key of `StageDocument`, before the first one is read."""
+    """Have a kind of stage as a key of `StageDocument`, before the first one is read.
+
+    Raises `ValueError` if another one has that key.
+    """
+    if KINDS.get(declaration.kind, declaration) is not declaration:
+        raise ValueError(f"there is a stage `{declaration.kind}` already: {KINDS[declaration.kind].__qualname__}")
     written: Any = declaration
     if declaration.is_bare:
         ((name, info),) = declaration.model_fields.items()

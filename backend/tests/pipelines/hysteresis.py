@@ -38,15 +38,15 @@ topics:
     type: tank_msgs/msg/Tank
     direction: in
     pipeline:
-      - deadband: {field: level, width: 2} # of its height
+      - hysteresis: {field: level, width: 2} # of its height
 """
 WRONG = ("{field: name, width: 2}", "{field: level, width: 0}", "{field: level, widht: 2}", "{field: levle, width: 2}")
 
 
-class DeadbandDocument(PassingDeclaration):
+class HysteresisDocument(PassingDeclaration):
     """A number goes on when it has moved by more than `width`; until then the old one does."""
 
-    kind: ClassVar[str] = "deadband"
+    kind: ClassVar[str] = "hysteresis"
     about: ClassVar[str] = "A number counts when it has moved far enough; for incoming topics."
     direction: ClassVar = "incoming"
     is_timed: ClassVar[bool] = False
@@ -58,11 +58,11 @@ class DeadbandDocument(PassingDeclaration):
 
     def begin(self, stage: PassingStage) -> StageInstance:
         """Begin with no number."""
-        return Deadband(stage, self.width)
+        return Hysteresis(stage, self.width)
 
 
 @dataclass(slots=True)
-class Deadband(StageInstance):
+class Hysteresis(StageInstance):
     """Has the number that counts."""
 
     stage: PassingStage
@@ -101,13 +101,13 @@ def main(folder: Path) -> None:
         "levels": [heard.take("/tank", level=level)["tank.level"] for level in (5, 6, 7, 8, 9, 5, 4)],
         "is_timed": ready.pipelines.incoming["/tank"].chain.is_timed,
         "renamed": renamed(files, parse_part("variable:tank.level"), "height", ready.registry),
-        "offered": [(each.stage, each.reason) for each in offered if each.kind == "deadband"],
-        "schema": schema_of("resource")["$defs"]["DeadbandDocument"],
+        "offered": [(each.stage, each.reason) for each in offered if each.kind == "hysteresis"],
+        "schema": schema_of("resource")["$defs"]["HysteresisDocument"],
         "wrong": [findings(station, each) for each in WRONG],
     }
     sys.stdout.write(json.dumps(said))
 
 
 if __name__ == "__main__":
-    add_kind(DeadbandDocument)
+    add_kind(HysteresisDocument)
     main(Path(sys.argv[1]))
