@@ -215,9 +215,10 @@ def test_where_the_server_stands_still_nobody_waits_for_it() -> None:
                 hearing.join(PATIENCE)
                 assert not hearing.is_alive()
                 assert time.monotonic() - began < 1, "nobody waits for what stands still"
+            assert second.poll() is None
         finally:
             os.kill(server, signal.SIGCONT)
-            assert second.poll() is None
+        assert second.wait(PATIENCE) == -signal.SIGKILL
     with started(works.wait) as (child, connection):
         assert connection.recv() == child.pid
 
