@@ -85,7 +85,6 @@ def test_line_breaks_and_tabs_are_white_space() -> None:
         ("a == b ‹==› c", "expected an operator or the end, found `==`; comparisons do not chain: join two with and"),
         ("(a or b‹›", "expected an operator or `)`, found the end of the text"),
         ("a‹)›", "expected an operator or the end, found `)`"),
-        ("a in ‹b›", "expected `{`, as in `pose in {home, above}`, found `b`"),
         ("a in {‹}›", "expected a name, a value or `(`, found `}`"),
         ("a in {b‹›", "expected `,` or `}`, found the end of the text"),
         ("a in {b ‹c›}", "expected `,` or `}`, found `c`"),

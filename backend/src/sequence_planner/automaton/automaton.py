@@ -8,6 +8,7 @@ from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.core.immutable import Immutable, uncompared
+from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.syntax import Assignment, Expression, Variable, variables
 from sequence_planner.language.types import BOOLEAN, Place, Type, Value
 
@@ -169,7 +170,7 @@ class Automaton(Immutable):
     finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
     `initial` describes the initial states of one that has several; each declared initial value then is that of one of
     them. `goals` are formulas over its runs. `alarms` bear on nothing that it does. `places` says where a part was
-    written, by its name; `reactions` which effects are written with an ability.
+    written, by its name; `reactions` which effects are written with an ability; `vocabulary` what its texts say.
     """
 
     name: str
@@ -190,6 +191,7 @@ class Automaton(Immutable):
     alarms: Mapping[str, AlarmDeclaration] = uncompared(default={})
     places: Mapping[str, Place] = uncompared(default={})
     reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
+    vocabulary: Vocabulary = uncompared(default=NO_VOCABULARY)
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """The variables of a kind, in order of declaration."""

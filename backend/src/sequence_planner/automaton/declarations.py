@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import product
 
 from sequence_planner.automaton.automaton import Kind, VariableDeclaration
 from sequence_planner.automaton.findings import Binding, Findings, instance_name
+from sequence_planner.automaton.shorthand import (
+    RESERVED,
+    ShorthandReader,
+    own_values,
+    parts_of,
+    read_enumerations,
+    written_predicates,
+)
 from sequence_planner.language.lexer import KEYWORDS, MOST_DIGITS
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.shorthand.vocabulary import Vocabulary
 from sequence_planner.language.types import (
     BOOLEAN,
     EnumerationType,
@@ -20,7 +29,8 @@ from sequence_planner.language.types import (
     Value,
     contains,
 )
-from sequence_planner.model.documents import AbilityDocument, Parameters, VariableDocument
+from sequence_planner.model.documents import AbilityDocument, EnumerationDocument, Parameters, VariableDocument
+from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
 
@@ -53,6 +63,7 @@ class Declarations:
         self._check_values()
         self._declare_flags()
         self._declare_activities()
+        self.vocabulary = self._read_vocabulary()
 
     def noting(self, findings: Findings, types: dict[str, Type] | None = None) -> Declarations:
         """The same names, and what is found by them from now on is noted in `findings`; `types` replaces theirs."""
@@ -69,6 +80,7 @@ class Declarations:
             list(self.variables.items()),
             list(self.enumerations.items()),
             frozenset(self.broken),
+            self.vocabulary.declared(),
         )
 
     def written_abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument]]:
@@ -82,6 +94,13 @@ class Declarations:
         for resource, name, ability in self.written_abilities():
             for binding in self.bindings(ability.parameters):
                 yield resource, name, ability, binding
+
+    def written_predicates(self) -> Iterator[tuple[str, tuple[str, ...], Parameters, Predicate]]:
+        """Each predicate: its full name, what is tried before bare names there, its parameters and its condition."""
+        resources = {name: document.predicates for name, document in self._station.resources.items()}
+        for resource, name, document in written_predicates(self._station.station.predicates, resources):
+            full, prefixes = (str(name), ()) if resource is None else (f"{resource}.{name}", (f"{resource}.",))
+            yield full, prefixes, *parts_of(document)
 
     def bindings(self, parameters: Parameters) -> list[Binding]:
         """Every choice of values for `parameters`; one empty choice when there are none, none for an unknown type."""
@@ -99,7 +118,7 @@ class Declarations:
             message = f"`{name}` is no name: use letters, digits and `_`, and none of the words of the language"
             self._findings.add(name, message)
 
-    def check_parameters(self, parameters: Parameters, *prefixes: str) -> None:
+    def check_parameters(self, parameters: Mapping[SourceText, SourceText], *prefixes: str) -> None:
         """Note parameters that are none, and those that would hide something: a variable of the station or under
         `prefixes`, a flag, or a value of an enumeration.
         """
@@ -138,15 +157,54 @@ class Declarations:
         return True
 
     def _read_enumerations(self) -> None:
-        for name, values in self._station.station.enumerations.items():
+        for name, document in self._station.station.enumerations.items():
             self.check_name(name)
             if name == "bool":
                 self._findings.add(name, "`bool` is a type already: rename the enumeration")
+            values = own_values(document)
             for index, value in enumerate(values):
                 self.check_name(value)
                 if value in values[:index]:
                     self._findings.add(value, f"duplicate value `{value}` in `{name}`")
-            self.enumerations[name] = EnumerationType(tuple(map(str, values)))
+        self.enumerations |= read_enumerations(self._station, self._findings)
+        for name, type_ in ShorthandReader(self, self._station, self._findings).read_sets():
+            self.check_name(name)
+            if name in self._station.station.enumerations or name == "bool":
+                self._findings.add(name, f"`{name}` is an enumeration already: give the set another name")
+            else:
+                self.enumerations[str(name)] = type_
+
+    def _read_vocabulary(self) -> Vocabulary:
+        """The names that stand for something longer."""
+        reader = ShorthandReader(self, self._station, self._findings)
+        station = self._station.station
+        for names in (station.relations, station.maps, station.predicates):
+            for name in names:
+                self._declare_short(str(name), name)
+        for resource, document in self._station.resources.items():
+            for name in document.predicates:
+                self._declare_short(f"{resource}.{name}", name)
+        ordered = [
+            self.enumerations[str(name)]
+            for name, document in station.enumerations.items()
+            if isinstance(document, EnumerationDocument) and document.ordered and str(name) in self.enumerations
+        ]
+        return Vocabulary(
+            self.enumerations,
+            tuple(ordered),
+            {str(name): relation for name, relation in reader.read_relations()},
+            {str(name): table for name, table in reader.read_maps()},
+            reader.read_predicates({name: document.predicates for name, document in self._station.resources.items()}),
+        )
+
+    def _declare_short(self, full: str, name: SourceText) -> None:
+        self.check_name(name)
+        if name in RESERVED:
+            self._findings.add(name, f"`{name}` is a word of quantifiers and orders: take another name")
+        elif name in FLAGS:
+            self._findings.add(name, f"`{name}` is a flag of every ability: take another name")
+        else:
+            self._declare(full, name)
 
     def _read_variables(self) -> None:
         for name, document in self._station.station.estimated.items():
@@ -160,7 +218,7 @@ class Declarations:
         """Note values of enumerations that a variable of the same name hides where both can be meant: among the texts
         of a resource that has something of the enumeration, and everywhere if the variable is the station's.
         """
-        for enumeration, values in self._station.station.enumerations.items():
+        for enumeration, values in self._station.station.enumeration_values().items():
             for value in values:
                 for resource in (None, *self._resources_with(str(enumeration))):
                     variable = value if resource is None else f"{resource}.{value}"
@@ -198,7 +256,7 @@ class Declarations:
             self.types[ground_name] = type_
             self.places[ground_name] = name.place
 
-    def type_of(self, name: SourceText, text: SourceText | None, kind: Kind) -> Type | None:
+    def type_of(self, name: SourceText, text: SourceText | None, kind: Kind | None) -> Type | None:
         """The type of the variable `name` that `text` means; if it means none, that is noted."""
         if text is None:
             what = "write type: bool, a range such as 0..3, or an enumeration"

@@ -31,7 +31,8 @@ from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
     NameScope,
-    resolve_assignment,
+    UnusableError,
+    resolve_assignments,
     resolve_formula,
     resolve_predicate,
     suggestion,
@@ -96,7 +97,7 @@ class Meaning:
 
     def scope(self, binding: Binding, *prefixes: str) -> NameScope:
         """Return what names mean for a part with these parameters, in these surroundings."""
-        return NameScope(self.declarations.types, prefixes, binding)
+        return NameScope(self.declarations.types, prefixes, binding, self.declarations.vocabulary)
 
     def predicate(self, text: Predicate, scope: NameScope) -> Expression:
         """A condition."""
@@ -111,10 +112,7 @@ class Meaning:
     ) -> tuple[Assignment, ...]:
         """The actions of one transition, taken under `guard`."""
         actions: dict[str, Assignment] = {}
-        for text in texts:
-            action = self._action(text, scope)
-            if action is None:
-                continue
+        for text, action in ((each, action) for each in texts for action in self._actions(each, scope)):
             name = target(action)
             variable = self.declarations.variables.get(name)
             if variable is None or variable.kind not in writing.kinds:
@@ -159,19 +157,20 @@ class Meaning:
             self._misread(text, error, scope)
             return FALSE
 
-    def _action(self, text: SourceText, scope: NameScope) -> Assignment | None:
+    def _actions(self, text: SourceText, scope: NameScope) -> tuple[Assignment, ...]:
         try:
-            action = simplify_assignment(resolve_assignment(parse_assignment(text), scope))
+            actions = tuple(map(simplify_assignment, resolve_assignments(parse_assignment(text), scope)))
         except ExpressionError as error:
             self._misread(text, error, scope)
-            return None
-        self._noted(text, action.value)
-        self._noted(text, action.condition or TRUE)
-        return action
+            return ()
+        for action in actions:
+            self._noted(text, action.value)
+            self._noted(text, action.condition or TRUE)
+        return actions
 
     def _noted(self, text: SourceText, expression: Expression) -> Expression:
         """The meaning of `text`, whose readings of operations are kept in mind."""
-        if OPERATION in text:
+        if OPERATION in text or self.declarations.vocabulary.predicates:
             read = (variable.name for variable in occurrences(expression))
             self._activities |= dict.fromkeys(name for name in read if name.startswith(f"{OPERATION}."))
         return expression
@@ -182,11 +181,29 @@ class Meaning:
             self.findings.add_within(text, action.value.span, f"{found}: {advice}")
 
     def _misread(self, text: SourceText, error: ExpressionError, scope: NameScope) -> None:
+        if isinstance(error, UnusableError):
+            return  # what is wrong is told where the predicate is declared
         name = without_arguments(text[error.span.start : error.span.end])
         owner = name.rpartition(".")[0]  # of a flag
         broken = self.declarations.broken
         if not any(prefix + one in broken for prefix in (*scope.prefixes, "") for one in (name, owner)):
             self.findings.add_within(text, error.span, error.message)
+
+
+# Predicates, which are written out where they are used.
+
+
+def check_predicates(meaning: Meaning) -> None:
+    """Note what is wrong with a predicate, once and where it is declared, for all values of its parameters."""
+    declarations = meaning.declarations
+    for full, prefixes, parameters, condition in declarations.written_predicates():
+        apart = Meaning(declarations, Findings())
+        for binding in declarations.bindings(parameters):
+            apart.predicate(condition, apart.scope(binding, *prefixes))
+            if apart.findings.all:
+                meaning.take(apart.findings.all, ())
+                declarations.broken.add(full)
+                break
 
 
 # Ground abilities with their effects.
@@ -630,6 +647,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
     findings = Findings()
     declarations = Declarations(station, findings)
     meaning = Meaning(declarations, findings)
+    check_predicates(meaning)
     abilities, effects, reactions = ground_abilities(meaning, before)
     operations = ground_operations(meaning, station.operations)
     specifications = ground_specifications(meaning, station.specifications, station.resources)
@@ -655,6 +673,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
         alarms=alarms,
         places=declarations.places,
         reactions=reactions,
+        vocabulary=declarations.vocabulary,
     )
     if findings.all:
         raise ModelError(findings.all)

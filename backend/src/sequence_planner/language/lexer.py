@@ -32,7 +32,6 @@ _HABITS = {
     "⇒": "implies",
     "=>": "implies (or >= between integers)",
     "=": "== (or := in an action)",
-    ":": ":= in an action, == in a condition",
     "===": "==",
     "<=>": "==",
     "<>": "!=",
@@ -49,10 +48,11 @@ _HABITS = {
     '"': "values without quotes",
     "'": "values without quotes",
 }
+COLON = "`:` has no meaning here; write := in an action, == in a condition"  # but behind a quantifier
 _LONG_HABITS = "|".join(re.escape(habit) for habit in sorted(_HABITS, key=len, reverse=True) if len(habit) > 1)
 _WORD = re.compile(
     r"\s*(?:(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<number>[0-9]+)|"
-    rf"(?P<habit>{_LONG_HABITS})|(?P<sign>:=|==|!=|<=|>=|[-+<>.,()\[\]{{}}])|(?P<bad>\S))"
+    rf"(?P<habit>{_LONG_HABITS})|(?P<sign>:=|==|!=|<=|>=|[-+<>.,:()\[\]{{}}])|(?P<bad>\S))"
 )
 _NAME, _NUMBER, _SIGN = (_WORD.groupindex[group] for group in ("name", "number", "sign"))
 

@@ -5,11 +5,17 @@ disjunction = conjunction {"or" conjunction}
 conjunction = until {"and" until}
 until = negation [("U" | "R" | "W") until]                                       (in formulas only)
 negation = ("not" | "X" | "N" | "F" | "G") negation | relation                   (the letters in formulas only)
-relation = sum [("==" | "!=" | "<" | "<=" | ">" | ">=") sum | "in" "{" sum {"," sum} "}"]
+relation = sum [("==" | "!=" | "<" | "<=" | ">" | ">=") sum | "in" ("{" sum {"," sum} "}" | word)]
 sum = atom {("+" | "-") atom}
-atom = "true" | "false" | ["-"] number | name | "(" expression ")"
-name = part {"." part};  part = word ["(" word {"," word} ")" | "[" word {"," word} "]"]
-assignment = name ":=" expression ["if" expression]
+atom = "true" | "false" | ["-"] number | name | quantified | "(" expression ")"
+quantified = quantifier bound ":" expression
+quantifier = "all" | "any" | "none" | "count" | "exactly" number | "at" ("least" | "most") number
+bound = binder {"," binder} ["where" expression];  binder = word {"," word} "in" (word | "{" word {"," word} "}")
+name = part {"." part};  part = word ["(" name {"," name} ")" | "[" name {"," name} "]"]
+assignment = ["all" bound ":"] name ":=" expression ["if" expression]
+
+The words of quantifiers are names everywhere else, such as in `task == none`: a quantifier is followed by a word or a
+number. What it is about goes on as far to the right as it can.
 
 In a formula `U`, `R` and `W` are operators where an operator may stand, that is, after a complete negation. `X`, `N`,
 `F` and `G` are operators where a negation begins and what follows can begin an operand: a word, a number, `(`, `not`,
@@ -23,12 +29,13 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import NoReturn, TypeVar
 
-from sequence_planner.language.lexer import INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS, Token, tokens
+from sequence_planner.language.lexer import COLON, INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS, Token, tokens
 from sequence_planner.language.syntax import (
     And,
     Arithmetic,
     Assignment,
     BinaryTemporal,
+    Binder,
     Comparison,
     Component,
     Constant,
@@ -37,8 +44,10 @@ from sequence_planner.language.syntax import (
     Implies,
     Membership,
     Name,
+    NamedMembership,
     Not,
     Or,
+    Quantified,
     Span,
     UnaryTemporal,
     first_temporal,
@@ -52,6 +61,21 @@ MOST_SUMS = 50
 
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _OPERAND_BEGINS = frozenset({"name", "number", "(", "not", "true", "false"})
+
+QUANTIFIERS = frozenset({"all", "any", "none", "count"})
+
+# Quantifiers of other languages.
+_FOREIGN_QUANTIFIERS = {
+    "forall": "all",
+    "every": "all",
+    "each": "all",
+    "exists": "any",
+    "some": "any",
+    "no": "none",
+    "one": "exactly 1",
+    "sum": "count",
+    "number": "count",
+}
 
 # Words of other languages, where an operator or an operand is missing.
 _FOREIGN = {word: word for word in KEYWORDS} | {"is": "==", "equals": "==", "xor": "!=", "then": "implies"}
@@ -187,8 +211,17 @@ class _Parser:
             meant = _FOREIGN.get(word.text.lower()) or (self._temporal and _LETTERS.get(word.text.lower()))
             if word.kind == "name" and meant:
                 raise ExpressionError(f"`{word.text}` has no meaning here; write {meant}", word.span)
+        if token.kind == ":":
+            raise ExpressionError(COLON, token.span)
+        if last.text.lower() == "for" and token.text in QUANTIFIERS:
+            raise ExpressionError(f"`{last.text}` has no meaning here; write {token.text} …: …", last.span)
+        if token.kind == "name" and after[0].kind == "in" and last.text.lower() in _FOREIGN_QUANTIFIERS:
+            meant = _FOREIGN_QUANTIFIERS[last.text.lower()]
+            raise ExpressionError(f"`{last.text}` has no meaning here; write {meant}", last.span)
         hint = ""
-        if token.kind in _RELATIONS or token.kind == "in":
+        if last.text in QUANTIFIERS and token.kind == "name":
+            hint = f"; a quantifier is written {last.text} word in set: …"
+        elif token.kind in _RELATIONS or token.kind == "in":
             hint = "; comparisons do not chain: join two with and"
         elif token.kind == ":=":
             hint = "; a condition compares with =="
@@ -207,6 +240,11 @@ class _Parser:
 
     def assignment(self) -> Assignment:
         start = self._token.start
+        binders: tuple[Binder, ...] = ()
+        where: Expression | None = None
+        if self._token.text == "all" and self._begins_quantifier():
+            self._advance()
+            binders, where = self._bound()
         target = self.name()
         self._expect(":=", "`:=`")
         value = self.expression()
@@ -214,7 +252,9 @@ class _Parser:
         if self._token.kind == "if":
             self._advance()
             condition = self.expression()
-        return Assignment(target, value, condition, self._since(start))
+        if where is not None:
+            condition = where if condition is None else And((where, condition), where.span)
+        return Assignment(target, value, condition, self._since(start), binders)
 
     def expression(self) -> Expression:
         start = self._token.start
@@ -285,6 +325,8 @@ class _Parser:
             return Comparison(kind, left, self.sum(), self._since(start))
         if kind == "in":
             self._advance()
+            if self._token.kind == "name":
+                return NamedMembership(left, self._word("a named set"), self._since(start))
             return Membership(left, self._options(), self._since(start))
         return left
 
@@ -312,7 +354,7 @@ class _Parser:
         token = self._token
         kind = token.kind
         if kind == "name":
-            return self.name()
+            return self.quantified() if self._begins_quantifier() else self.name()
         if kind in ("true", "false"):
             return Constant(kind == "true", self._advance().span)
         if kind == "number":
@@ -329,6 +371,63 @@ class _Parser:
         self._advance()
         return inner
 
+    def _begins_quantifier(self) -> bool:
+        """Return whether the word at hand is a quantifier, and no name."""
+        word = self._token.text
+        following = self._tokens[self._next + 1]
+        if word == "exactly":
+            return following.kind == "number"
+        if word == "at":
+            return following.text in ("least", "most")
+        if word not in QUANTIFIERS or following.kind != "name":
+            return False
+        behind = self._tokens[self._next + 2].kind
+        # `none` is a usual name of a value, behind which an operator may be missing.
+        return behind in ("in", ",") or (behind == "end" and word != "none")
+
+    def quantified(self) -> Expression:
+        opening = self._advance()
+        quantifier, number = opening.text, None
+        if quantifier == "at":
+            quantifier = f"at {self._advance().text}"
+        if quantifier not in QUANTIFIERS:
+            number = int(self._expect("number", "a number").text)
+        binders, where = self._bound()
+        body = self._nested(self.expression, opening)
+        return Quantified(quantifier, number, binders, where, body, self._since(opening.start))
+
+    def _bound(self) -> tuple[tuple[Binder, ...], Expression | None]:
+        """Return what a quantifier is about: its words with their values, and what chooses among these."""
+        binders: list[Binder] = []
+        while not binders or self._token.kind == ",":
+            if binders:
+                self._advance()
+            words = [self._expect("name", "a word for each value, as in `all p in poses: …`")]
+            while self._token.kind == ",":
+                self._advance()
+                words.append(self._expect("name", "a name"))
+            self._expect("in", "`in`, as in `all p in poses: …`")
+            domain = self._word("an enumeration or a named set") if self._token.kind != "{" else self._values()
+            binders += [Binder(word.text, domain, word.span) for word in words]
+        where = None
+        if self._token.text == "where":
+            where = self._nested(self.expression, self._advance())
+        self._expect(":", "`:`" if where is not None else "`:` or `where`")
+        return tuple(binders), where
+
+    def _values(self) -> tuple[Name, ...]:
+        self._expect("{", "`{`")
+        values = [self._word("a value")]
+        while self._token.kind == ",":
+            self._advance()
+            values.append(self._word("a value"))
+        self._expect("}", "`,` or `}`")
+        return tuple(values)
+
+    def _word(self, what: str) -> Name:
+        token = self._expect("name", what)
+        return Name((Component(token.text),), token.span)
+
     def name(self) -> Name:
         start = self._token.start
         parts = [self.component()]
@@ -343,9 +442,21 @@ class _Parser:
         if opening not in ("(", "["):
             return Component(word)
         closing = ")" if opening == "(" else "]"
-        arguments: list[str] = []
+        arguments: list[str | Name] = []
         while not arguments or self._token.kind == ",":
             self._advance()
-            arguments.append(self._expect("name", "a value or parameter").text)
+            arguments.append(self._argument())
         self._expect(closing, f"`,` or `{closing}`")
         return Component(word, tuple(arguments), opening == "[")
+
+    def _argument(self) -> str | Name:
+        if self._token.kind != "name":
+            self._unfit("a value or parameter")
+        if self._tokens[self._next + 1].kind in (",", ")", "]"):
+            return self._advance().text
+        self._depth += 1
+        if self._depth > MOST_NESTED:
+            raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", self._token.span)
+        name = self.name()
+        self._depth -= 1
+        return name

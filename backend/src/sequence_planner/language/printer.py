@@ -8,14 +8,17 @@ from sequence_planner.language.syntax import (
     Arithmetic,
     Assignment,
     BinaryTemporal,
+    Binder,
     Comparison,
     Constant,
     Expression,
     Implies,
     Membership,
     Name,
+    NamedMembership,
     Not,
     Or,
+    Quantified,
     UnaryTemporal,
     Variable,
 )
@@ -38,7 +41,15 @@ def print_expression(expression: Expression) -> str:
 def print_assignment(action: Assignment) -> str:
     """The canonical text of an action."""
     condition = f" if {print_expression(action.condition)}" if action.condition is not None else ""
-    return f"{print_expression(action.target)} := {print_expression(action.value)}{condition}"
+    bound = f"all {_bound(action.binders)}: " if action.binders else ""
+    return f"{bound}{print_expression(action.target)} := {print_expression(action.value)}{condition}"
+
+
+def _bound(binders: tuple[Binder, ...]) -> str:
+    domains = (
+        each.domain if isinstance(each.domain, Name) else f"{{{', '.join(map(str, each.domain))}}}" for each in binders
+    )
+    return ", ".join(f"{each.word} in {domain}" for each, domain in zip(binders, domains, strict=True))
 
 
 def _print(expression: Expression, place: int) -> str:
@@ -66,6 +77,12 @@ def _text(expression: Expression) -> tuple[str, int]:
             return f"{_print(left, _SUM)} {operator} {_print(right, _SUM)}", _RELATION
         case Membership(left, options):
             return f"{_print(left, _SUM)} in {{{', '.join(_print(o, _SUM) for o in options)}}}", _RELATION
+        case NamedMembership(left, domain):
+            return f"{_print(left, _SUM)} in {domain}", _RELATION
+        case Quantified(quantifier, number, binders, where, body):
+            counted = "" if number is None else f" {number}"
+            chosen = "" if where is None else f" where {print_expression(where)}"
+            return f"{quantifier}{counted} {_bound(binders)}{chosen}: {print_expression(body)}", _IMPLIES
         case Arithmetic(operator, left, right):
             return f"{_print(left, _SUM)} {operator} {_print(right, _ATOM)}", _SUM
         case UnaryTemporal(operator, operand):

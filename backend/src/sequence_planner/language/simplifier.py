@@ -16,8 +16,10 @@ from sequence_planner.language.syntax import (
     Implies,
     Membership,
     Name,
+    NamedMembership,
     Not,
     Or,
+    Quantified,
     Span,
     UnaryTemporal,
     Variable,
@@ -29,7 +31,7 @@ def simplify(expression: Expression) -> Expression:
     finite trace, also over unknown values.
     """
     match expression:
-        case Variable() | Constant() | Name():
+        case Variable() | Constant() | Name() | NamedMembership() | Quantified():  # the last three are not resolved
             return expression
         case And(operands) | Or(operands):
             return _several(expression, tuple(map(simplify, operands)))

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from sequence_planner.core.immutable import replace
 from sequence_planner.language.syntax import (
     And,
     Arithmetic,
     Assignment,
     BinaryTemporal,
     Comparison,
+    Constant,
     Expression,
     Implies,
     Membership,
     Not,
     Or,
+    Span,
     UnaryTemporal,
     Variable,
 )
@@ -46,6 +49,15 @@ def rebuilt(expression: Expression, part: Callable[[Expression], Expression]) ->
             return BinaryTemporal(operator, part(left), part(right))
         case _:
             return expression
+
+
+def placed_at(expression: Expression, span: Span) -> Expression:
+    """The resolved `expression` as if it were written at `span`."""
+    if isinstance(expression, Variable):
+        return Variable(expression.name, expression.type, span)
+    if isinstance(expression, Constant):
+        return Constant(expression.value, span)
+    return replace(rebuilt(expression, lambda part: placed_at(part, span)), span=span)
 
 
 def replaced(expression: Expression, replacements: Replacements) -> Expression:

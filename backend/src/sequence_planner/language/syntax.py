@@ -40,17 +40,20 @@ class Constant(Immutable):
 
 
 class Component(NamedTuple):
-    """One part of a dotted name: `run_nut`, `move_to_position(above)`, `bolts[bolt_pair_1]`."""
+    """One part of a dotted name: `run_nut`, `move_to_position(above)`, `bolts[bolt_pair_1]`.
+
+    An argument is a word, or a name that has a value itself, as in `bolts[previous(pair)]`.
+    """
 
     name: str
-    arguments: tuple[str, ...] = ()
+    arguments: tuple[str | Name, ...] = ()
     indexed: bool = False
 
     def __str__(self) -> str:
         if not self.arguments:
             return self.name
         opening, closing = "[]" if self.indexed else "()"
-        return f"{self.name}{opening}{', '.join(self.arguments)}{closing}"
+        return f"{self.name}{opening}{', '.join(map(str, self.arguments))}{closing}"
 
 
 class Name(Immutable):
@@ -126,6 +129,37 @@ class Membership(Immutable):
     span: Span = uncompared(default=NOWHERE)
 
 
+class NamedMembership(Immutable):
+    """`left in poses`: one of the values of a named set or enumeration. Resolution makes a `Membership` of it."""
+
+    left: Expression
+    domain: Name
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Binder(Immutable):
+    """`pair in bolt_pair`: a word that stands for each value of a named set or enumeration, or of those written."""
+
+    word: str
+    domain: Name | tuple[Name, ...]
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Quantified(Immutable):
+    """`all p in poses where p != home: is_free[p]`, and the like. Resolution writes it out.
+
+    `quantifier` is `all`, `any`, `none`, `count`, or with a `number` `exactly`, `at least`, `at most`. `where` chooses
+    among the values.
+    """
+
+    quantifier: str
+    number: int | None
+    binders: tuple[Binder, ...]
+    where: Expression | None
+    body: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
 class Arithmetic(Immutable):
     """`+` and `-` on integers."""
 
@@ -162,6 +196,8 @@ Expression = (
     | Implies
     | Comparison
     | Membership
+    | NamedMembership
+    | Quantified
     | Arithmetic
     | UnaryTemporal
     | BinaryTemporal
@@ -169,12 +205,17 @@ Expression = (
 
 
 class Assignment(Immutable):
-    """An action `target := value`, taken only where `condition` holds."""
+    """An action `target := value`, taken only where `condition` holds.
+
+    With `binders`, as in `all pair in bolt_pair: bolts[pair] := empty`, one for each choice of their values; resolution
+    writes these out.
+    """
 
     target: Name | Variable
     value: Expression
     condition: Expression | None = None
     span: Span = uncompared(default=NOWHERE)
+    binders: tuple[Binder, ...] = ()
 
 
 TRUE = Constant(True)
@@ -184,8 +225,10 @@ FALSE = Constant(False)
 def children(expression: Expression) -> tuple[Expression, ...]:
     """The direct parts of an expression, left to right."""
     match expression:
-        case Not(operand) | UnaryTemporal(_, operand):
+        case Not(operand) | UnaryTemporal(_, operand) | NamedMembership(operand):
             return (operand,)
+        case Quantified(where=where, body=body):
+            return (body,) if where is None else (where, body)
         case And(operands) | Or(operands):
             return operands
         case Implies(left, right):

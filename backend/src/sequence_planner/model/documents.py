@@ -369,6 +369,103 @@ class AlarmDocument(DocumentPart):
     """Seconds for which the condition must have held before it is raised."""
 
 
+# Names for sets of values, relations, maps and conditions, which texts use in place of what they stand for.
+
+
+class EnumerationDocument(DocumentPart):
+    """An enumeration that includes others, or whose values have an order: its own values, then those it includes."""
+
+    values: list[SourceText] = Field(default_factory=list)
+    """Its own values, in order."""
+    includes: list[SourceText] = Field(default_factory=list)
+    """Enumerations whose values it has as well."""
+    ordered: bool = False
+    """Whether `<`, `previous`, `next`, `first` and `last` go by the order of its values."""
+
+    @model_validator(mode="after")
+    def _has_values(self) -> EnumerationDocument:
+        if not self.values and not self.includes:
+            raise ValueError("an enumeration has `values`, `includes` others, or both")
+        return self
+
+
+class SetDocument(DocumentPart):
+    """A named set of values of an enumeration."""
+
+    of: SourceText
+    """The enumeration, or another set."""
+    values: Given[Annotated[list[SourceText], Field(min_length=1)]] = None
+    """Its values; a set among them stands for all of its own."""
+    excludes: Given[Annotated[list[SourceText], Field(min_length=1)]] = Field(default=None, alias="except")
+    """The values that are not in it, where all others are; a set among them stands for all of its own."""
+
+    @model_validator(mode="after")
+    def _one_form(self) -> SetDocument:
+        if (self.values is None) == (self.excludes is None):
+            raise ValueError("a set has either its `values`, or those that it has not: `except`")
+        return self
+
+
+Members = SourceText | Annotated[list[SourceText], Field(min_length=1)]
+
+
+class RelationDocument(DocumentPart):
+    """A relation between the values of two enumerations, by its pairs."""
+
+    between: Annotated[list[SourceText], Field(min_length=2, max_length=2)]
+    """The two enumerations or sets."""
+    symmetric: bool = False
+    """Whether each pair holds the other way round as well."""
+    pairs: Annotated[list[Annotated[list[Members], Field(min_length=2, max_length=2)]], Field(min_length=1)]
+    """The pairs. A set, or a list, stands for each of its values: `[free, free]` is all pairs of these."""
+
+
+class ValueMapDocument(DocumentPart):
+    """A value for each value of an enumeration."""
+
+    source: SourceText = Field(alias="from")
+    """The enumeration or set that it is from."""
+    to: SourceText
+    """What it is to: an enumeration, `bool` or a range such as `0..3`."""
+    values: dict[SourceText, bool | int | SourceText] = Field(default_factory=dict)
+    """The value for each; a set among the keys stands for all of its values."""
+    otherwise: Given[bool | int | SourceText] = None
+    """The value for all others; without it each needs its own."""
+
+
+class PredicateDocument(DocumentPart):
+    """A condition with a name, and parameters if it needs some."""
+
+    title: Given[SourceText] = None
+    """For people; `{parameter}` is replaced by the value."""
+    parameters: Parameters = Field(default_factory=dict)
+    """`{name: enumeration}`: what it is about."""
+    when: Predicate
+    """The condition that it stands for."""
+
+
+def _form_of_predicate(content: object) -> str:
+    return "predicate" if isinstance(content, dict | PredicateDocument) else "condition"
+
+
+NamedCondition = Annotated[
+    Annotated[Predicate, Tag("condition")] | Annotated[PredicateDocument, Tag("predicate")],
+    Discriminator(_form_of_predicate),
+]
+
+
+def _form_of_enumeration(content: object) -> str | None:
+    if isinstance(content, dict | EnumerationDocument):
+        return "enumeration"
+    return "list" if isinstance(content, list) else None
+
+
+EnumerationForm = Annotated[
+    Annotated[list[SourceText], Field(min_length=1), Tag("list")] | Annotated[EnumerationDocument, Tag("enumeration")],
+    Discriminator(_form_of_enumeration, "enumeration", "its values in a list, or `values` and what it `includes`"),
+]
+
+
 class ResourceDocument(DocumentPart):
     """A resource: its topics, its variables by who writes them, and what it can do."""
 
@@ -392,6 +489,8 @@ class ResourceDocument(DocumentPart):
     """Abilities of the resource."""
     alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
     """What people are told of the resource when something is wrong with it."""
+    predicates: dict[SourceText, NamedCondition] = Field(default_factory=dict)
+    """Conditions with a name, which other conditions use by it."""
 
 
 class StationDocument(DocumentPart):
@@ -403,8 +502,16 @@ class StationDocument(DocumentPart):
     """For people."""
     description: Given[SourceText] = None
     """For people."""
-    enumerations: dict[SourceText, Annotated[list[SourceText], Field(min_length=1)]] = Field(default_factory=dict)
+    enumerations: dict[SourceText, EnumerationForm] = Field(default_factory=dict)
     """Named values, in order."""
+    sets: dict[SourceText, SetDocument] = Field(default_factory=dict)
+    """Values of an enumeration that have a name together."""
+    relations: dict[SourceText, RelationDocument] = Field(default_factory=dict)
+    """Which values of two enumerations belong together: `near(pose, position)`."""
+    maps: dict[SourceText, ValueMapDocument] = Field(default_factory=dict)
+    """A value for each value of an enumeration: `tool_for[position]`."""
+    predicates: dict[SourceText, NamedCondition] = Field(default_factory=dict)
+    """Conditions with a name, which other conditions use by it."""
     estimated: dict[SourceText, VariableDocument] = Field(default_factory=dict)
     """Variables of the station as a whole, which abilities of every resource may write."""
     alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
@@ -413,6 +520,24 @@ class StationDocument(DocumentPart):
     """The states to which the station can always be brought back."""
     takeover: Literal["confirm", "automatic"] = "confirm"
     """After a hot standby has taken command: with `true`, a person confirms that production goes on."""
+
+    def enumeration_values(self) -> dict[SourceText, tuple[SourceText, ...]]:
+        """The values of each enumeration, in order: its own, then those that it includes and does not have yet.
+
+        What includes itself, and names that are none, add nothing.
+        """
+        return {name: self._values(name, ()) for name in self.enumerations}
+
+    def _values(self, name: SourceText, around: tuple[str, ...]) -> tuple[SourceText, ...]:
+        written = self.enumerations.get(name)
+        if not isinstance(written, EnumerationDocument):
+            return tuple(written or ())
+        within = (*around, str(name))
+        included = (value for each in written.includes if each not in within for value in self._values(each, within))
+        found: dict[str, SourceText] = {}
+        for value in (*written.values, *included):
+            found.setdefault(str(value), value)
+        return tuple(found.values())
 
 
 class OperationDocument(DocumentPart):

@@ -103,7 +103,7 @@ def _write_question(
 
 def _goal(automaton: Automaton, text: str) -> Goal:
     try:
-        return Goal(text, resolve_predicate(parse(text), NameScope(automaton.types)))
+        return Goal(text, resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary)))
     except ExpressionError as error:
         refuse(f"--goal {text!r}: {error.message}")
 

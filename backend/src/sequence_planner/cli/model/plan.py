@@ -551,6 +551,6 @@ def _active(automaton: Automaton, before: StartingPoint) -> frozenset[str]:
 
 def _predicate(automaton: Automaton, text: str, option: str) -> Expression:
     try:
-        return resolve_predicate(parse(text), NameScope(automaton.types))
+        return resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary))
     except ExpressionError as error:
         refuse(f"{option} {text!r}: {error.message}")

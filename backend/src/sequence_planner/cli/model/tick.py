@@ -240,7 +240,9 @@ def _measured(automaton: Automaton, state: State, texts: Iterable[str]) -> dict[
     measured: dict[str, Value | None] = {}
     for text in texts:
         try:
-            action = resolve_assignment(parse_assignment(text), NameScope(automaton.types))
+            action = resolve_assignment(
+                parse_assignment(text), NameScope(automaton.types, vocabulary=automaton.vocabulary)
+            )
         except ExpressionError as error:
             refuse(f"--set {text!r}: {error.message}")
         name = target(action)

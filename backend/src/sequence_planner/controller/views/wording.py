@@ -268,7 +268,7 @@ def no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
 def read_predicate(automaton: Automaton, text: str) -> Expression:
     """Return what `text` means, with all names in full. Raises `CommandRefused`, which names the place."""
     try:
-        return resolve_predicate(parse(text), NameScope(automaton.types))
+        return resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary))
     except ExpressionError as error:
         start, end = error.span
         words = f"character {start + 1}" + (f", `{text[start:end]}`" if text[start:end].strip() else "")

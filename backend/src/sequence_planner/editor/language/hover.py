@@ -150,7 +150,7 @@ class _Hovering:
 
     def _value(self, span: Span, type_: Type | None = None) -> Hover | None:
         word = self._text[span.start : span.end]
-        for name, values in self._lexicon.station.station.enumerations.items():
+        for name, values in self._lexicon.station.station.enumeration_values().items():
             declared = self._lexicon.declarations.enumerations[name]
             if word in declared.values and (type_ is None or type_ == declared):
                 place = self._lexicon.within(values[declared.values.index(word)].place)

@@ -229,7 +229,9 @@ def _spot(graph: DraftPipelines, view: DraftPipelineView, fields: RecordType, wa
     own = f"{view.resource}."
     names = frozenset(name.removeprefix(own) for name in sketch.automaton.variables if name.startswith(own))
     document = sketch.written.resources[view.resource]
-    enumerations = {str(name): tuple(map(str, values)) for name, values in sketch.station.station.enumerations.items()}
+    enumerations = {
+        str(name): tuple(map(str, values)) for name, values in sketch.station.station.enumeration_values().items()
+    }
     values = frozenset(value for each in enumerations.values() for value in each)
     if view.role == "outgoing":
         done = {end.field for end in view.ends}

@@ -68,16 +68,24 @@ def steps_of(name: Name, text: str) -> tuple[NameStep, ...]:
     start = name.span.start
     if name.is_word:
         return (NameStep(NameWord(name.path[0].name, name.span)),)
-    words = (
+    found = [
         NameWord(match[0], Span(start + match.start(), start + match.end()))
         for match in _WORD.finditer(text[start : name.span.end])
+    ]
+    inner = [each.span for part in name.path for each in part.arguments if isinstance(each, Name)]
+    words = iter([word for word in found if not any(span.start <= word.span.start < span.end for span in inner)])
+    return tuple(
+        NameStep(
+            next(words),
+            tuple(NameWord(str(each), each.span) if isinstance(each, Name) else next(words) for each in part.arguments),
+        )
+        for part in name.path
     )
-    return tuple(NameStep(next(words), tuple(next(words) for _ in part.arguments)) for part in name.path)
 
 
 def _without_places(name: Name) -> tuple[NameStep, ...]:
     return tuple(
-        NameStep(NameWord(part.name, NOWHERE), tuple(NameWord(each, NOWHERE) for each in part.arguments))
+        NameStep(NameWord(part.name, NOWHERE), tuple(NameWord(str(each), NOWHERE) for each in part.arguments))
         for part in name.path
     )
 

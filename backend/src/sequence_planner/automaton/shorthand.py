@@ -1,0 +1,248 @@
+"""The names of a station that stand for something longer: named sets, relations, maps and predicates, read from their
+documents and checked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Protocol
+
+from sequence_planner.automaton.automaton import Kind
+from sequence_planner.automaton.findings import Findings
+from sequence_planner.language.parser import QUANTIFIERS, parse
+from sequence_planner.language.resolver import ENDS, STEPS, suggestion
+from sequence_planner.language.shorthand.vocabulary import NamedPredicate, ValueMap, ValueRelation
+from sequence_planner.language.syntax import FALSE, TRUE, Expression, ExpressionError
+from sequence_planner.language.types import EnumerationType, Place, Type, Value, contains
+from sequence_planner.model.documents import (
+    EnumerationDocument,
+    NamedCondition,
+    PredicateDocument,
+    RelationDocument,
+    SetDocument,
+    ValueMapDocument,
+)
+from sequence_planner.model.fields import Predicate
+from sequence_planner.model.loader import Station
+from sequence_planner.model.source import SourceText
+
+# Words that a text would take for something else.
+RESERVED = frozenset({*STEPS, *ENDS, *QUANTIFIERS, "exactly", "where"})
+
+# Enumerations and named sets.
+
+
+def read_enumerations(station: Station, findings: Findings) -> dict[str, EnumerationType]:
+    """The type of each enumeration; what is wrong with what it includes is noted."""
+    found: dict[str, EnumerationType] = {}
+    written = station.station.enumerations
+    for name, values in station.station.enumeration_values().items():
+        document = written[name]
+        if isinstance(document, EnumerationDocument):
+            _check_included(name, document, station, findings)
+        if values:
+            found[str(name)] = EnumerationType(tuple(map(str, values)))
+    return found
+
+
+def own_values(document: list[SourceText] | EnumerationDocument) -> list[SourceText]:
+    """The values that an enumeration has itself."""
+    return document.values if isinstance(document, EnumerationDocument) else document
+
+
+def _check_included(name: SourceText, document: EnumerationDocument, station: Station, findings: Findings) -> None:
+    enumerations = station.station.enumerations
+    for each in document.includes:
+        if each not in enumerations:
+            findings.add(each, f"unknown enumeration `{each}`{suggestion(each, enumerations)}")
+        elif name in _reached(each, station):
+            findings.add(each, f"`{name}` would include itself")
+
+
+def _reached(name: str, station: Station) -> set[str]:
+    """The enumerations that `name` includes, itself among them, over any number of steps."""
+    found: set[str] = set()
+    pending = [name]
+    while pending:
+        if (each := pending.pop()) not in found:
+            found.add(each)
+            written = station.station.enumerations.get(SourceText(each, Place("", 1, 1), each))
+            pending += map(str, written.includes) if isinstance(written, EnumerationDocument) else ()
+    return found
+
+
+class DeclaredTypes(Protocol):
+    """The types that are declared so far, and how parameters and types are checked."""
+
+    enumerations: dict[str, EnumerationType]
+    broken: set[str]
+
+    def check_parameters(self, parameters: Mapping[SourceText, SourceText], *prefixes: str) -> None:
+        """Note parameters that are none, or hide something."""
+
+    def type_of(self, name: SourceText, text: SourceText | None, kind: Kind | None) -> Type | None:
+        """The type that `text` means; if it means none, that is noted."""
+
+
+class ShorthandReader:
+    """Reads the documents of names that stand for something longer; what is wrong is noted."""
+
+    def __init__(self, declarations: DeclaredTypes, station: Station, findings: Findings) -> None:
+        self._declarations = declarations
+        self._station = station.station
+        self._findings = findings
+        self._domains = declarations.enumerations
+
+    def read_sets(self) -> Iterator[tuple[SourceText, EnumerationType]]:
+        """Each named set with its values, in the order of its enumeration."""
+        pending = dict(self._station.sets)
+        while pending:
+            ready = [name for name, document in pending.items() if not self._needs(document) & set(map(str, pending))]
+            for name in ready or pending:
+                if not ready:
+                    self._findings.add(name, f"`{name}` would be a part of itself")
+                elif (type_ := self._set(name, pending[name])) is not None:
+                    yield name, type_
+            pending = {name: document for name, document in pending.items() if ready and name not in ready}
+
+    def _needs(self, document: SetDocument) -> set[str]:
+        return {str(document.of), *map(str, document.values or document.excludes or ())}
+
+    def _set(self, name: SourceText, document: SetDocument) -> EnumerationType | None:
+        if (whole := self._domain(document.of)) is None:
+            return None
+        named = self._values_among(document.values or document.excludes or [], whole)
+        is_kept = document.values is not None
+        values = tuple(value for value in whole.values if (value in named) is is_kept)
+        if not values:
+            self._findings.add(name, f"no value of `{document.of}` is left in `{name}`: a set has at least one")
+            return None
+        return EnumerationType(values)
+
+    def _values_among(self, texts: Iterable[SourceText], whole: EnumerationType) -> dict[str, None]:
+        """The values that `texts` name, each itself or by a set; what is none of `whole` is noted."""
+        found: dict[str, None] = {}
+        for text in texts:
+            if text in whole.values:
+                found[str(text)] = None
+            elif str(text) in self._domains:
+                found |= dict.fromkeys(value for value in self._domains[str(text)].values if value in whole.values)
+                if strangers := [value for value in self._domains[str(text)].values if value not in whole.values]:
+                    self._findings.add(text, f"`{text}` has values that do not belong here, such as `{strangers[0]}`")
+            else:
+                near = suggestion(text, [*whole.values, *self._domains])
+                self._findings.add(text, f"`{text}` is no value of {_shortly(whole)} and no set{near}")
+        return found
+
+    def _domain(self, name: SourceText) -> EnumerationType | None:
+        if str(name) not in self._domains:
+            near = suggestion(name, self._domains)
+            self._findings.add(name, f"unknown enumeration or set `{name}`{near}")
+            return None
+        return self._domains[str(name)]
+
+    # Relations and maps
+
+    def read_relations(self) -> Iterator[tuple[SourceText, ValueRelation]]:
+        """Each relation with its pairs."""
+        for name, document in self._station.relations.items():
+            types = [self._domain(each) for each in document.between]
+            if types[0] is not None and types[1] is not None:
+                yield name, self._relation(document, types[0], types[1])
+
+    def _relation(self, document: RelationDocument, first: EnumerationType, second: EnumerationType) -> ValueRelation:
+        pairs: set[tuple[str, str]] = set()
+        for one, other in document.pairs:
+            for left in self._values_among(one if isinstance(one, list) else [one], first):
+                for right in self._values_among(other if isinstance(other, list) else [other], second):
+                    pairs.add((left, right))
+                    if document.symmetric:
+                        pairs.add((right, left))
+        if document.symmetric and set(first.values) != set(second.values):
+            message = f"a symmetric relation is between the same values, not {_shortly(first)} and {_shortly(second)}"
+            self._findings.add(document.between[1], message)
+        return ValueRelation((first, second), frozenset(pairs))
+
+    def read_maps(self) -> Iterator[tuple[SourceText, ValueMap]]:
+        """Each map with its table."""
+        for name, document in self._station.maps.items():
+            source = self._domain(document.source)
+            target = self._declarations.type_of(name, document.to, None)
+            if source is not None and target is not None:
+                yield name, ValueMap(source, target, self._table(name, document, source, target))
+
+    def _table(
+        self, name: SourceText, document: ValueMapDocument, source: EnumerationType, target: Type
+    ) -> Mapping[str, Value]:
+        table: dict[str, Value] = {}
+        for key, value in document.values.items():
+            self._check_value(key, value, target)
+            for each in self._values_among([key], source):
+                if each in table:
+                    self._findings.add(key, f"`{each}` has a value in `{name}` already: write it once")
+                table[each] = str(value) if isinstance(value, SourceText) else value
+        missing = [value for value in source.values if value not in table]
+        if document.otherwise is not None:
+            self._check_value(name, document.otherwise, target)
+            rest = document.otherwise
+            table |= dict.fromkeys(missing, str(rest) if isinstance(rest, SourceText) else rest)
+        elif missing:
+            shown = ", ".join(f"`{value}`" for value in missing[:3]) + (" and others" if len(missing) > 3 else "")
+            self._findings.add(name, f"`{name}` says nothing for {shown}: add them, or `otherwise`")
+        return table
+
+    def _check_value(self, key: SourceText, value: Value | SourceText, target: Type) -> None:
+        plain = str(value) if isinstance(value, SourceText) else value
+        if not contains(target, plain):
+            where = value if isinstance(value, SourceText) else key
+            near = suggestion(str(plain), map(str, target.domain))
+            self._findings.add(where, f"`{plain}` is not in {target}{near}")
+
+    # Predicates
+
+    def read_predicates(
+        self, resources: Mapping[str, Mapping[SourceText, NamedCondition]]
+    ) -> dict[str, NamedPredicate]:
+        """Each predicate by its full name. What is wrong with its condition is noted when it is checked."""
+        found: dict[str, NamedPredicate] = {}
+        for resource, name, document in written_predicates(self._station.predicates, resources):
+            full = str(name) if resource is None else f"{resource}.{name}"
+            prefixes = () if resource is None else (f"{resource}.",)
+            parameters, condition = parts_of(document)
+            self._declarations.check_parameters(parameters, *prefixes)
+            types = {str(each): self._domains.get(str(of)) for each, of in parameters.items()}
+            known = {each: type_ for each, type_ in types.items() if type_ is not None}
+            body = _body(condition)
+            if len(known) == len(types) and body is not None:
+                found[full] = NamedPredicate(full, known, body, prefixes)
+            else:
+                self._declarations.broken.add(full)
+        return found
+
+
+def _body(text: Predicate) -> Expression | None:
+    if not isinstance(text, SourceText):
+        return TRUE if text else FALSE
+    try:
+        return parse(text)
+    except ExpressionError:
+        return None
+
+
+def written_predicates(
+    station: Mapping[SourceText, NamedCondition], resources: Mapping[str, Mapping[SourceText, NamedCondition]]
+) -> Iterator[tuple[str | None, SourceText, Predicate | PredicateDocument]]:
+    """Each predicate as it is written, with its resource."""
+    for resource, documents in ((None, station), *resources.items()):
+        for name, document in documents.items():
+            yield resource, name, document
+
+
+def parts_of(document: Predicate | PredicateDocument) -> tuple[dict[SourceText, SourceText], Predicate]:
+    """The parameters and the condition of a predicate as they are written."""
+    return (document.parameters, document.when) if isinstance(document, PredicateDocument) else ({}, document)
+
+
+def _shortly(type_: EnumerationType) -> str:
+    values = type_.values
+    return str(type_) if len(values) <= 5 else f"{{{', '.join(values[:3])}, … {values[-1]}}}"

@@ -1,0 +1,1 @@
+"""What expressions say for short: names that stand for something longer, and values case by case."""
