@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -172,8 +172,15 @@ class TextBefore:
         """True if the variable that an action writes can stand next."""
         return self.kind is FieldKind.ACTION and not self.text.strip()
 
+    @cached_property
+    def wants_set(self) -> bool:
+        """True if values in braces can stand next, or the name of a set of them."""
+        return bool(self.tokens) and self.tokens[-1].kind == "in" and not self._is_broken
+
     def words(self) -> list[str]:
         """The operators and other words of the language that can stand next."""
+        if self.wants_set:
+            return ["{"]
         if self._is_broken:
             return ["not", "true", "false"] if self.wants_name else [*EQUALITIES, "in", *JUNCTIONS]
         return self._beginning_words() if self.wants_name else self._joining_words()
@@ -319,9 +326,9 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
     match field.kind:
         case FieldKind.TYPE:
             yield option(str(BOOLEAN), NameKind.ENUMERATION, "false, true")
-            yield from _enumerations(lexicon)
+            yield from _enumerations(lexicon.declarations.enumerations)
         case FieldKind.ENUMERATION:
-            yield from _enumerations(lexicon)
+            yield from _enumerations(lexicon.declarations.enumerations)
         case FieldKind.INITIAL:
             if field.type is not None:
                 few = not isinstance(field.type, IntegerRange) or len(field.type.domain) <= _MOST_NUMBERS
@@ -339,8 +346,8 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
                         yield option(name.removeprefix(f"{field.resource}."), NameKind.MEASURED, BOOLEAN)
 
 
-def _enumerations(lexicon: Lexicon) -> Iterator[Option]:
-    for name, type_ in lexicon.declarations.enumerations.items():
+def _enumerations(enumerations: Mapping[str, EnumerationType]) -> Iterator[Option]:
+    for name, type_ in enumerations.items():
         yield option(name, NameKind.ENUMERATION, type_)
 
 
@@ -484,6 +491,11 @@ def _options(sight: VisibleNames, field: TextField, beginning: TextBefore, chain
     words = [(rank, option(word, NameKind.KEYWORD)) for word in beginning.words() for rank in _fit(typed, word)]
     if not beginning.wants_name:
         yield from _numbers(beginning, typed)
+        yield from words
+        return
+    if beginning.wants_set:
+        for each in _enumerations(sight.enumerations):
+            yield from ((rank, each) for rank in _fit(typed, each.label))
         yield from words
         return
     expected = beginning.expected()
