@@ -29,6 +29,8 @@ from sequence_planner.language.syntax import (
     Name,
     Not,
     Or,
+    RecordConstant,
+    Selection,
     Span,
     UnaryTemporal,
     Variable,
@@ -226,8 +228,12 @@ def _typed(expression: Expression, scope: NameScope, expected: Type | None) -> t
             subject, type_ = _typed(left, scope, None)
             members = tuple(_comparable(option, type_, scope) for option in options)
             return Membership(subject, members, span), BOOLEAN
-        case Arithmetic(operator, left, right):
+        case Arithmetic("+" | "-" as operator, left, right):
             return _arithmetic(operator, left, right, span, scope)
+        case Arithmetic() | RecordConstant() | Selection():
+            raise ExpressionError(
+                "products, real numbers, texts and items stand only in expressions over records", span
+            )
         case UnaryTemporal(operator) | BinaryTemporal(operator):
             raise temporal_refused(operator, span)
 

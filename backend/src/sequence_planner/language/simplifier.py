@@ -18,6 +18,8 @@ from sequence_planner.language.syntax import (
     Name,
     Not,
     Or,
+    RecordConstant,
+    Selection,
     Span,
     UnaryTemporal,
     Variable,
@@ -29,7 +31,7 @@ def simplify(expression: Expression) -> Expression:
     finite trace, also over unknown values.
     """
     match expression:
-        case Variable() | Constant() | Name():
+        case Variable() | Constant() | Name() | RecordConstant() | Selection():
             return expression
         case And(operands) | Or(operands):
             return _several(expression, tuple(map(simplify, operands)))

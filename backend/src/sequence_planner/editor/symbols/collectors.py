@@ -18,9 +18,8 @@ from sequence_planner.editor.symbols.index import (
     value_of,
     variable_of,
 )
-from sequence_planner.language.lexer import Token
+from sequence_planner.language.lexer import RECORDS, Token, tokens
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
-from sequence_planner.language.records.expressions import words
 from sequence_planner.language.syntax import (
     NOWHERE,
     Assignment,
@@ -463,7 +462,7 @@ def read_calculation(names: Names, written: object, where: Where, expected: str 
     if not isinstance(written, SourceText):
         return False
     try:
-        found = list(_operands(words(written)))
+        found = list(_operands(tokens(written, RECORDS)))
     except ExpressionError:
         names.naming.gathered.unread.append((where, written))
         return False
@@ -473,18 +472,18 @@ def read_calculation(names: Names, written: object, where: Where, expected: str 
     return False
 
 
-def _operands(tokens: list[Token]) -> Iterator[_Operand]:
+def _operands(words: list[Token]) -> Iterator[_Operand]:
     """The words of a text, those of a path together. What stands in brackets behind it is read by itself."""
     at = 0
-    while tokens[at].kind != "end":
-        token = tokens[at]
+    while words[at].kind != "end":
+        token = words[at]
         end = at
         if token.kind == "name":
-            while tokens[end + 1].kind == "." and tokens[end + 2].kind == "name":
+            while words[end + 1].kind == "." and words[end + 2].kind == "name":
                 end += 2
         kind = "path" if token.kind == "name" else token.kind
-        text = "".join(each.text for each in tokens[at : end + 1])
-        yield _Operand(kind, text, token.start, tokens[end].end)
+        text = "".join(each.text for each in words[at : end + 1])
+        yield _Operand(kind, text, token.start, words[end].end)
         at = end + 1
 
 
