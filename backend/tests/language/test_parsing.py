@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.language.lexer import MOST_DIGITS, tokens
-from sequence_planner.language.parser import MOST_NESTED, MOST_SUMS, can_go_on, parse, parse_assignment
+from sequence_planner.language.parser import MOST_NESTED, MOST_OPERATIONS, can_go_on, parse, parse_assignment
 from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.language.syntax import (
     Arithmetic,
@@ -147,7 +147,8 @@ def test_deep_nesting_is_refused_and_not_a_crash(opening: str) -> None:
 
 def test_long_expressions_are_no_deep_ones() -> None:
     assert len(children(parse(" and ".join(f"v{number}" for number in range(5000))))) == 5000
-    assert_refused(parse, "n" + " + 1" * MOST_SUMS + " ‹+› 1 == 2", f"more than {MOST_SUMS} sums in one expression")
+    message = f"more than {MOST_OPERATIONS} operations in one expression"
+    assert_refused(parse, "n" + " + 1" * MOST_OPERATIONS + " ‹+› 1 == 2", message)
 
 
 def test_unusual_characters_anywhere_are_refused_with_their_place() -> None:

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, MODE
 from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.parser import parse
+from sequence_planner.language.parser import parse, parse_calculation
+from sequence_planner.language.printer import print_expression
 from sequence_planner.language.records.expressions import read_calculation, read_condition
 from sequence_planner.language.records.field_paths import REAL, TEXT
 from sequence_planner.language.records.record import FieldType, RecordType
@@ -160,6 +161,13 @@ def test_what_is_unknown_stays_unknown(text: str, expected: object) -> None:
         ("count[0]", "1: `count` is 0..255, and no list"),
         ("joints[0.5]", "8: the place in a list is an integer, found a real number"),
         ("door[count]", "1: `door` is no list"),
+        ("points[count].y", "14: `.y` cannot be read of an item at a computed place"),
+        ("levels[count, 0]", "15: an item of a list has one place, found 2"),
+        ("levels" + "[0]" * 31, "97: nested more than 30 deep: split it up"),
+        ("force AND door", "7: `AND` has no meaning here; write and"),
+        ("mode is 'x'", "6: `is` has no meaning here; write =="),
+        ("mode === 'x'", "6: `===` has no meaning here; write =="),
+        ("1.5.x", "4: expected an operator or the end, found `.`"),
         ("force and door", "1: expected a truth value, found a real number"),
         ("door + 1", "1: `+` needs numbers, found a truth value"),
         ("1 * mode", "5: `*` needs numbers, found a text"),
@@ -182,7 +190,7 @@ def test_what_is_unknown_stays_unknown(text: str, expected: object) -> None:
         ("", "1: expected a field, a value or `(`, found the end of the text"),
         ("(force", "7: expected an operator or `)`, found the end of the text"),
         ("mode in 'x'", "9: expected `{`, as in `pose in {home, above}`, found `'x'`"),
-        ("force if door", "7: expected an operator or the end, found `if`"),
+        ("force if door", "7: expected an operator or the end, found `if`; `if` stands once, at the end of an action"),
         ("points[0] == 1", "14: cannot compare a geometry_msgs/msg/Point with the integer 1"),
         ("123456789012345678901 > 1", "1: a number has at most 20 digits, found 21"),
         ("1e999", "1: the number is too large"),
@@ -240,6 +248,23 @@ def _predicate(choose: Choices, depth: int = 3) -> str:
         return choose.pick(["p", "q", "n > 1", "n == m + 1", "s == manual", "s in {automatic}", "m - n <= 2", "true"])
     left, right = _predicate(choose, depth - 1), _predicate(choose, depth - 1)
     return choose.pick([f"({left}) {word} ({right})" for word in ("and", "or", "implies", "==")] + [f"not ({left})"])
+
+
+@given(made_by(lambda choose: choose.pick([_arithmetic, _predicate])(choose)))
+@examples(300)
+def test_printing_gives_the_same_tree_again(text: str) -> None:
+    tree = parse_calculation(text)
+    assert parse_calculation(print_expression(tree)) == tree
+
+
+@pytest.mark.parametrize(
+    "text", ["-a * (b - 0.5) / c", "a - b * c", "m == 'it''s'", "points[0].y > grid[1][n + 1]", "1e-07"]
+)
+def test_what_only_records_have_is_printed_and_is_no_guard(text: str) -> None:
+    tree = parse_calculation(text)
+    assert parse_calculation(print_expression(tree)) == tree
+    with pytest.raises(ExpressionError, match="stand only in expressions over records"):
+        resolve_predicate(tree, NameScope({name: IntegerRange(0, 3) for name in "abcmn"}))
 
 
 SMALL: Mapping[str, Type] = {"p": BOOLEAN, "q": BOOLEAN, "n": IntegerRange(0, 3), "m": IntegerRange(0, 3), "s": MODE}

@@ -13,9 +13,6 @@ KEYWORDS = frozenset({"and", "or", "not", "implies", "in", "if", "true", "false"
 PREFIX_LETTERS = frozenset("XNFG")
 INFIX_LETTERS = frozenset("URW")
 
-# Solvers and tables compute with 32 bits; sums of these fit.
-MOST_DIGITS = 6
-
 # What people write out of habit from other languages, and what it is here.
 _HABITS = {
     "&": "and",
@@ -30,8 +27,6 @@ _HABITS = {
     "->": "implies",
     "→": "implies",
     "⇒": "implies",
-    "=>": "implies (or >= between integers)",
-    "=": "== (or := in an action)",
     "===": "==",
     "<=>": "==",
     "<>": "!=",
@@ -41,6 +36,11 @@ _HABITS = {
     "≤": "<=",
     "≥": ">=",
     "∈": "in {...}",
+}
+_HABITS_IN_GUARDS = {
+    "=>": "implies (or >= between integers)",
+    "=": "== (or := in an action)",
+    ":": ":= in an action, == in a condition",
     "+=": "n := n + 1",
     "-=": "n := n - 1",
     "++": "n := n + 1",
@@ -49,16 +49,45 @@ _HABITS = {
     "'": "values without quotes",
 }
 COLON = "`:` has no meaning here; write := in an action, == in a condition"  # but behind a quantifier
-_LONG_HABITS = "|".join(re.escape(habit) for habit in sorted(_HABITS, key=len, reverse=True) if len(habit) > 1)
-_WORD = re.compile(
-    r"\s*(?:(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<number>[0-9]+)|"
-    rf"(?P<habit>{_LONG_HABITS})|(?P<sign>:=|==|!=|<=|>=|[-+<>.,:()\[\]{{}}])|(?P<bad>\S))"
-)
-_NAME, _NUMBER, _SIGN = (_WORD.groupindex[group] for group in ("name", "number", "sign"))
+_HABITS_OVER_RECORDS = {
+    "=>": "implies (or >= between numbers)",
+    "=": "==",
+    ":=": "==",
+    "**": "a product",
+    '"': "texts in single quotes",
+}
+
+
+class Dialect:
+    """The words that there are where an expression stands; the grammar is the same everywhere."""
+
+    def __init__(self, number: str, most_digits: int, sign: str, text: str, habits: dict[str, str]) -> None:
+        self.most_digits = most_digits
+        self._habits = _HABITS | habits
+        long = "|".join(re.escape(habit) for habit in sorted(self._habits, key=len, reverse=True) if len(habit) > 1)
+        self.words = re.compile(
+            rf"\s*(?:(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<number>{number})|"
+            rf"(?P<habit>{long})|(?P<sign>{sign}|==|!=|<=|>=|[-+<>.,:()\[\]{{}}])|(?P<other>{text}\S))"
+        )
+
+    def meaningless(self, word: str) -> str:
+        """Say what to write instead of a word that is none here."""
+        if word == "'" and "'" not in self._habits:
+            return "a text ends with a single quote"
+        return f"`{word}` has no meaning here" + (f"; write {self._habits[word]}" if word in self._habits else "")
+
+
+# Conditions, actions and formulas. Solvers and tables compute with 32 bits; sums of integers of these digits fit.
+MOST_DIGITS = 6
+GUARDS = Dialect("[0-9]+", MOST_DIGITS, ":=", "", _HABITS_IN_GUARDS)
+
+# Expressions over records: also real numbers, texts, products; integers have up to 64 bits.
+RECORDS = Dialect(r"[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?", 20, "[*/]", "'(?:[^']|'')*'|", _HABITS_OVER_RECORDS)
+_NAME, _NUMBER, _HABIT, _SIGN = (GUARDS.words.groupindex[group] for group in ("name", "number", "habit", "sign"))
 
 
 class Token(NamedTuple):
-    """A word and its place. `kind` is `name`, `number`, `end`, or the keyword or sign itself."""
+    """A word and its place. `kind` is `name`, `number`, `text`, `end`, or the keyword or sign itself."""
 
     kind: str
     text: str
@@ -74,10 +103,10 @@ class Token(NamedTuple):
         return "the end of the text" if self.kind == "end" else f"`{self.text}`"
 
 
-def tokens(text: str) -> list[Token]:
+def tokens(text: str, dialect: Dialect = GUARDS) -> list[Token]:
     """Split `text` into words, ended by one of kind `end`. Raises `ExpressionError` at a character that is none."""
     found: list[Token] = []
-    for match in _WORD.finditer(text):
+    for match in dialect.words.finditer(text):
         group = match.lastindex or 0
         word = match[group]
         start, end = match.span(group)
@@ -87,11 +116,13 @@ def tokens(text: str) -> list[Token]:
                 kind = "name"
         elif group == _NUMBER:
             kind = "number"
-            if len(word) > MOST_DIGITS:
-                raise ExpressionError(f"a number has at most {MOST_DIGITS} digits, found {len(word)}", Span(start, end))
+            if len(word) > dialect.most_digits:
+                message = f"a number has at most {dialect.most_digits} digits, found {len(word)}"
+                raise ExpressionError(message, Span(start, end))
         elif group != _SIGN:
-            hint = f"; write {_HABITS[word]}" if word in _HABITS else ""
-            raise ExpressionError(f"`{word}` has no meaning here{hint}", Span(start, end))
+            if group == _HABIT or len(word) == 1:
+                raise ExpressionError(dialect.meaningless(word), Span(start, end))
+            kind = "text"
         found.append(Token(kind, word, start, end))
     end = len(text.rstrip())
     found.append(Token("end", "", end, end))

@@ -6,12 +6,15 @@ conjunction = until {"and" until}
 until = negation [("U" | "R" | "W") until]                                       (in formulas only)
 negation = ("not" | "X" | "N" | "F" | "G") negation | relation                   (the letters in formulas only)
 relation = sum [("==" | "!=" | "<" | "<=" | ">" | ">=") sum | "in" ("{" sum {"," sum} "}" | word)]
-sum = atom {("+" | "-") atom}
+sum = product {("+" | "-") product}
+product = atom {("*" | "/") atom}                                                (`*` and `/` over records only)
 atom = "true" | "false" | ["-"] number | name | quantified | "(" expression ")"
-quantified = quantifier bound ":" expression
+     | path | text | "-" atom                                                    (over records only, `path` for `name`)
+quantified = quantifier bound ":" expression                                     (not over records)
 quantifier = "all" | "any" | "none" | "count" | "exactly" number | "at" ("least" | "most") number
 bound = binder {"," binder} ["where" expression];  binder = word {"," word} "in" (word | "{" word {"," word} "}")
 name = part {"." part};  part = word ["(" name {"," name} ")" | "[" name {"," name} "]"]
+path = word {"." word | "[" sum {"," sum} "]"}
 assignment = ["all" bound ":"] name ":=" expression ["if" expression]
 
 The words of quantifiers are names everywhere else, such as in `task == none`: a quantifier is followed by a word or a
@@ -25,11 +28,22 @@ or `F(x).done`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import NoReturn, TypeVar
 
-from sequence_planner.language.lexer import COLON, INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS, Token, tokens
+from sequence_planner.language.lexer import (
+    COLON,
+    GUARDS,
+    INFIX_LETTERS,
+    KEYWORDS,
+    PREFIX_LETTERS,
+    RECORDS,
+    Dialect,
+    Token,
+    tokens,
+)
 from sequence_planner.language.syntax import (
     And,
     Arithmetic,
@@ -48,6 +62,8 @@ from sequence_planner.language.syntax import (
     Not,
     Or,
     Quantified,
+    RecordConstant,
+    Selection,
     Span,
     UnaryTemporal,
     first_temporal,
@@ -57,10 +73,12 @@ T = TypeVar("T")
 
 # What reads a tree descends into it: deeper ones than any person writes would exhaust the stack.
 MOST_NESTED = 30
-MOST_SUMS = 50
+MOST_OPERATIONS = 50
 
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
-_OPERAND_BEGINS = frozenset({"name", "number", "(", "not", "true", "false"})
+_PRODUCTS = frozenset({"*", "/"})
+_OPERATORS = _PRODUCTS | {"+", "-"}
+_OPERAND_BEGINS = frozenset({"name", "number", "text", "(", "not", "true", "false"})
 
 QUANTIFIERS = frozenset({"all", "any", "none", "count"})
 
@@ -103,6 +121,11 @@ def parse_assignment(text: str) -> Assignment:
 def parse_formula(text: str) -> Expression:
     """The tree of one formula of LTL over finite traces, such as `not bad U good`. Raises `ExpressionError`."""
     return _Parser(text, temporal=True).whole(_Parser.expression)
+
+
+def parse_calculation(text: str) -> Expression:
+    """The tree of one expression over records, such as `joints[0] * 2 > force`. Raises `ExpressionError`."""
+    return _Parser(str(text), dialect=RECORDS).whole(_Parser.expression)
 
 
 def can_go_on(text: str, action: bool = False, temporal: bool = False) -> bool:
@@ -154,13 +177,14 @@ def temporal_refused(operator: str, span: Span) -> ExpressionError:
 
 
 class _Parser:
-    def __init__(self, text: str, temporal: bool = False) -> None:
-        self._tokens = tokens(text)
+    def __init__(self, text: str, temporal: bool = False, dialect: Dialect = GUARDS) -> None:
+        self._tokens = tokens(text, dialect)
         self._next = 0
         self._token = self._tokens[0]
         self._temporal = temporal
+        self._over_records = dialect is RECORDS
         self._depth = 0
-        self._sums = 0
+        self._operations = 0
 
     def whole(self, rule: Callable[[_Parser], T]) -> T:
         result = rule(self)
@@ -184,10 +208,13 @@ class _Parser:
     def _since(self, start: int) -> Span:
         return Span(start, self._tokens[self._next - 1].end)
 
-    def _nested(self, rule: Callable[[], Expression], opening: Token) -> Expression:
+    def _deeper(self, opening: Token) -> None:
         self._depth += 1
         if self._depth > MOST_NESTED:
             raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", opening.span)
+
+    def _nested(self, rule: Callable[[], Expression], opening: Token) -> Expression:
+        self._deeper(opening)
         result = rule()
         self._depth -= 1
         return result
@@ -229,7 +256,7 @@ class _Parser:
             hint = "; `if` stands once, at the end of an action"
         elif token.kind == "not" and after[0].kind == "in":
             hint = "; write not x in {...}"
-        elif token.kind == "." and last.kind == "number":
+        elif token.kind == "." and last.kind == "number" and not self._over_records:
             hint = "; numbers are integers"
         elif self._temporal and last.text in INFIX_LETTERS and self._tokens[self._next - 2].text in PREFIX_LETTERS:
             name = self._tokens[self._next - 2].text
@@ -325,46 +352,60 @@ class _Parser:
             return Comparison(kind, left, self.sum(), self._since(start))
         if kind == "in":
             self._advance()
-            if self._token.kind == "name":
+            if self._token.kind == "name" and not self._over_records:
                 return NamedMembership(left, self._word("a named set"), self._since(start))
             return Membership(left, self._options(), self._since(start))
         return left
 
     def _options(self) -> tuple[Expression, ...]:
         self._expect("{", "`{`, as in `pose in {home, above}`")
-        options = [self.sum()]
+        options = self._sums()
+        self._expect("}", "`,` or `}`")
+        return options
+
+    def _sums(self) -> tuple[Expression, ...]:
+        sums = [self.sum()]
         while self._token.kind == ",":
             self._advance()
-            options.append(self.sum())
-        self._expect("}", "`,` or `}`")
-        return tuple(options)
+            sums.append(self.sum())
+        return tuple(sums)
 
     def sum(self) -> Expression:
         start = self._token.start
         left = self.atom()
-        while self._token.kind in ("+", "-"):
+        return self._arithmetic(left, start, _OPERATORS) if self._token.kind in _OPERATORS else left
+
+    def _arithmetic(self, left: Expression, start: int, operators: frozenset[str]) -> Expression:
+        """`left` with the operations behind it, of which products bind tighter."""
+        while self._token.kind in operators:
             operator = self._advance()
-            self._sums += 1
-            if self._sums > MOST_SUMS:
-                raise ExpressionError(f"more than {MOST_SUMS} sums in one expression", operator.span)
-            left = Arithmetic(operator.text, left, self.atom(), self._since(start))
+            self._operations += 1
+            if self._operations > MOST_OPERATIONS:
+                raise ExpressionError(f"more than {MOST_OPERATIONS} operations in one expression", operator.span)
+            begin = self._token.start
+            right = self.atom()
+            if operator.kind not in _PRODUCTS:
+                right = self._arithmetic(right, begin, _PRODUCTS)
+            left = Arithmetic(operator.text, left, right, self._since(start))
         return left
 
     def atom(self) -> Expression:
         token = self._token
         kind = token.kind
         if kind == "name":
+            if self._over_records:
+                return self.path()
             return self.quantified() if self._begins_quantifier() else self.name()
         if kind in ("true", "false"):
             return Constant(kind == "true", self._advance().span)
         if kind == "number":
-            return Constant(int(token.text), self._advance().span)
+            return self._number(1, token.start)
         if kind == "-":
-            self._advance()
-            number = self._expect("number", "a number")
-            return Constant(-int(number.text), self._since(token.start))
+            return self._negative(self._advance())
+        if kind == "text":
+            return RecordConstant(self._advance().text[1:-1].replace("''", "'"), token.span)
         if kind != "(":
-            self._unfit("a name, a value or `(`")
+            self._unfit("a field, a value or `(`" if self._over_records else "a name, a value or `(`")
         inner = self._nested(self.expression, self._advance())
         if self._token.kind != ")":
             self._no_operator("`)`")
@@ -427,6 +468,36 @@ class _Parser:
     def _word(self, what: str) -> Name:
         token = self._expect("name", what)
         return Name((Component(token.text),), token.span)
+
+    def _negative(self, sign: Token) -> Expression:
+        if not self._over_records or self._token.kind == "number":
+            return self._number(-1, sign.start)
+        nothing = Constant(0, Span(sign.start, sign.start))
+        return Arithmetic("-", nothing, self._nested(self.atom, sign), self._since(sign.start))
+
+    def _number(self, sign: int, start: int) -> Expression:
+        token = self._expect("number", "a number")
+        if token.text.isdigit():
+            return Constant(sign * int(token.text), self._since(start))
+        real = sign * float(token.text)
+        if not math.isfinite(real):
+            raise ExpressionError("the number is too large", token.span)
+        return RecordConstant(real, self._since(start))
+
+    def path(self) -> Expression:
+        start, depth = self._token.start, self._depth
+        path: Expression = Name((Component(self._advance().text),), self._since(start))
+        while self._token.kind in (".", "["):
+            self._deeper(opening := self._advance())
+            at: str | tuple[Expression, ...]
+            if opening.kind == ".":
+                at = self._expect("name", "the name of a field").text
+            else:
+                at = self._sums()
+                self._expect("]", "`]`")
+            path = Selection(path, at, self._since(start))
+        self._depth = depth
+        return path
 
     def name(self) -> Name:
         start = self._token.start

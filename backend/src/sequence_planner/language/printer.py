@@ -19,13 +19,15 @@ from sequence_planner.language.syntax import (
     Not,
     Or,
     Quantified,
+    RecordConstant,
+    Selection,
     UnaryTemporal,
     Variable,
 )
 from sequence_planner.language.types import Value
 
 # Strength of binding; an operand weaker than its place needs brackets.
-_IMPLIES, _OR, _AND, _UNTIL, _NOT, _RELATION, _SUM, _ATOM = range(8)
+_IMPLIES, _OR, _AND, _UNTIL, _NOT, _RELATION, _SUM, _PRODUCT, _ATOM = range(9)
 
 
 def print_value(value: Value) -> str:
@@ -84,7 +86,13 @@ def _text(expression: Expression) -> tuple[str, int]:
             chosen = "" if where is None else f" where {print_expression(where)}"
             return f"{quantifier}{counted} {_bound(binders)}{chosen}: {print_expression(body)}", _IMPLIES
         case Arithmetic(operator, left, right):
-            return f"{_print(left, _SUM)} {operator} {_print(right, _ATOM)}", _SUM
+            strength = _SUM if operator in ("+", "-") else _PRODUCT
+            return f"{_print(left, strength)} {operator} {_print(right, strength + 1)}", strength
+        case RecordConstant(value):
+            return repr(value) if isinstance(value, float) else "'" + value.replace("'", "''") + "'", _ATOM
+        case Selection(whole, at):
+            inside = f".{at}" if isinstance(at, str) else f"[{', '.join(_print(each, _SUM) for each in at)}]"
+            return f"{_print(whole, _ATOM)}{inside}", _ATOM
         case UnaryTemporal(operator, operand):
             return f"{operator} {_under_letter(operand)}", _NOT
         case BinaryTemporal(operator, left, right):

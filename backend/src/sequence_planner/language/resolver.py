@@ -57,6 +57,8 @@ from sequence_planner.language.syntax import (
     Not,
     Or,
     Quantified,
+    RecordConstant,
+    Selection,
     Span,
     UnaryTemporal,
     Variable,
@@ -315,8 +317,12 @@ def _typed(expression: Expression, scope: NameScope, expected: Type | None) -> t
             if expression.quantifier == "count":
                 return _count(expression, scope)
             return _quantified(expression, scope, resolve_predicate), BOOLEAN
-        case Arithmetic(operator, left, right):
+        case Arithmetic("+" | "-" as operator, left, right):
             return _arithmetic(operator, left, right, span, scope)
+        case Arithmetic() | RecordConstant() | Selection():
+            raise ExpressionError(
+                "products, real numbers, texts and items stand only in expressions over records", span
+            )
         case UnaryTemporal(operator) | BinaryTemporal(operator):
             raise temporal_refused(operator, span)
 
@@ -618,7 +624,7 @@ def _index_cases(argument: str | Name, span: Span, scope: NameScope) -> tuple[tu
             return None
     value, type_ = _typed(argument, scope, None)
     if not isinstance(type_, EnumerationType):
-        raise ExpressionError(f"an index is a value of an enumeration, found {_describe(type_)}", argument.span)
+        return None
     cases = by_value(value, span)
     return tuple(
         (condition, str(each.value)) for condition, each in alternatives_of(cases) if isinstance(each, Constant)

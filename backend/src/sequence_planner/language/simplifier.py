@@ -20,6 +20,8 @@ from sequence_planner.language.syntax import (
     Not,
     Or,
     Quantified,
+    RecordConstant,
+    Selection,
     Span,
     UnaryTemporal,
     Variable,
@@ -31,7 +33,7 @@ def simplify(expression: Expression) -> Expression:
     finite trace, also over unknown values.
     """
     match expression:
-        case Variable() | Constant() | Name() | NamedMembership() | Quantified():  # the last three are not resolved
+        case Variable() | Constant() | Name() | NamedMembership() | Quantified() | RecordConstant() | Selection():
             return expression
         case And(operands) | Or(operands):
             return _several(expression, tuple(map(simplify, operands)))

@@ -161,11 +161,28 @@ class Quantified(Immutable):
 
 
 class Arithmetic(Immutable):
-    """`+` and `-` on integers."""
+    """`+` and `-` on integers; over records `+ - * /` on numbers."""
 
     operator: str
     left: Expression
     right: Expression
+    span: Span = uncompared(default=NOWHERE)
+
+
+class RecordConstant(Immutable):
+    """A real number, or a text in single quotes; over records only."""
+
+    value: float | str
+    span: Span = uncompared(default=NOWHERE)
+
+
+class Selection(Immutable):
+    """`whole.x` or `whole[0]`: what stands behind a name is a name itself, or what is in its brackets; over records
+    only, where the fields decide whether all of it is one name.
+    """
+
+    whole: Expression
+    at: str | tuple[Expression, ...]
     span: Span = uncompared(default=NOWHERE)
 
 
@@ -199,6 +216,8 @@ Expression = (
     | NamedMembership
     | Quantified
     | Arithmetic
+    | RecordConstant
+    | Selection
     | UnaryTemporal
     | BinaryTemporal
 )
@@ -237,7 +256,9 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (left, right)
         case Membership(left, options):
             return (left, *options)
-        case Constant() | Name() | Variable():
+        case Selection(whole, at):
+            return (whole,) if isinstance(at, str) else (whole, *at)
+        case Constant() | RecordConstant() | Name() | Variable():
             return ()
 
 

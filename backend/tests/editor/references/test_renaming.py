@@ -151,6 +151,20 @@ def test_what_a_python_function_is_called_with(messages: MessageRegistry) -> Non
             renamed({**CELL, "resources/robot.yaml": robot}, parse_part(part), "new", messages)
 
 
+def test_items_of_a_list_at_a_computed_place(messages: MessageRegistry) -> None:
+    text = (
+        "topics:\n  /s:\n    type: cell_msgs/msg/RobotState\n    direction: in\n    pipeline:\n"
+        "      - expression: {axis: place - 1}\n      - expression: {pose: 'switches[axis]'}\n"
+        "measured: {axis: {type: 0..1}, pose: {type: pose}}\n"
+    )
+    files = {"resources/robot.yaml": text, "station.yaml": "enumerations: {pose: [home, out]}\n"}
+    assert renamed(files, parse_part("variable:robot.axis"), "joint", messages) == {
+        "resources/robot.yaml": text.replace("axis", "joint")
+    }
+    with pytest.raises(EditError, match="the topic /s says the values of `pose` by their names"):
+        renamed(files, parse_part("value:pose.home"), "rest", messages)
+
+
 def test_messages_whose_definitions_are_not_known() -> None:
     files = {
         "resources/robot.yaml": "topics: {/r: {type: r_msgs/msg/R, direction: in}}\nmeasured: {pose: {type: bool}}\n"
@@ -164,6 +178,9 @@ def test_what_cannot_be_read_and_may_hold_the_name() -> None:
     with pytest.raises(EditError, match=r"operations\.yaml:8:15: this cannot be read, and may name the variable"):
         renamed(broken, parse_part("variable:robot.pose"), "new")
     assert renamed(broken, parse_part("ability:robot.move"), "new")
+    broken = {**CELL, "resources/robot.yaml": CELL["resources/robot.yaml"].replace("not busy", "not busy and")}
+    with pytest.raises(EditError, match="this cannot be read, and may name the variable"):
+        renamed(broken, parse_part("variable:robot.pose"), "new")
     broken = {**CELL, "specifications.yaml": "one: {exclusive: [robot.move\n"}
     with pytest.raises(EditError, match="this file cannot be read, and may name the ability"):
         renamed(broken, parse_part("ability:robot.move"), "new")

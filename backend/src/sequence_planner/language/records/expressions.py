@@ -1,27 +1,42 @@
-"""Typed expressions over pipeline records: tokens, parser and evaluation."""
+"""Typed expressions over pipeline records: the meaning of their tree, and evaluation."""
 
 from __future__ import annotations
 
 import math
 import operator
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from sequence_planner.language.evaluator import RELATIONS
-from sequence_planner.language.lexer import KEYWORDS, Token
+from sequence_planner.language.parser import parse_calculation
 from sequence_planner.language.records.field_paths import (
     REAL,
     FieldPath,
     NoFieldError,
+    common_type,
     find_field,
     is_numeric,
     is_textual,
     shown,
 )
 from sequence_planner.language.records.record import FieldType, ListType, RealType, RecordType, TextType
-from sequence_planner.language.syntax import ExpressionError, Span
+from sequence_planner.language.syntax import (
+    And,
+    Arithmetic,
+    Comparison,
+    Constant,
+    Expression,
+    ExpressionError,
+    Implies,
+    Membership,
+    Name,
+    Not,
+    Or,
+    RecordConstant,
+    Selection,
+    Span,
+)
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange
 
 # Parts of an expression over records: each has a type, and says its value for a record.
@@ -99,10 +114,8 @@ def field_term(path: FieldPath, type_: FieldType, span: Span) -> Term:
     return Term(type_, reader, span, path.text if is_word else None)
 
 
-def item_term(items: Term, index: Term, span: Span, text: str) -> Term:
+def item_term(items: Term, type_: FieldType, index: Term, span: Span, text: str) -> Term:
     """An item of a list at a computed place; beyond its end it is unknown, and that is a trouble."""
-    if not isinstance(items.type, ListType):
-        raise ExpressionError(f"only lists have items, and this is {describe(items.type)}", items.span)
     if not isinstance(index.type, IntegerRange):
         raise ExpressionError(f"the place in a list is an integer, found {describe(index.type)}", index.span)
 
@@ -116,7 +129,7 @@ def item_term(items: Term, index: Term, span: Span, text: str) -> Term:
             return None
         return value
 
-    return Term(items.type.element, read, span)
+    return Term(type_, read, span)
 
 
 def arithmetic(sign: str, left: Term, right: Term, span: Span, text: str) -> Term:
@@ -238,111 +251,7 @@ def junction(parts: list[Term], decisive: bool, span: Span) -> Term:
     return Term(BOOLEAN, read, span)
 
 
-# Words of expressions over records.
-
-MOST_DIGITS = 20  # of a number without a decimal point: those of 64 bits
-
-# What people write out of habit from other languages, and what it is here.
-_HABITS = {
-    "&&": "and",
-    "||": "or",
-    "!": "not",
-    "->": "implies",
-    "=>": "implies (or >= between numbers)",
-    "=": "==",
-    ":=": "==",
-    "<>": "!=",
-    "≠": "!=",
-    "=<": "<=",
-    "≤": "<=",
-    "≥": ">=",
-    "**": "a product",
-    '"': "texts in single quotes",
-}
-_LONG_HABITS = "|".join(re.escape(habit) for habit in sorted(_HABITS, key=len, reverse=True) if len(habit) > 1)
-_WORD = re.compile(
-    r"\s*(?:(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?)|"
-    rf"(?P<text>'(?:[^']|'')*')|(?P<habit>{_LONG_HABITS})|"
-    r"(?P<sign>==|!=|<=|>=|[-+*/<>.,()\[\]{}])|(?P<bad>\S))"
-)
-
-
-def words(text: str) -> list[Token]:
-    """Split `text` into words, ended by one of kind `end`. Raises `ExpressionError` at a character that is none."""
-    found: list[Token] = []
-    for match in _WORD.finditer(text):
-        group, word = match.lastgroup or "", match[match.lastindex or 0]
-        start, end = match.span(group)
-        if group == "number" and len(word) > MOST_DIGITS:
-            raise ExpressionError(f"a number has at most {MOST_DIGITS} digits, found {len(word)}", Span(start, end))
-        if group in ("habit", "bad"):
-            raise ExpressionError(_meaningless(word), Span(start, end))
-        kind = word if group == "sign" or word in KEYWORDS else group
-        found.append(Token(kind, word, start, end))
-    end = len(text.rstrip())
-    found.append(Token("end", "", end, end))
-    return found
-
-
-def _meaningless(word: str) -> str:
-    if word == "'":
-        return "a text ends with a single quote"
-    return f"`{word}` has no meaning here" + (f"; write {_HABITS[word]}" if word in _HABITS else "")
-
-
-class Words:
-    """The words of a text, read from left to right."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-        self._words = words(text)
-        self._next = 0
-
-    @property
-    def word(self) -> Token:
-        """The word at hand."""
-        return self._words[self._next]
-
-    def advance(self) -> Token:
-        """The word at hand, and go on to the next."""
-        self._next += 1
-        return self._words[self._next - 1]
-
-    def expect(self, kind: str, what: str) -> Token:
-        """The word at hand, which must be of `kind`; else an error says that `what` was expected."""
-        if self.word.kind != kind:
-            raise ExpressionError(f"expected {what}, found {self.word}", self.word.span)
-        return self.advance()
-
-    def since(self, start: int) -> Span:
-        """From `start` to the end of the last word read."""
-        return Span(start, self._words[self._next - 1].end)
-
-    def written(self, span: Span) -> str:
-        """The text of a span."""
-        return self._text[span.start : span.end]
-
-    def bracket(self) -> str:
-        """Return what stands between the bracket at hand and its end; nothing when it is not closed."""
-        found: list[str] = []
-        for word in self._words[self._next + 1 :]:
-            if word.kind == "]":
-                return " ".join(found).replace(" ,", ",")
-            found.append(word.text)
-        return ""
-
-    def skip_bracket(self) -> None:
-        """Go on behind the end of the bracket at hand."""
-        while self.advance().kind != "]":
-            pass
-
-
-# Recursive descent from a text to a typed expression over records. The grammar is that of the package.
-
-MOST_NESTED = 30  # reading a record descends as deep as the expression is
-MOST_OPERATIONS = 50
-
-_RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+# From the tree of an expression to its meaning for records.
 
 
 @dataclass(frozen=True)
@@ -366,8 +275,9 @@ class Calculation:
 
 def read_calculation(text: str, fields: RecordType) -> Calculation:
     """The meaning of `text` for records with `fields`. Raises `ExpressionError` with the place within the text."""
+    text = str(text)
     reader = _Reader(text, fields)
-    term = reader.whole()
+    term = known(reader.read(parse_calculation(text)))
     return Calculation(term.type, reader.reads, tuple(reader.constants), term)
 
 
@@ -378,151 +288,58 @@ def read_condition(text: str, fields: RecordType) -> Calculation:
     return calculation
 
 
-class _Reader(Words):
+class _Reader:
+    """Reads a tree for records with `fields`."""
+
     def __init__(self, text: str, fields: RecordType) -> None:
-        super().__init__(str(text))
+        self._text = text
         self._fields = fields
-        self._depth = self._operations = 0
         self.reads: dict[str, tuple[FieldPath, FieldType]] = {}
         self.constants: list[object] = []
 
-    def _nested(self, rule: Callable[[], Operand], opening: Token) -> Operand:
-        self._depth += 1
-        if self._depth > MOST_NESTED:
-            raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", opening.span)
-        result = rule()
-        self._depth -= 1
-        return result
+    def read(self, part: Expression) -> Operand:
+        """The term that a part of the tree is, or a word that may be a value beside another part."""
+        span = part.span
+        match part:
+            case Name() | Selection() if (path := self._field(part)) is not None:
+                return self._value_of(path, span)
+            case Selection(whole, at):
+                return self._item(whole, at, span)
+            case Constant(value):
+                return self._constant(value, span)
+            case RecordConstant(value):
+                return self._constant(value, span)
+            case Not(operand):
+                return negation(self._truth(operand), span)
+            case And(operands):
+                return junction(list(map(self._truth, operands)), False, span)
+            case Or(operands):
+                return junction(list(map(self._truth, operands)), True, span)
+            case Implies(left, right):
+                return junction([negation(self._truth(left), left.span), self._truth(right)], True, span)
+            case Comparison(sign, left, right):
+                return comparison(sign, self.read(left), self.read(right), span)
+            case Membership(left, options):
+                subject = known(self.read(left))
+                return junction([comparison("==", subject, self.read(each), span) for each in options], True, span)
+            case Arithmetic(sign, left, right):
+                return arithmetic(sign, known(self.read(left)), known(self.read(right)), span, self._written(span))
+        raise ExpressionError(f"`{self._written(span)}` does not stand over records", span)
 
-    def whole(self) -> Term:
-        """The term of the whole text."""
-        term = known(self.expression())
-        if self.word.kind != "end":
-            chained = self.word.kind in _RELATIONS or self.word.kind == "in"
-            hint = "; comparisons do not chain: join two with and" if chained else ""
-            raise ExpressionError(f"expected an operator or the end, found {self.word}{hint}", self.word.span)
-        return term
+    def _truth(self, part: Expression) -> Term:
+        return truth(self.read(part))
 
-    def expression(self) -> Operand:
-        """`implies` groups to the right."""
-        start = self.word.start
-        left = self._junction("or", True, lambda: self._junction("and", False, self.negation))
-        if self.word.kind != "implies":
-            return left
-        premise = negation(truth(left), left.span)
-        conclusion = truth(self._nested(self.expression, self.advance()))
-        return junction([premise, conclusion], True, self.since(start))
+    def _written(self, span: Span) -> str:
+        return self._text[span.start : span.end]
 
-    def _junction(self, kind: str, decisive: bool, part: Callable[[], Operand]) -> Operand:
-        start = self.word.start
-        first = part()
-        if self.word.kind != kind:
-            return first
-        parts = [truth(first)]
-        while self.word.kind == kind:
-            self.advance()
-            parts.append(truth(part()))
-        return junction(parts, decisive, self.since(start))
-
-    def negation(self) -> Operand:
-        """`not` before a negation or relation."""
-        if self.word.kind != "not":
-            return self.relation()
-        word = self.advance()
-        operand = truth(self._nested(self.negation, word))
-        return negation(operand, self.since(word.start))
-
-    def relation(self) -> Operand:
-        """A sum, or a comparison of two."""
-        start = self.word.start
-        left = self.sum()
-        kind = self.word.kind
-        if kind in _RELATIONS:
-            self.advance()
-            right = self.sum()
-            return comparison(kind, left, right, self.since(start))
-        if kind == "in":
-            self.advance()
-            return self._membership(left, start)
-        return left
-
-    def _membership(self, left: Operand, start: int) -> Term:
-        self.expect("{", "`{`, as in `pose in {home, above}`")
-        subject, options = known(left), [self.sum()]
-        while self.word.kind == ",":
-            self.advance()
-            options.append(self.sum())
-        self.expect("}", "`,` or `}`")
-        span = self.since(start)
-        return junction([comparison("==", subject, option, span) for option in options], True, span)
-
-    def sum(self) -> Operand:
-        """Products added and subtracted, from left to right."""
-        return self._operation(("+", "-"), lambda: self._operation(("*", "/"), self.factor))
-
-    def _operation(self, signs: tuple[str, ...], part: Callable[[], Operand]) -> Operand:
-        start = self.word.start
-        left = part()
-        while self.word.kind in signs:
-            sign = self.advance()
-            self._operations += 1
-            if self._operations > MOST_OPERATIONS:
-                raise ExpressionError(f"more than {MOST_OPERATIONS} operations in one expression", sign.span)
-            right = known(part())
-            span = self.since(start)
-            left = arithmetic(sign.text, known(left), right, span, self.written(span))
-        return left
-
-    def factor(self) -> Operand:
-        """A value, a field, an item of a list, or an expression in brackets."""
-        token = self.word
-        match token.kind:
-            case "name":
-                return self._items(self._field())
-            case "number" | "text" | "true" | "false":
-                return self._literal(self.advance())
-            case "-":
-                return self._negative(self.advance())
-            case "(":
-                inner_operand = self._nested(self.expression, self.advance())
-                self.expect(")", "an operator or `)`")
-                return inner_operand
-        raise ExpressionError(f"expected a field, a value or `(`, found {token}", token.span)
-
-    def _negative(self, sign: Token) -> Term:
-        if self.word.kind == "number":
-            return self._number(self.advance(), -1, sign.start)
-        operand = known(self._nested(self.factor, sign))
-        span = self.since(sign.start)
-        return arithmetic("-", constant(0, IntegerRange(0, 0), sign.span), operand, span, self.written(span))
-
-    def _literal(self, token: Token) -> Term:
-        if token.kind == "number":
-            return self._number(token, 1, token.start)
-        if token.kind == "text":
-            text = token.text[1:-1].replace("''", "'")
-            return self._constant(text, EnumerationType((text,)), token.span)
-        return self._constant(token.kind == "true", BOOLEAN, token.span)
-
-    def _number(self, token: Token, sign: int, start: int) -> Term:
-        if token.text.isdigit():
-            integer = sign * int(token.text)
-            return self._constant(integer, IntegerRange(integer, integer), self.since(start))
-        real = sign * float(token.text)
-        if not math.isfinite(real):
-            raise ExpressionError("the number is too large", token.span)
-        return self._constant(real, REAL, self.since(start))
-
-    def _constant(self, value: object, type_: FieldType, span: Span) -> Term:
-        self.constants.append(value)
+    def _constant(self, value: float | str, span: Span) -> Term:
+        if span.start < span.end:  # the zero before a minus is not written
+            self.constants.append(value)
+        type_ = common_type([value])
+        assert type_ is not None
         return constant(value, type_, span)
 
-    def _field(self) -> Operand:
-        start = self.word.start
-        text = self.advance().text
-        while (longer := self._longer(text)) is not None:
-            text = longer
-        span = self.since(start)
+    def _value_of(self, text: str, span: Span) -> Operand:
         try:
             path, type_ = find_field(self._fields, text)
         except NoFieldError as error:
@@ -530,29 +347,26 @@ class _Reader(Words):
         self.reads[text] = (path, type_)
         return field_term(path, type_, span)
 
-    def _longer(self, text: str) -> str | None:
-        """`text` with the part of the path that follows, if one does: `.x`, `[0]` or `[left]`."""
-        kind = self.word.kind
-        if kind == ".":
-            self.advance()
-            return f"{text}.{self.expect('name', 'the name of a field').text}"
-        if kind != "[":
+    def _field(self, part: Expression) -> str | None:
+        """The path of a field; None for what stands at a computed place, such as `joints[axis]`."""
+        if not isinstance(part, Selection):
+            return str(part)
+        whole = self._field(part.whole)
+        if whole is None:
             return None
-        inside = self.bracket()
-        longer = f"{text}[{inside}]"
-        if longer not in self._fields and not inside.isdigit():
-            return None
-        self.skip_bracket()
-        return longer
+        if isinstance(part.at, str):
+            return f"{whole}.{part.at}"
+        inside = ", ".join(self._written(each.span) for each in part.at)
+        return path if (path := f"{whole}[{inside}]") in self._fields or inside.isdigit() else None
 
-    def _items(self, operand: Operand) -> Operand:
-        """Items at computed places: `joints[axis]`."""
-        while self.word.kind == "[":
-            items = known(operand)
-            if not isinstance(items.type, ListType):
-                raise ExpressionError(f"`{self.written(items.span)}` is no list", items.span)
-            index = known(self._nested(self.sum, self.advance()))
-            self.expect("]", "`]`")
-            span = self.since(items.span.start)
-            operand = item_term(items, index, span, self.written(items.span))
-        return operand
+    def _item(self, whole: Expression, at: str | tuple[Expression, ...], span: Span) -> Term:
+        items = known(self.read(whole))
+        text = self._written(items.span)
+        if isinstance(at, str):
+            message = f"`.{at}` cannot be read of an item at a computed place"
+            raise ExpressionError(message, Span(items.span.end, span.end))
+        if not isinstance(items.type, ListType):
+            raise ExpressionError(f"`{text}` is no list", items.span)
+        if len(at) > 1:
+            raise ExpressionError(f"an item of a list has one place, found {len(at)}", at[1].span)
+        return item_term(items, items.type.element, known(self.read(at[0])), span, text)
