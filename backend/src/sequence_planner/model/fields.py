@@ -14,10 +14,9 @@ from sequence_planner.model.source import SourceText
 class DocumentPart(BaseModel):
     """Base of all parts: nothing beside what is declared."""
 
-    # Parts are read as parts of whole documents; a validator of its own is built only for what is read by itself.
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True, defer_build=True
-    )
+    # Parts are read as parts of whole documents; a validator of its own is built only for what is read by itself. What
+    # stands beneath a field is read when a schema is made (`json_schema`): here it would take time at each start.
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True, defer_build=True)
 
 
 T = TypeVar("T")
