@@ -17,11 +17,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Final
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
+from sequence_planner.core.data_models import DataModel, complained
 from sequence_planner.core.logging import FORMAT, LogFormat
 from sequence_planner.core.secrets import CLIENT_SECRET
-from sequence_planner.core.validation_messages import complained
 from sequence_planner.db.location import read_url
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.process.memory_limit import LEAST, MOST
@@ -46,10 +46,9 @@ _SECRET: Final = "database"
 _OPTION: Final = re.compile(r"(?<![\w-])--([a-z]+(?:-[a-z]+)*)(?![\w-])")
 
 
-class Configuration(BaseModel):
+class Configuration(DataModel):
     """All that there is to say, by the names of the options with `_` for `-`. What is null is not said."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     model: Path | None = None
     host: str | None = None
     port: Annotated[int, Field(ge=1, le=65535)] | None = None

@@ -7,7 +7,7 @@ from typing import Annotated
 import pytest
 from pydantic import AfterValidator, BaseModel, Field, ValidationError
 
-from sequence_planner.core.validation_messages import complained, in_a_line
+from sequence_planner.core.data_models import complained, in_a_line
 
 
 def _even(value: int) -> int:

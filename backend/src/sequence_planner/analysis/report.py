@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from pydantic import BaseModel, ConfigDict
-
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.language.printer import print_expression
 
 if TYPE_CHECKING:
@@ -20,10 +19,8 @@ if TYPE_CHECKING:
 Value = bool | int | str
 
 
-class Document(BaseModel):
+class Document(DataModel):
     """Base of all parts: immutable, and nothing beside what is declared."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class GuardDocument(Document):

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import Connection, Row, insert, select, update
 
 from sequence_planner.auth.roles import IdentityRefused, Scope
 from sequence_planner.auth.tables import KEYS
 from sequence_planner.auth.tokens import clean_name, hash_of, is_id, new_id, new_token, record, same, short
 from sequence_planner.core.actor import Actor, ActorKind
+from sequence_planner.core.data_models import DataModel
 
 DAY = 86400.0  # seconds
 LONGEST_LIFE = 730  # days
@@ -25,13 +25,12 @@ NOTED_EVERY = 60.0  # seconds; how exactly it is known when a key was last used
 _SECRET = re.compile(r"sp_([0-9a-f]{16})_[0-9A-Za-z_-]{43}")
 
 
-class Key(BaseModel):
+class Key(DataModel):
     """A key, without its secret. It works until it `expires`, or was `revoked`; `created_by` is a name.
 
     `former_until` is when the secret before the last rotation works no more; null without a rotation.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     id: str
     name: str
     scopes: tuple[Scope, ...]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import ColumnElement, Connection, Row, Select, delete, func, insert, select, update
 
 from sequence_planner.auth.roles import IdentityRefused
@@ -16,6 +15,7 @@ from sequence_planner.auth.tables import PEOPLE, SESSIONS
 from sequence_planner.auth.tokens import hash_of, new_id, new_token, record, short
 from sequence_planner.auth.users import DEMONSTRATOR, Person, get_user
 from sequence_planner.core.actor import Actor, ActorKind
+from sequence_planner.core.data_models import DataModel
 
 LONGEST = 12 * 3600.0  # seconds from the sign-in
 LONGEST_IDLE = 3600.0  # seconds without a request or an open stream
@@ -24,10 +24,9 @@ MOST_OF_A_PERSON = 20  # a further one ends the one that was not seen for longes
 MOST_DEMONSTRATIONS = 200
 
 
-class SignedIn(BaseModel):
+class SignedIn(DataModel):
     """A live session: `session` is its id, which anybody may know; `expires` is when it ends at the latest."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     session: str
     person: Person
     kind: ActorKind

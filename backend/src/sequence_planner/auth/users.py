@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
 from sequence_planner.auth.rate_limit import clear_attempts
@@ -19,9 +18,10 @@ from sequence_planner.auth.tokens import (
     short,
 )
 from sequence_planner.core.actor import SYSTEM, Actor
+from sequence_planner.core.data_models import DataModel
 
 
-class Person(BaseModel):
+class Person(DataModel):
     """Somebody who may sign in, unless `disabled`.
 
     `revision` counts the changes, so that two who change a person at once notice. With `must_change_password` somebody
@@ -29,7 +29,6 @@ class Person(BaseModel):
     that vouches for the person, who then has no password here; null where there is one.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     id: str
     name: str
     role: Role

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import ColumnElement, Connection, Row, Select, delete, insert, select, update
 
 from sequence_planner.auth import rate_limit
@@ -24,6 +23,7 @@ from sequence_planner.auth.tokens import (
     short,
 )
 from sequence_planner.core.actor import Actor, ActorKind
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.database import Database
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
@@ -49,13 +49,12 @@ class WatchState(StrEnum):
     EXPIRED = "expired"
 
 
-class Watch(BaseModel):
+class Watch(DataModel):
     """A watch, as of the time that it was asked for. It works while it is active, until it `expires`.
 
     `paired_by` is the name of who let it in; `address` and `agent` are those it was paired from.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     id: str
     name: str
     resource: str
@@ -159,10 +158,9 @@ OFFER_LIFE = 120.0  # seconds
 MOST_OFFERS = 10  # at once
 
 
-class PairingOffer(BaseModel):
+class PairingOffer(DataModel):
     """A place for a watch of this name at a resource, for whoever knows the code before it `expires`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     id: str
     name: str
     resource: str

@@ -19,10 +19,11 @@ from tempfile import TemporaryDirectory
 from typing import Final, Literal, TypeAlias
 from urllib.parse import quote
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 from sqlalchemy import Connection, inspect, text
 
 from sequence_planner.backup.errors import BackupError, Trouble, no_space, trouble_of
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.core.secrets import PASSWORD, environment
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
@@ -39,10 +40,9 @@ MODEL: Final = "model"
 _CHUNK: Final = 1024 * 1024  # bytes
 
 
-class ChainEnd(BaseModel):
+class ChainEnd(DataModel):
     """The last record of a chain."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     number: int
     hash: str
 
@@ -55,18 +55,16 @@ class How(StrEnum):
     COMMAND_LINE = "command-line"
 
 
-class Maker(BaseModel):
+class Maker(DataModel):
     """The one who has made a backup; `name` is what people read."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     how: How
     name: str
 
 
-class Manifest(BaseModel):
+class Manifest(DataModel):
     """The contents of a backup. `time` is in seconds since the epoch; `files` has the SHA-256 of all other members."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
     format: Literal[1]
     program: str
     time: float

@@ -22,7 +22,7 @@ def renamed(old: str | None, new: str) -> None:
 class LazyCommand(TyperCommand):
     """A command in `place`, such as `check:check`: `line` is what the help of the program says of it. One that `forks`
     has a fork server, which imports what a station needs while the command itself is imported. One that has another
-    name `now` is not shown, and says so.
+    name `now` is not shown, and says so. `imports` is a module that the command will import when it is carried out.
 
     What is in that place is the function of a command, or a `Typer` with commands of its own.
     """
@@ -36,17 +36,21 @@ class LazyCommand(TyperCommand):
         hidden: bool = False,
         forks: bool = False,
         now: str | None = None,
+        imports: str | None = None,
     ) -> None:
         super().__init__(name, short_help=line, hidden=hidden or now is not None)
         self.now = now
         self._place = place
         self._forks = forks
+        self._imports = imports
 
     def command(self) -> Any:  # noqa: ANN401 (a class that typer does not show)
         """The command itself."""
         module, _, attribute = self._place.partition(":")
         with collection_put_off():  # all that is imported stays
             found = getattr(import_module(f"sequence_planner.cli.{module}"), attribute)
+            if self._imports is not None:
+                import_module(f"sequence_planner.{self._imports}")
             gc.freeze()
         if not isinstance(found, typer.Typer):
             alone = typer.Typer(add_completion=False)

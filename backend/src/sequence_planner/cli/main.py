@@ -110,7 +110,7 @@ COMMANDS = (
     ),
     LazyCommand("people", "station.users:users", now="users"),
     LazyCommand("controller", "station.controller:controller", hidden=True),
-    LazyCommand("server", "station.run:server", hidden=True),
+    LazyCommand("server", "station.run:server", hidden=True, imports="server.server"),
 )
 
 

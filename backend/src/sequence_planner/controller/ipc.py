@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Annotated, Literal, TypeVar
 
 import structlog
-from pydantic import BaseModel, ConfigDict, Field, JsonValue, TypeAdapter, ValidationError
+from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 
 from sequence_planner.controller.commands.command import Command, CommandRefused, TextPlace
 from sequence_planner.controller.commands.queries import Ask, Query
@@ -22,6 +22,7 @@ from sequence_planner.controller.commands.registry import AnyCommand
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.process.unix_socket import listen_on
 
 # Lines from a byte stream, of bounded length.
@@ -61,10 +62,8 @@ LONGEST_COMMAND = 2 * 1024 * 1024  # bytes in a line from the server: that of th
 LONGEST_VIEW = 16 * 1024 * 1024  # bytes in a line from the controller
 
 
-class LinkMessage(BaseModel):
+class LinkMessage(DataModel):
     """Base of all messages: immutable, and nothing beside what is declared."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class Refusal(LinkMessage):

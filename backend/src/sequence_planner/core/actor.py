@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from sequence_planner.core.data_models import DataModel
 
 
 class ActorKind(StrEnum):
@@ -17,14 +19,13 @@ class ActorKind(StrEnum):
     SYSTEM = "system"  # the program itself, as when a demonstration starts production
 
 
-class Actor(BaseModel):
+class Actor(DataModel):
     """Who does something, and from where.
 
     `id` never changes and is never used again; `name` is what people read. `session` is the public id of a person's
     session, which is what holds control; `address` is that of the other end of the connection.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     kind: ActorKind
     id: str = Field(min_length=1, max_length=200)
     name: str = Field(min_length=1, max_length=200)

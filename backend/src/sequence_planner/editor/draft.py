@@ -31,6 +31,7 @@ from sqlalchemy import (
 )
 
 from sequence_planner.core.actor import SYSTEM, Actor
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.editor.merging import MergeConflictError, merged
 from sequence_planner.model.files import Files, check_path, check_size, check_text
@@ -64,10 +65,9 @@ class PartChangedError(EditError):
         return PartChangedError, (self.file, self.path, str(self))
 
 
-class EditBase(BaseModel):
+class EditBase(DataModel):
     """Base of all edits; `file` is a path below the model's folder, `path` that of an entry in it."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     file: FilePath
 
 

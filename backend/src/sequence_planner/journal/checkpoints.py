@@ -9,9 +9,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 from sqlalchemy import Connection, RowMapping, func, insert, select
 
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import PostgresqlServer, SqliteFile, state_folder
@@ -99,13 +100,11 @@ def _make(file: Path) -> None:
 
 _PAGE: Final = 1000  # checkpoints read at once
 _ALL: Final = select(RUN_CHECKPOINTS.c.content, RUN_CHECKPOINTS.c.public_key, RUN_CHECKPOINTS.c.signature)
-_STRICT: Final = ConfigDict(frozen=True, extra="forbid")
 
 
-class Place(BaseModel):
+class Place(DataModel):
     """The number and the hash of a record."""
 
-    model_config = _STRICT
     number: int = Field(ge=0)
     hash: str
 
@@ -114,20 +113,18 @@ class Place(BaseModel):
         return ChainPosition(self.number, self.hash)
 
 
-class Statement(BaseModel):
+class Statement(DataModel):
     """The statement that is signed: at this time both chains ended so. `checkpoint` counts from 1."""
 
-    model_config = _STRICT
     checkpoint: int
     time: float
     audit: Place
     run: Place
 
 
-class Checkpoint(BaseModel):
+class Checkpoint(DataModel):
     """A signed statement: `content` is its text, as it was signed with Ed25519; key and signature are in hex."""
 
-    model_config = _STRICT
     content: str
     public_key: str = Field(pattern="^[0-9a-f]{64}$")
     signature: str = Field(pattern="^[0-9a-f]{128}$")

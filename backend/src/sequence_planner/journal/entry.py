@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from pydantic import BaseModel, ConfigDict, Field, JsonValue
+from pydantic import Field, JsonValue
 
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.data_models import DataModel
 
 LONGEST_REASON, LONGEST_SUBJECT = 500, 400  # characters
 
@@ -20,7 +21,7 @@ class Outcome(StrEnum):
     FAILED = "failed"
 
 
-class Entry(BaseModel):
+class Entry(DataModel):
     """Somebody does something.
 
     `action` is what, as in `set-mode` or `person-created`; `subject` is on what, as in `task 4-1` or `person Eva`;
@@ -28,7 +29,6 @@ class Entry(BaseModel):
     the record of which this one tells the outcome.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     actor: Actor
     action: str = Field(min_length=1, max_length=100)
     subject: str = Field(default="", max_length=LONGEST_SUBJECT)
@@ -38,14 +38,13 @@ class Entry(BaseModel):
     about: int | None = None
 
 
-class Record(BaseModel):
+class Record(DataModel):
     """An entry as it was written: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
 
     `hash` is the SHA-256 over the hash of the record before and this one's contents, so that a record that was changed
     or taken out shows.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     number: int
     time: float
     entry: Entry

@@ -15,9 +15,10 @@ from datetime import datetime
 from pathlib import Path
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 from sqlalchemy import Connection
 
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.core.fsync import sync_folder
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.location import PostgresqlServer, SqliteFile, state_folder
@@ -43,20 +44,18 @@ _HEAD: Final = 8  # hexadecimal digits of the checksum
 _ASIDE: Final = re.compile(r"-aside-\d{8}T\d{6}$")
 
 
-class Word(BaseModel):
+class Word(DataModel):
     """A command that was carried out at `time`: the run had `number` records then, and the station was in `mode`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     number: int
     mode: str
     time: float
     entry: Entry
 
 
-class Life(BaseModel):
+class Life(DataModel):
     """The life of a controller, told by the record with which it begins. `epoch` is that of the lease that it held."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     turn: int
     number: int
     hash: str

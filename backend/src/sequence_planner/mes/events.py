@@ -10,10 +10,11 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict, JsonValue
+from pydantic import JsonValue
 from sqlalchemy import Connection, func, insert, select
 
 from sequence_planner.core.clock import iso
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.mes.order import OrderRefused
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_EVENTS
 
@@ -45,13 +46,12 @@ class EventKind(StrEnum):
     ALARM_ENDED = "alarm-ended"
 
 
-class JobEvent(BaseModel):
+class JobEvent(DataModel):
     """An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch, `time_at` in ISO 8601.
 
     Those of the station itself have no `job_order`.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     number: int
     time: float
     time_at = iso("time")

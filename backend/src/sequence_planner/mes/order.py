@@ -8,10 +8,10 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import RowMapping
 
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.data_models import DataModel
 
 # The states of a job order and the commands that each allows, after OPC 10031-4.
 #
@@ -108,14 +108,13 @@ def allowed(state: OrderState, *, handed_over: bool, wish: Wish | None) -> tuple
 LONGEST_TITLE = 200  # characters
 
 
-class OrderContent(BaseModel):
+class OrderContent(DataModel):
     """What is ordered: a job of a work master.
 
     How late it is weighs by its `priority`; nothing begins before `earliest`. Times are in seconds
     since the epoch.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     work_master: str
     description: str = ""
     priority: int = 0

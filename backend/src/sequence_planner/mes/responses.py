@@ -8,16 +8,14 @@ the run's journal that says so, so that responses can be held against the journa
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Final
 
-from pydantic import BaseModel, ConfigDict, JsonValue
+from pydantic import Field, JsonValue
 from sqlalchemy import Connection, Select, func, insert, select, update
 
 from sequence_planner.controller.views.part import Value
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_RESPONSES
-
-_FORM: Final = ConfigDict(frozen=True, extra="forbid")
 
 
 class JobOutcome(StrEnum):
@@ -28,24 +26,22 @@ class JobOutcome(StrEnum):
     ABORTED = "aborted"
 
 
-class OperationMade(BaseModel):
+class OperationMade(DataModel):
     """An operation of the order. Where its goal held already it was never `started`; without `ended` it is not done.
 
     `actuals` are the values that its goal depends on, as they were when it was completed.
     """
 
-    model_config = _FORM
     operation: str
     started: float | None = None
     ended: float | None = None
     record: int | None = None  # that tells of its end, or else of its start
-    actuals: dict[str, Value | None] = {}
+    actuals: dict[str, Value | None] = Field(default={})
 
 
-class AbilityMade(BaseModel):
+class AbilityMade(DataModel):
     """A start of an ability for the order. Without `ended` it still ran when the order was over."""
 
-    model_config = _FORM
     ability: str
     started: float
     ended: float | None = None
@@ -53,23 +49,21 @@ class AbilityMade(BaseModel):
     called_off: bool = False  # it was ended by its cancel actions
 
 
-class Deviation(BaseModel):
+class Deviation(DataModel):
     """What did not go as planned while the order was worked: `kind` is that of the record.
 
     Several orders that were worked at the same time tell of the same one.
     """
 
-    model_config = _FORM
     time: float
     record: int
     kind: str
     content: dict[str, JsonValue]
 
 
-class CorrectionMade(BaseModel):
+class CorrectionMade(DataModel):
     """Values that a person has set while the order was worked, who and why."""
 
-    model_config = _FORM
     time: float
     record: int
     values: dict[str, Value]
@@ -77,13 +71,12 @@ class CorrectionMade(BaseModel):
     why: str
 
 
-class JobResponse(BaseModel):
+class JobResponse(DataModel):
     """The account of what was made of an order. Times are in seconds since the epoch.
 
     Of very many `deviations` the first are told, and how many were left out.
     """
 
-    model_config = _FORM
     job_order: str
     work_master: str
     description: str

@@ -7,12 +7,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from pydantic import BaseModel, ConfigDict, JsonValue
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from sqlalchemy import Connection, delete, insert, select
 
 from sequence_planner.controller.commands.audit import JOB_WAITS, PACKML
 from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.controller.views.part import Value
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.database import Database
 from sequence_planner.execution.events import (
     Corrected,
@@ -171,14 +172,13 @@ class StationEvent:
     content: Mapping[str, JsonValue]
 
 
-class StationStanding(BaseModel):
+class StationStanding(DataModel):
     """The standing of the station, as far as it was told: alarms that last by their keys, and what jobs wait for."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     mode: str | None = None
     packml: str | None = None
-    alarms: dict[str, dict[str, JsonValue]] = {}
-    waits: dict[str, list[str]] = {}
+    alarms: dict[str, dict[str, JsonValue]] = Field(default={})
+    waits: dict[str, list[str]] = Field(default={})
 
     def after(self, record: RunRecord) -> tuple[StationStanding, list[StationEvent]]:
         """Return how it stands after a record, and what is to be told."""

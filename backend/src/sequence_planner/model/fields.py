@@ -6,18 +6,17 @@ from __future__ import annotations
 
 from typing import Annotated, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.model.source import SourceText
 
 
-class DocumentPart(BaseModel):
+class DocumentPart(DataModel):
     """Base of all parts: nothing beside what is declared."""
 
-    # Parts are read as parts of whole documents; a validator of its own is built only for what is read by itself.
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True, defer_build=True
-    )
+    # What stands beneath a field is read when a schema is made (`json_schema`): here it would take time at each start.
+    model_config = ConfigDict(allow_inf_nan=False, strict=True)
 
 
 T = TypeVar("T")

@@ -29,7 +29,7 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.efa_document import PlainDocument
-from sequence_planner.model.stages.base import StageDeclaration
+from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.stages.registry import StageDocument
 
 # The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
@@ -72,7 +72,7 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", schema["cls"].__name__.removesuffix("Document"))
         made["title"] = words.capitalize()
-        if issubclass(schema["cls"], StageDeclaration):
+        if issubclass(schema["cls"], DocumentPart):
             for name, text in _written_beneath(schema["cls"]):
                 made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
         if schema["cls"] is StageDocument:

@@ -11,7 +11,7 @@ from typing import Any, cast
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from sequence_planner.core.validation_messages import complained
+from sequence_planner.core.data_models import complained
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.source import Finding

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from sequence_planner.controller.commands.command import Command, GivenValue, GivenValues, Revision, Route, Why
 from sequence_planner.controller.commands.recovery import CorrectEstimates, DecideOutputs
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.data_models import DataModel
 
 LONGEST_FORCE = 3600.0  # seconds
 _REFUSALS = (404, 409, 422, 504)
@@ -67,10 +68,8 @@ class ReleaseForce(Command):
 ApprovedCommand = CorrectEstimates | DecideOutputs | ForceVariable
 
 
-class ActPart(BaseModel):
+class ActPart(DataModel):
     """Base of what can be asked for."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class CorrectionAct(ActPart):

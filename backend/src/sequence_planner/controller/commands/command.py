@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StrictStr
 
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.journal.entry import LONGEST_REASON
 
 LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
@@ -50,14 +51,13 @@ class Route:
     names: Mapping[str, str] = field(default_factory=dict)
 
 
-class Command(BaseModel):
+class Command(DataModel):
     """`actor` is who asks, `reason` why, in that person's words. `subject` is on what it acts, for the record.
 
     What moves devices is for the one session in control. `harmless` is what only ever stops them: it is carried out
     even where it cannot be recorded. `kind` is what the record calls it, for good.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     routes: ClassVar[tuple[Route, ...]] = ()
     for_control: ClassVar[bool] = False
     about: ClassVar[str] = ""  # its subject, with its fields in braces

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool
+from pydantic import ConfigDict, Field, StrictBool
 
 from sequence_planner.controller.commands.command import Command, Route, Why
 from sequence_planner.core.actor import ActorKind
+from sequence_planner.core.data_models import DataModel
 
 JobId = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,64}$")]
 Operation = Annotated[str, Field(min_length=1, max_length=400)]
@@ -33,10 +34,9 @@ class TakeJob(OrderCommand):
     work_master: str = Field(min_length=1, max_length=400)
 
 
-class JobOperation(BaseModel):
+class JobOperation(DataModel):
     """An operation of a job."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     job: JobId
     operation: Operation
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Generic, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from sequence_planner.controller.commands.command import GivenValues
 from sequence_planner.controller.views.details import (
@@ -21,6 +21,7 @@ from sequence_planner.controller.views.metrics import FiguresView
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView, RecordView
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
+from sequence_planner.core.data_models import DataModel
 
 TOLD_WITHIN = 1.0  # seconds: who watches over the station asks again soon
 ADVISED_WITHIN = 15.0  # seconds: the adviser answers one after the other
@@ -29,10 +30,9 @@ LONGEST_PREDICATE = 4000  # characters
 Answer = TypeVar("Answer", bound=View)
 
 
-class Query(BaseModel, Generic[Answer]):
+class Query(DataModel, Generic[Answer]):
     """Base of all asks. `patience` is null where who asks waits as long as for a command."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     patience: ClassVar[float | None] = None
     kind: str
 

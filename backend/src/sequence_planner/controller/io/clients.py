@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from sequence_planner.automaton.automaton import State
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.requests import RequestMaker
-from sequence_planner.core.validation_messages import in_a_line
+from sequence_planner.core.data_models import in_a_line
 from sequence_planner.pipelines.graph import (
     STATUS_FIELD,
     STATUS_TYPE,

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict
+from sequence_planner.core.data_models import DataModel
 
 Value = bool | int | str
 
 
-class View(BaseModel):
+class View(DataModel):
     """Base of all parts of a document: immutable, and nothing beside what is declared."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class ControlView(View):

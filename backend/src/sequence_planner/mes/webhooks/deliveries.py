@@ -9,12 +9,12 @@ import random
 from dataclasses import dataclass
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import ColumnElement, Connection, delete, func, insert, select, update
 
 from sequence_planner.auth.tokens import record
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.clock import iso
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
 from sequence_planner.mes.webhooks import endpoints as webhooks
@@ -54,10 +54,9 @@ class Due:
     attempts: int
 
 
-class DeadLetter(BaseModel):
+class DeadLetter(DataModel):
     """An event that was given up, after so many attempts, and what went wrong in the last."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     event: JobEvent
     attempts: int
     died: float

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from urllib.parse import urlsplit
 
-from pydantic import BaseModel, ConfigDict
 from sqlalchemy import Connection, RowMapping, delete, func, insert, select
 
 from sequence_planner.auth.tokens import clean_name, is_id, new_id, record
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.clock import iso
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.location import PostgresqlServer, SqliteFile
 from sequence_planner.journal import checkpoints as signing_key
@@ -138,7 +138,7 @@ def signed(secret: str, id: str, now: float, body: bytes) -> dict[str, str]:
 MOST_WEBHOOKS: Final = 20
 
 
-class Webhook(BaseModel):
+class Webhook(DataModel):
     """Who is told, without the secret.
 
     Events up to `position` were delivered, or wait, or were given up; `waiting` and `given_up` say how many. `failures`
@@ -146,7 +146,6 @@ class Webhook(BaseModel):
     wrong in the last of them. No `kinds` are all kinds of events.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
     id: str
     title: str
     url: str

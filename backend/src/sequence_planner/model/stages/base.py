@@ -24,8 +24,6 @@ from typing import (
     runtime_checkable,
 )
 
-from pydantic import ConfigDict
-
 from sequence_planner.language.records.field_paths import FieldPath, NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, Record, RecordType
 from sequence_planner.language.types import Place
@@ -85,9 +83,6 @@ class StageDeclaration(DocumentPart, ABC):
     is written is what its only field holds. `direction` is that of the topics it is for, if it is not for all, and
     `instead` the kind for the others.
     """
-
-    # What stands beneath a field is read when a schema is made (`json_schema`): here it would take time at each start.
-    model_config = ConfigDict(use_attribute_docstrings=False)
 
     kind: ClassVar[str]
     about: ClassVar[str]

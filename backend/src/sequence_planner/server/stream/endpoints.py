@@ -20,8 +20,8 @@ from sequence_planner.auth.watches import Watch
 from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.station import StationView, TaskView
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.data_models import complained
 from sequence_planner.core.storage_error import StorageError
-from sequence_planner.core.validation_messages import complained
 from sequence_planner.server.api.watches import WatchSnapshot
 from sequence_planner.server.auth import Access, allowed, watch_only
 from sequence_planner.server.errors import ProblemFound

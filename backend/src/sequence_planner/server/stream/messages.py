@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias, get_origin, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, Field, RootModel
+from pydantic import Field, RootModel
 from typing_extensions import TypedDict
 
 from sequence_planner.controller.views.details import NetworkView
@@ -14,6 +14,7 @@ from sequence_planner.controller.views.pipelines import FlowsView
 from sequence_planner.controller.views.station import (
     StationView,
 )
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.editor.schemas.draft import WorkshopView
 
 # What is said on the WebSocket `/api/v1/stream`. The page's TypeScript types are generated from these models.
@@ -44,10 +45,8 @@ class ControllerState(StrEnum):
     LOST = "lost"
 
 
-class StreamPart(BaseModel):
+class StreamPart(DataModel):
     """Base of all messages: immutable, and nothing beside what is declared."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class Snapshot(StreamPart):

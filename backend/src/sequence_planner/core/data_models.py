@@ -1,11 +1,21 @@
-"""Messages on what pydantic has found wrong with a value, as people are told it."""
+"""Data models: what is written as JSON and read again, and messages on what pydantic has found wrong with it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+
+class DataModel(BaseModel):
+    """Base of data models: immutable, and nothing beside what is declared. The validator of one is built when it is
+    first used: a process has use for few of all that it imports. (Bodies of requests are none: FastAPI builds theirs
+    at once.)
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+
 
 # What pydantic says of these is about Python.
 _WORDS = {
