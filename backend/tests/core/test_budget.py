@@ -40,6 +40,15 @@ def test_a_part_has_no_more_work_than_the_whole() -> None:
     assert part.spent
 
 
+def test_a_part_of_work_is_as_much_work_however_little_time_it_is_a_part_of() -> None:
+    """So that who is held up by others works as much on a part as who is not."""
+    part = Budget.seconds(LONG).working(0.1).part(0.5)
+    threading.Event().wait(0.1)
+    assert 0.03 < part.remaining <= 0.05
+    work_for(0.06)
+    assert part.spent
+
+
 def test_calling_off_ends_all_that_is_of_it() -> None:
     whole = Budget.seconds(LONG)
     parts = [whole.part(0.5), whole.working(LONG), whole.working(LONG).part(0.5)]

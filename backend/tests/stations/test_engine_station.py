@@ -15,8 +15,9 @@ from sequence_planner.language.evaluator import holds
 from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import MemberKind, diagnose
 from sequence_planner.planning.pdr.invariants import check
-from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.planner import InTurn, Planner
 from sequence_planner.planning.portfolio.engine import PlanningTask
+from sequence_planner.planning.portfolio.engines import Engines, Lane
 from sequence_planner.planning.problem import (
     Circumstances,
     Contract,
@@ -150,6 +151,50 @@ def test_what_is_an_engine_away_is_planned_from_the_empty_station(operations: tu
     assert answer.plan is not None
     assert len(answer.plan.ticks) < FAR[operations]
     assert not TIMED or time.process_time() - began < (LONGEST_FAR if len(operations) == 1 else LONGEST_WHOLE)
+
+
+class CountedClocks:
+    """Clocks that go by how often they are looked at: each look is as much work, while others work `held_up` times."""
+
+    LOOK = 1e-4  # seconds
+
+    def __init__(self, held_up: int) -> None:
+        self.looks = 0
+        self._held_up = held_up
+
+    def process_time(self) -> float:
+        """What this process has worked."""
+        self.looks += 1
+        return self.LOOK * self.looks
+
+    def monotonic(self) -> float:
+        """What has passed meanwhile."""
+        return self._held_up * self.process_time()
+
+
+@pytest.mark.parametrize("operation", ["mount_ladder_frame", *(f"tighten_bolt_pair({pair})" for pair in PAIRS[::5])])
+def test_a_planner_that_others_hold_up_finds_the_same_plan_as_long_as_there_is_time(
+    operation: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By engines that look at no clock from another thread, so that each look is counted alike each time."""
+    station, supervisor, _, _ = ready()
+    automaton, deadline = station.automaton, 60.0
+    lane = Lane("here", {Contract.FAST: ("operation by operation", "search"), Contract.MINIMAL: ("search",)})
+    request = PlanRequest(initial_state(automaton), goals_of(automaton, (operation,)), deadline, contract=Contract.FAST)
+
+    def held_up(times: int) -> tuple[PlanAnswer, int]:
+        clocks = CountedClocks(times)
+        planner = Planner(automaton, supervisor, InTurn(Engines(automaton, supervisor, lane)))
+        with monkeypatch.context() as patch:
+            patch.setattr(time, "process_time", clocks.process_time)
+            patch.setattr(time, "monotonic", clocks.monotonic)
+            return planner.answer(request), clocks.looks
+
+    (alone, looks), (busy, as_many) = held_up(1), held_up(100)
+    assert alone.verdict is Verdict.FOUND
+    assert (busy.plan, as_many) == (alone.plan, looks)
+    too_busy, _ = held_up(2000)
+    assert deadline / 2 < too_busy.seconds < 1.1 * deadline
 
 
 @pytest.mark.parametrize("operation", ["mount_ladder_frame", "tighten_bolt_pair(AtBoltPair1TCPPose)"])

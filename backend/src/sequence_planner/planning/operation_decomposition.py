@@ -130,7 +130,7 @@ def _attributed(allowed: Mapping[str, Iterable[_Fact]]) -> dict[str, list[_Fact]
 # on. What is found is a plan like any other, made short, and says nothing about others.
 
 _MOST_POSITIONS = 400  # that the search for one operation's goal may come to
-_LEAST_TRIMMING = 0.2  # seconds, or as long as finding the plan took
+_LEAST_TRIMMING = 0.2  # seconds of work, or as much as finding the plan took
 
 
 class _Work:
@@ -159,7 +159,7 @@ class OperationByOperation:
     @collection_put_off()
     def solve(self, task: PlanningTask, budget: Budget) -> Finding:
         """A plan by way of operations; nothing for goals that are near, or where no operation leads on."""
-        began = time.monotonic()
+        began = time.process_time()
         if self._work is None or self._work.task is not task:
             self._work = self._begun(task)
         work = self._work
@@ -171,12 +171,12 @@ class OperationByOperation:
             return Finding()
         finally:
             if work is not None:
-                work.seconds += time.monotonic() - began
+                work.seconds += time.process_time() - began
         self._work = None
         if work is None:
             return Finding()
-        share = max(work.seconds, _LEAST_TRIMMING) / max(budget.remaining, _LEAST_TRIMMING)
-        trimmer = Trimmer(work.space, self._interference, None, budget.part(min(share, 0.5)))
+        trimming = budget.part(0.5).working(max(work.seconds, _LEAST_TRIMMING))
+        trimmer = Trimmer(work.space, self._interference, None, trimming)
         ticks = trimmer.trimmed(work.ticks)
         if len(ticks) > task.longest:
             return Finding()

@@ -25,7 +25,7 @@ from sequence_planner.process.budget import Budget
 
 # One attempt at a task: what the engines have found so far, and whether it is worth while to wait for more.
 
-# For a shorter plan a fast one waits this share of the time it took, in seconds at least and at most.
+# For a shorter plan a fast one waits this share of the work it took, in seconds at least and at most.
 _SHARE, _LEAST_GRACE, _MOST_GRACE = 0.2, 0.002, 0.1
 _PROOF_GRACE = 0.5  # seconds, or as long as it took, for a proof, when it is known that no plan is short enough
 
@@ -45,15 +45,16 @@ class PlanningAttempt:
         self.troubles: list[str] = []
         self.heard = False  # of an engine that has not failed
         self._accepts = accepts
-        self._began = time.monotonic()
-        self._grace_ends = inf
+        self._clock = time.process_time
+        self._began = self._clock()
+        self._grace: Budget | None = None
         self._plan: Plan | None = None
         self._searched = 0
 
     @property
     def took(self) -> float:
-        """The seconds since it has begun."""
-        return time.monotonic() - self._began
+        """The seconds that this process has worked since it has begun; in a race, those that have passed."""
+        return self._clock() - self._began
 
     @property
     def plan(self) -> Plan | None:
@@ -87,13 +88,20 @@ class PlanningAttempt:
         plan = self.plan
         if self.impossible or (plan is not None and plan.minimal_ticks and plan.minimal_starts):
             return 0.0
-        grace = max(self._grace_ends - time.monotonic(), 0.0)
+        grace = inf if self._grace is None else self._grace.remaining
         return grace if plan is not None else min(grace, self.share.remaining)
 
     @property
     def _fewest(self) -> int:
         """No plan has fewer ticks than that."""
         return self._searched + 1
+
+    def race(self) -> None:
+        """Go by the time that passes from now on, as engines work in other processes."""
+        took, self._clock = self.took, time.monotonic
+        self._began = self._clock() - took
+        if self._grace is not None:
+            self._grace = Budget.seconds(self._grace.remaining)
 
     def take(self, report: EngineReport) -> None:
         """Take note of a report."""
@@ -123,13 +131,16 @@ class PlanningAttempt:
 
     def _wait(self) -> None:
         """Say how long what is known now is worth waiting to be bettered."""
-        now, took = time.monotonic(), self.took
-        if self._grace_ends != inf:
+        if self._grace is not None:
             return
         if self._plan is not None and self.task.contract is Contract.FAST:
-            self._grace_ends = now + min(max(_SHARE * took, _LEAST_GRACE), _MOST_GRACE)
+            seconds = min(max(_SHARE * self.took, _LEAST_GRACE), _MOST_GRACE)
         elif self._plan is None and self._searched >= self.task.longest:
-            self._grace_ends = now + max(_PROOF_GRACE, took)
+            seconds = max(_PROOF_GRACE, self.took)
+        else:
+            return
+        working = self._clock is time.process_time
+        self._grace = Budget(inf).seconds_of_work(seconds) if working else Budget.seconds(seconds)
 
 
 def _rank(plan: Plan) -> tuple[int, int, bool, bool]:

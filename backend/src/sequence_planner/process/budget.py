@@ -78,18 +78,25 @@ class Budget:
                 self._interrupts.remove(interrupt)
 
     def part(self, share: float) -> Budget:
-        """A share of the time that is left; calling off the whole calls off the part."""
-        return self._of_this(time.monotonic() + share * self.remaining, self._worked_until)
+        """A share of the time and of the work that is left; calling off the whole calls off the part."""
+        now, worked = time.monotonic(), time.process_time()
+        return self._of_this(
+            now + share * max(self.until - now, 0.0), worked + share * max(self._worked_until - worked, 0.0)
+        )
 
     def working(self, seconds: float) -> Budget:
         """As much of it as this process works for so many seconds, however long others hold it up."""
         return self._of_this(self.until, min(time.process_time() + seconds, self._worked_until))
 
+    def seconds_of_work(self, seconds: float) -> Budget:
+        """As `working`, and by the clock no more than some times as long."""
+        working = self.working(seconds)
+        working.until = min(time.monotonic() + _HELD_UP * seconds, self.until)
+        return working
+
     def part_of_work(self, share: float) -> Budget:
-        """A share of the time that is left, counted as `working` does; by the clock it may take some times as long."""
-        seconds = share * self.remaining
-        working = min(time.process_time() + seconds, self._worked_until)
-        return self._of_this(min(time.monotonic() + _HELD_UP * seconds, self.until), working)
+        """A share of the time that is left, counted as `seconds_of_work` does."""
+        return self.seconds_of_work(share * self.remaining)
 
     def _of_this(self, until: float, worked_until: float) -> Budget:
         part = Budget(until, worked_until)

@@ -14,7 +14,8 @@ from sequence_planner.planning.portfolio.engine import Engine, Finding, Planning
 from sequence_planner.planning.problem import Contract
 from sequence_planner.process.budget import Budget
 
-# Seconds; each further turn is twice as long, so that no engine costs another much more than its own time.
+# Seconds of this process's work, however long others hold it up; each further turn is twice as long, so that no engine
+# costs another much more than its own time.
 FIRST_TURN = 0.1
 LONG_FIRST_TURNS = {
     "first sight": 1.0,
@@ -48,7 +49,6 @@ class Lane(Immutable):
     niceness: int = 5  # ticks are not held up by planning
     first_turns: Mapping[str, float] = LONG_FIRST_TURNS  # of those whose first turn is not `FIRST_TURN`
     fast_first_turns: Mapping[str, float] = AS_USUAL  # where it is another one then
-    by_work: bool = False  # turns are seconds of the processor, however long others hold the process up
 
     def first_turn(self, engine: str, contract: Contract) -> float:
         """The seconds of its first turn."""
@@ -132,7 +132,6 @@ ALONE = Lane(
         ),
     },
     fast_first_turns={"goal by goal": 0.12, "projection": 0.05},  # what they find soon they find by then
-    by_work=True,
 )
 
 
@@ -173,10 +172,8 @@ class Engines:
             going_on: list[str] = []
             for name in waiting:
                 turn = longer * self._lane.first_turn(name, task.contract) if len(waiting) > 1 else inf
-                if self._lane.by_work and turn != inf:
-                    own = _at_most(budget, patience()).working(turn)
-                else:
-                    own = _at_most(budget, min(turn, patience()))
+                most = patience()
+                own = budget.working(turn) if turn <= most else budget.seconds_of_work(most)
                 report = self._turn(name, task, own)
                 yield report
                 if own.spent and not report.trouble:
@@ -197,8 +194,3 @@ class Engines:
         if name not in self._made:
             self._made[name] = self._factories[name](*self._model)
         return self._made[name]
-
-
-def _at_most(budget: Budget, seconds: float) -> Budget:
-    remaining = budget.remaining
-    return budget.part(min(seconds / remaining, 1.0)) if remaining else budget

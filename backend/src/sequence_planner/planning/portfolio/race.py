@@ -96,6 +96,7 @@ class Portfolio:
 
     def solve(self, attempt: PlanningAttempt, budget: Budget) -> None:
         """Have the lanes report until that answers, or is not worth waiting for any more, or the budget is spent."""
+        attempt.race()
         heard: SimpleQueue[EngineReport | _Word] = SimpleQueue()
         seconds = max(budget.remaining - LAST_WORDS, 0.9 * budget.remaining)
         asked = [self._loop.submit(self._ask(lane, attempt.task, seconds, heard.put)) for lane in self._lanes]

@@ -26,7 +26,7 @@ from sequence_planner.process.budget import Budget
 # On stations the search is the fastest by far: 0.02 s for most plans of the truck engine station.
 _ENGINES = ("search", "projection", "pdr", "goal by goal", "bmc")
 _TURN = 0.15  # seconds at most for an engine before the next has its turn; in each further round twice as many
-LANE = Lane("advice", {Contract.FAST: _ENGINES}, first_turns=dict.fromkeys(_ENGINES, _TURN), by_work=True)
+LANE = Lane("advice", {Contract.FAST: _ENGINES}, first_turns=dict.fromkeys(_ENGINES, _TURN))
 
 _PREPARING = 5.0  # seconds
 _MORE = 0.5  # of the time, for the plan that may be one here too

@@ -49,7 +49,6 @@ LANE = Lane(
     },
     first_turns={"pairs": 0.06, "sums": 0.02, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
     fast_first_turns={"search": 1.0, "bmc": 0.2},
-    by_work=True,
 )
 
 
