@@ -72,6 +72,8 @@ from sequence_planner.language.types import (
     IntegerRange,
     Type,
     contains,
+    described,
+    overlap,
 )
 
 # What is asked of the order of an enumeration.
@@ -245,14 +247,14 @@ def _written(expression: Expression, scope: NameScope, expected: Type) -> Expres
             message = f"`{print_name(expression)}` depends on the state: write one action for each case, with `if`"
             raise ExpressionError(message, expression.span)
         resolved = truth_of(resolved, expression.span)
-    fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else _overlap(found, expected)
+    fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else overlap(found, expected)
     if not fits:
         raise _expected(expected, found, expression)
     return resolved
 
 
 def _expected(expected: Type, found: Type, expression: Expression) -> ExpressionError:
-    message = f"expected {_describe(expected)}, found {_describe(found)}{_truth_value(expected, found)}"
+    message = f"expected {described(expected)}, found {described(found)}{_truth_value(expected, found)}"
     return ExpressionError(message, expression.span)
 
 
@@ -261,27 +263,6 @@ def _truth_value(expected: Type, found: Type) -> str:
     if expected != BOOLEAN or found not in (IntegerRange(0, 0), IntegerRange(1, 1)):
         return ""
     return "; write true" if found == IntegerRange(1, 1) else "; write false"
-
-
-def _overlap(one: Type, other: Type) -> bool:
-    """Return whether the two have a value in common."""
-    if isinstance(one, IntegerRange) and isinstance(other, IntegerRange):
-        return one.minimum <= other.maximum and other.minimum <= one.maximum
-    if isinstance(one, EnumerationType) and isinstance(other, EnumerationType):
-        return not set(one.values).isdisjoint(other.values)
-    return type(one) is type(other)
-
-
-def _describe(type_: Type) -> str:
-    match type_:
-        case BooleanType():
-            return "a truth value"
-        case IntegerRange(minimum, maximum):
-            return f"the integer {minimum}" if minimum == maximum else f"an integer in {type_}"
-        case EnumerationType((single,)):
-            return f"the value `{single}`"
-        case EnumerationType():
-            return f"one of {type_}"
 
 
 def _typed(expression: Expression, scope: NameScope, expected: Type | None) -> tuple[Dependent, Type]:
@@ -352,8 +333,8 @@ def _named_membership(left: Expression, domain: Name, span: Span, scope: NameSco
         subject: Dependent = Constant(str(left), left.span)
     else:
         subject, found = _typed(left, scope, None)
-        if not _overlap(found, type_):
-            raise ExpressionError(f"cannot compare {_describe(found)} with {_describe(type_)}", domain.span)
+        if not overlap(found, type_):
+            raise ExpressionError(f"cannot compare {described(found)} with {described(type_)}", domain.span)
     return _membership(subject, tuple(Constant(value, domain.span) for value in type_.values), span)
 
 
@@ -569,7 +550,7 @@ def _value_of_argument(written: Name, scope: NameScope) -> tuple[Dependent, Type
 
 
 def _unordered(written: str, type_: Type, span: Span) -> ExpressionError:
-    message = f"`{written}` is {_describe(type_)}, which has no order: declare its enumeration with `ordered: true`"
+    message = f"`{written}` is {described(type_)}, which has no order: declare its enumeration with `ordered: true`"
     return ExpressionError(message, span)
 
 
@@ -713,7 +694,7 @@ def _ordering(
     other = _comparable(second, order or type_, scope)
     if order is None:
         if not isinstance(type_, IntegerRange):
-            raise ExpressionError(f"`{operator}` compares integers, not {_describe(type_)}", span)
+            raise ExpressionError(f"`{operator}` compares integers, not {described(type_)}", span)
         return _compared(operator, *((other, subject) if swapped else (subject, other)), span)
     relation, place = RELATIONS[operator], order.values.index
 
@@ -759,9 +740,9 @@ def _comparable(expression: Expression, type_: Type, scope: NameScope) -> Depend
     """`expression` resolved beside something of `type_`, with which it must have a value in common."""
     resolved, found = _typed(expression, scope, type_)
     # A parameter counts with all its values, so that an ability means the same for each of them.
-    if not _overlap(found, type_):
+    if not overlap(found, type_):
         hint = _truth_value(type_, found)
-        raise ExpressionError(f"cannot compare {_describe(type_)} with {_describe(found)}{hint}", expression.span)
+        raise ExpressionError(f"cannot compare {described(type_)} with {described(found)}{hint}", expression.span)
     return resolved
 
 
@@ -771,7 +752,7 @@ def _arithmetic(
     parts = [_typed(side, scope, None) for side in (left, right)]
     for side, (_, type_) in zip((left, right), parts, strict=True):
         if not isinstance(type_, IntegerRange):
-            raise ExpressionError(f"`{operator}` needs integers, found {_describe(type_)}", side.span)
+            raise ExpressionError(f"`{operator}` needs integers, found {described(type_)}", side.span)
     (a, range_a), (b, range_b) = parts
     assert isinstance(range_a, IntegerRange)
     assert isinstance(range_b, IntegerRange)

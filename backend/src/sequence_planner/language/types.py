@@ -80,3 +80,25 @@ def contains(domain: Type, value: object) -> bool:
             return False
         return domain.minimum <= value <= domain.maximum
     return isinstance(value, str) and value in domain.values
+
+
+def overlap(one: Type, other: Type) -> bool:
+    """Return whether the two have a value in common."""
+    if isinstance(one, IntegerRange) and isinstance(other, IntegerRange):
+        return one.minimum <= other.maximum and other.minimum <= one.maximum
+    if isinstance(one, EnumerationType) and isinstance(other, EnumerationType):
+        return not set(one.values).isdisjoint(other.values)
+    return type(one) is type(other)
+
+
+def described(type_: Type) -> str:
+    """A type, for people."""
+    match type_:
+        case BooleanType():
+            return "a truth value"
+        case IntegerRange(minimum, maximum):
+            return f"the integer {minimum}" if minimum == maximum else f"an integer in {type_}"
+        case EnumerationType((single,)):
+            return f"the value `{single}`"
+        case EnumerationType():
+            return f"one of {type_}"

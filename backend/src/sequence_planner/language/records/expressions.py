@@ -20,7 +20,7 @@ from sequence_planner.language.records.field_paths import (
     is_textual,
     shown,
 )
-from sequence_planner.language.records.record import FieldType, ListType, RealType, RecordType, TextType
+from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
 from sequence_planner.language.syntax import (
     And,
     Arithmetic,
@@ -37,7 +37,15 @@ from sequence_planner.language.syntax import (
     Selection,
     Span,
 )
-from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange
+from sequence_planner.language.types import (
+    BOOLEAN,
+    BooleanType,
+    EnumerationType,
+    IntegerRange,
+    Type,
+    described,
+    overlap,
+)
 
 # Parts of an expression over records: each has a type, and says its value for a record.
 
@@ -79,19 +87,13 @@ Operand = Term | UnknownWord
 def describe(type_: FieldType) -> str:
     """A type, for people."""
     match type_:
-        case BooleanType():
-            return "a truth value"
-        case IntegerRange(minimum, maximum):
-            return f"the integer {minimum}" if minimum == maximum else f"an integer in {type_}"
-        case EnumerationType((single,)):
-            return f"the value `{single}`"
-        case EnumerationType():
-            return f"one of {type_}"
         case RealType():
             return "a real number"
         case TextType():
             return "a text"
-    return f"a {type_}"
+        case ListType() | NestedType():
+            return f"a {type_}"
+    return described(type_)
 
 
 def known(operand: Operand) -> Term:
@@ -206,12 +208,10 @@ def _no_field(operand: UnknownWord, other: Operand) -> ExpressionError:
 
 def _check_comparable(left: Term, right: Term) -> None:
     a, b = left.type, right.type
-    if isinstance(a, IntegerRange) and isinstance(b, IntegerRange):
-        fits = a.minimum <= b.maximum and b.minimum <= a.maximum
-    elif isinstance(a, EnumerationType) and isinstance(b, EnumerationType):
-        fits = not set(a.values).isdisjoint(b.values)
+    if isinstance(a, Type) and isinstance(b, Type):
+        fits = overlap(a, b)
     else:
-        fits = (is_numeric(a) and is_numeric(b)) or (is_textual(a) and is_textual(b)) or a == b == BOOLEAN
+        fits = (is_numeric(a) and is_numeric(b)) or (is_textual(a) and is_textual(b))
     if not fits:
         raise ExpressionError(f"cannot compare {describe(a)} with {describe(b)}", right.span)
 

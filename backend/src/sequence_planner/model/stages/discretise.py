@@ -11,14 +11,13 @@ from pydantic import Field, model_validator
 
 from sequence_planner.language.records.field_paths import REAL, FieldPath, is_number, is_numeric, shown
 from sequence_planner.language.records.record import FieldType, ListType, Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration, StageInstance
 from sequence_planner.model.stages.marks import ExampleValue, GivenValue, MessageField, ModelVariable, ReadValue
 from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, has_numbers
-from sequence_planner.model.stages.support import ImmediateStage, wanted_type
+from sequence_planner.model.stages.support import ImmediateStage, values_of, wanted_type
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
 
@@ -497,10 +496,7 @@ def _are_names(context: Context, where: SourceText, names: Iterable[SourceText],
         message = f"points have names, so the variable must be an enumeration and not {type_}"
         context.found(where.place, message)
         return False
-    strange = [name for name in names if name not in type_.values]
-    for name in strange:
-        context.found(name.place, f"`{name}` is none of {type_}{suggestion(name, type_.values)}")
-    return not strange
+    return values_of(context, type_, list(names), where.place) is not None
 
 
 def _of_type(numbers: Numbers, type_: FieldType) -> Numbers:
