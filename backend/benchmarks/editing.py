@@ -24,7 +24,8 @@ from sequence_planner.db.database import Database
 from sequence_planner.editor import draft as drafts
 from sequence_planner.editor.checks import checked
 from sequence_planner.editor.draft import SetEntry
-from sequence_planner.editor.language_worker import LanguageDraft, answer, errors, renamed_files, tied, used
+from sequence_planner.editor.language.draft import LanguageDraft
+from sequence_planner.editor.language_worker import answer, errors, renamed_files, tied, used
 from sequence_planner.editor.processes import LanguageQuestionKind, PlaceInText
 from sequence_planner.editor.schemas.draft import FileReader
 from sequence_planner.model.files import FolderReader, write_files

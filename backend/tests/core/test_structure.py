@@ -40,6 +40,7 @@ LAYERS = (
     "auth",
     "mes",
     "editor",
+    "language_server",
     "backup",
     "retention",
     "server",

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from editor.models import bolts
 from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.editor.language_worker import LanguageDraft, answer, errors
+from sequence_planner.editor.language.draft import LanguageDraft
+from sequence_planner.editor.language_worker import answer, errors
 from sequence_planner.editor.processes import LanguageQuestionKind, PlaceInText
 from sequence_planner.model.files import FolderReader, read_files, write_files
 from sequence_planner.model.source import ModelError

@@ -46,6 +46,11 @@ COMMANDS = (
         "Change one entry of a station's document, and print the difference. Comments and order stay.",
     ),
     LazyCommand(
+        "language-server",
+        "language_server:language_server",
+        "Serve editors that speak the Language Server Protocol, over standard input and output.",
+    ),
+    LazyCommand(
         "tick", "model.tick:tick", "Take one tick of the reference interpreter, and say what each of its steps did."
     ),
     LazyCommand(

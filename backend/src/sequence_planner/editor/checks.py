@@ -6,13 +6,12 @@ import contextlib
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
-from sequence_planner.analysis.analysis import COUNTING
 from sequence_planner.analysis.checks.rules import check_automaton
-from sequence_planner.analysis.finding import analyses, known_evidence, without_numbers
+from sequence_planner.analysis.finding import analyses
+from sequence_planner.analysis.kept import documents
 from sequence_planner.analysis.report import (
     FindingDocument,
     TraceDocument,
-    document_of,
     error_document,
     findings_of,
 )
@@ -78,16 +77,13 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
     with collection_put_off():
         warnings = findings_of(automaton, [*check_automaton(automaton, station.connections), *station.suspicions()])
     view = view.model_copy(update={"findings": listed(sorted(warnings, key=_place))})
-    evidence = known_evidence(automaton)  # of what `check` has answered from afar: then it is soon proven again
-    for analysis in without_numbers(automaton, far=evidence is not None, evidence=evidence):
-        document = document_of(automaton, analysis)
+    for document in documents(automaton):
         found = sorted([*warnings, *(document.findings or ())], key=_place)
-        is_all = analysis.pending in (None, COUNTING)
         more = {
             "findings": listed(found),
-            "doing": "" if is_all else analysis.pending,
-            "state": CheckState.DONE if is_all else CheckState.CHECKING,
-            "analysis": document.model_copy(update={"findings": None, "pending": None if is_all else analysis.pending}),
+            "doing": document.pending or "",
+            "state": CheckState.DONE if document.pending is None else CheckState.CHECKING,
+            "analysis": document.model_copy(update={"findings": None}),
         }
         view = view.model_copy(update=more)
         yield view

@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Protocol, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -199,21 +199,35 @@ class DraftProcess:
 SETTLED = 0.15  # seconds without a change after which the whole is checked
 
 
+class QuickCheck(Protocol):
+    """What says at once what makes a draft unusable."""
+
+    async def errors(self, files: Files) -> list[FindingDocument]:
+        """Return what makes these files unusable, as far as it shows before pipelines are built; or `WorkerError`."""
+        ...
+
+
 class CheckDesk:
     """Checks what it is told to, from one event loop. `stages` is the model whose Python stages belong to the draft,
     which is to be run as `start` says.
 
-    `process` says at once what makes the draft unusable; all else is found by a process for each check, from scratch.
-    `tell` is called with each view, all of one check in their order.
+    `process` says at once what makes the draft unusable; all else is found by a process for each check, from scratch,
+    within `deadline` seconds if that is given. `tell` is called with each view, all of one check in their order.
     """
 
     def __init__(
-        self, stages: Path | None, start: StartNeeds, process: DraftProcess, tell: Callable[[CheckView], None]
+        self,
+        stages: Path | None,
+        start: StartNeeds,
+        process: QuickCheck,
+        tell: Callable[[CheckView], None],
+        deadline: float | None = None,
     ) -> None:
         self._stages = stages
         self._start = start
         self._process = process
         self._tell = tell
+        self._deadline = deadline
         self._wanted: tuple[int, Files] | None = None
         self._looking: asyncio.Task[None] | None = None
         self._checking: asyncio.Task[None] | None = None
@@ -257,13 +271,17 @@ class CheckDesk:
         await asyncio.sleep(SETTLED)
         view = waiting(number)
         try:
-            async with working("checked", number, files, self._stages, self._start) as found:
+            arguments = number, files, self._stages, self._start
+            async with asyncio.timeout(self._deadline), working("checked", *arguments) as found:
                 async for told in found:
                     assert isinstance(told, CheckView)
                     view = told
                     self._tell(view)
                     if view.state is CheckState.DONE:
                         break
+        except TimeoutError:
+            doing = f"it took more than {self._deadline:g} s and was given up"
+            self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": doing}))
         except WorkerError as ended:
             self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": str(ended)}))
 

@@ -47,9 +47,14 @@ _NO_TEXT = re.compile("[\0\ud800-\udfff]")
 _PATH = re.compile(rf"{'|'.join(map(re.escape, FILES))}|resources/{_NAME}\.yaml|{_DEFINITIONS}")
 
 
+def is_of_model(path: str) -> bool:
+    """Return whether a path is that of one of a model's files."""
+    return _PATH.fullmatch(path) is not None
+
+
 def check_path(path: str) -> None:
     """Raises `EditError` for a path that is none of a model's files."""
-    if not _PATH.fullmatch(path):
+    if not is_of_model(path):
         raise EditError(
             f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, and "
             "messages/<package>/msg/<Name>.msg (or srv, or action)"
@@ -118,7 +123,7 @@ def _found(folder: Path | str, below: str = "") -> Iterator[tuple[str, os.DirEnt
             name = f"{below}{entry.name}"
             if (below or name in SEARCHED_FOLDERS) and entry.is_dir(follow_symlinks=False):
                 yield from _found(entry.path, f"{name}/")
-            elif _PATH.fullmatch(name) and entry.is_file():
+            elif is_of_model(name) and entry.is_file():
                 yield name, entry
 
 

@@ -6,7 +6,7 @@ messages/<package>/srv/*.srv  messages/<package>/action/*.action
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar, cast
@@ -86,7 +86,7 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
         message = "a station is a folder with a station.yaml: there is none here"
         raise ModelError([Finding(Place(str(folder / "station.yaml"), 1, 1), message)])
     reader = _FolderReader(folder, before)
-    reader.require_names()
+    reader.findings += unread_files(folder)
     station = reader.whole("station.yaml", StationDocument)
     resources = {
         path.stem: reader.whole(f"resources/{path.name}", ResourceDocument)
@@ -109,6 +109,28 @@ def _is_file(path: Path) -> bool:
         return False
 
 
+def unread_files(folder: Path) -> Iterator[Finding]:
+    """Yield the files in the folder of a station that are no part of it, though their names are almost right."""
+    for path in sorted((*folder.glob("*.yml"), *folder.glob("resources/*.yml"))):
+        yield Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read")
+    for path in sorted((folder / "resources").glob("*")):
+        if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
+            message = "this is not read: each resource is a file <name>.yaml in this folder"
+            yield Finding(Place(str(path), 1, 1), message)
+    for kind, what in DEFINITIONS.items():
+        for path in sorted((folder / "messages").rglob(f"*.{kind}")):
+            if len(path.relative_to(folder).parts) != 4 or path.parent.name != kind:
+                message = f"this is not read: {what} definitions are files messages/<package>/{kind}/<Name>.{kind}"
+                yield Finding(Place(str(path), 1, 1), message)
+    for path in sorted(each for each in folder.glob("*") if each.is_dir() and each.name not in FOLDERS):
+        if near := suggestion(path.name, FOLDERS, likeness=0.75):
+            yield Finding(Place(str(path), 1, 1), f"this folder is not read{near}")
+    for path in sorted(folder.glob("*.yaml")):
+        if path.name not in FILES:
+            message = f"this file is not read{suggestion(path.name, FILES)}"
+            yield Finding(Place(str(path), 1, 1), message)
+
+
 # The content of a file and what is wrong with it, from the file as it was read.
 _Reading = Callable[[YamlDocument], tuple[object, list[Finding]]]
 
@@ -120,27 +142,6 @@ class _FolderReader:
         self._names: set[str] = set()
         self.findings: list[Finding] = []
         self.empty: list[Place] = []
-
-    def require_names(self) -> None:
-        """Note files whose name is almost right: they would be left out without a word."""
-        for path in sorted((*self._folder.glob("*.yml"), *self._folder.glob("resources/*.yml"))):
-            self.findings.append(Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read"))
-        for path in sorted((self._folder / "resources").glob("*")):
-            if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
-                message = "this is not read: each resource is a file <name>.yaml in this folder"
-                self.findings.append(Finding(Place(str(path), 1, 1), message))
-        for kind, what in DEFINITIONS.items():
-            for path in sorted((self._folder / "messages").rglob(f"*.{kind}")):
-                if len(path.relative_to(self._folder).parts) != 4 or path.parent.name != kind:
-                    message = f"this is not read: {what} definitions are files messages/<package>/{kind}/<Name>.{kind}"
-                    self.findings.append(Finding(Place(str(path), 1, 1), message))
-        for path in sorted(each for each in self._folder.glob("*") if each.is_dir() and each.name not in FOLDERS):
-            if near := suggestion(path.name, FOLDERS, likeness=0.75):
-                self.findings.append(Finding(Place(str(path), 1, 1), f"this folder is not read{near}"))
-        for path in sorted(self._folder.glob("*.yaml")):
-            if path.name not in FILES:
-                message = f"this file is not read{suggestion(path.name, FILES)}"
-                self.findings.append(Finding(Place(str(path), 1, 1), message))
 
     def whole(self, name: str, kind: type[D]) -> D | None:
         """A file that is one document."""

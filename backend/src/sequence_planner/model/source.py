@@ -77,6 +77,16 @@ class SourceText(str):
         characters = _written(self.raw)
         return characters[before][0], characters[before + length - 1][1]
 
+    def offset(self, index: int) -> int:
+        """Return which character of this text is written at `index` of `raw`, or next behind it."""
+        before = sum(begin < index for begin, _ in _written(self.raw))
+        solid = [at for at, character in enumerate(self) if not character.isspace()]
+        if before >= len(solid):
+            return len(self)
+        behind = solid[before - 1] + 1 if before else 0
+        gap = len(self.raw[:index]) - len(self.raw[:index].rstrip())
+        return min(behind + gap, solid[before])
+
     @classmethod
     def __get_pydantic_core_schema__(cls, source: type[Any], handler: GetCoreSchemaHandler) -> CoreSchema:
         """Pass unchanged through pydantic; anything else is no text."""

@@ -149,21 +149,29 @@ _IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
 
 
 def gather(
-    content: ModelContent, messages: MessageRegistry | None, word: str | None = None
+    content: ModelContent, messages: MessageRegistry | None, word: str | None = None, file: str | None = None
 ) -> tuple[Declared, Gathered]:
-    """Return what is named in the files, and where. With `word`, only in expressions that hold it."""
+    """Return what is named in the files, and where. With `word`, only in expressions that hold it; with `file`, all
+    that is in that one, and perhaps more.
+    """
     gathered = Gathered()
     declared = Declared(content, messages)
     naming = Naming(declared, gathered)
     walk = _Walk(naming, Expressions(naming, word))
-    walk.station(content.get(STATION))
-    for resource, file, found in content.resources():
-        walk.resource(resource, file, found)
-    PipelineCollector(naming, content).read()
-    walk.operations(content.get(OPERATIONS))
-    walk.specifications(content.get(SPECIFICATIONS))
-    walk.work_masters(content.get(WORK_MASTERS))
-    read_definitions(content, gathered)
+    if file in (None, STATION):
+        walk.station(content.get(STATION))
+    for resource, at, found in content.resources():
+        if file in (None, at):
+            walk.resource(resource, at, found)
+    PipelineCollector(naming, content).read(file)
+    if file in (None, OPERATIONS):
+        walk.operations(content.get(OPERATIONS))
+    if file in (None, SPECIFICATIONS):
+        walk.specifications(content.get(SPECIFICATIONS))
+    if file in (None, WORK_MASTERS):
+        walk.work_masters(content.get(WORK_MASTERS))
+    if file is None or file in content.definitions:
+        read_definitions(content, gathered)
     return declared, gathered
 
 

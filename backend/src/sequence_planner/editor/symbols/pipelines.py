@@ -257,9 +257,15 @@ class PipelineCollector:
         }
         self._begun: set[str] = set()
 
-    def read(self) -> None:
-        """All of them, flows behind their sources."""
+    def read(self, only: str | None = None) -> None:
+        """All of them, flows behind their sources; or those that matter to what is named in a file."""
+        if only is not None and all(where.file != only for _, where, _ in self._flows.values()):
+            self._flows.clear()
+        else:
+            only = None
         for resource, file, found in self._content.resources():
+            if only not in (None, file):
+                continue
             for kind in ("topic", "service", "action"):
                 for name, document in pairs(entry(found, f"{kind}s")):
                     where = Where(file, (f"{kind}s", str(name)), f"{kind} {name}", 2)

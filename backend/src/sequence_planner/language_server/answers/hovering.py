@@ -1,0 +1,67 @@
+"""What is told of the name under the cursor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sequence_planner.editor.language.field import FieldKind
+from sequence_planner.editor.language.hover import Hover, hover
+from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.language.printer import print_value
+from sequence_planner.language.types import Place
+from sequence_planner.language_server.documents.cursor import read_at
+from sequence_planner.language_server.documents.schemas import DocumentSchemas
+from sequence_planner.language_server.snapshot import StationSnapshot
+
+_MOST_VALUES = 20
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What stands from `start` to `end` of a file, told in Markdown. `declared` is where, if that is known."""
+
+    start: int
+    end: int
+    text: str
+    declared: Place | None = None
+
+
+def explanation(
+    snapshot: StationSnapshot, schemas: DocumentSchemas, file: str, text: str, index: int
+) -> Explanation | None:
+    """Say what stands at a character of a file; None where nothing is to be said of it."""
+    cursor = read_at(text, index)
+    if cursor is None:
+        return None
+    field = snapshot.lexicon.field(file, cursor.path, cursor.parameters)
+    if field is not None and (not cursor.is_name or field.kind is FieldKind.OPERATION):
+        found = hover(snapshot.lexicon, field, str(cursor.text), cursor.offset)
+        if found is not None:
+            return Explanation(*cursor.span_in_file(found.start, found.end), _told(found), found.place)
+    about = schemas.description(file, cursor.path) if cursor.is_name else ""
+    if not about:
+        return None
+    start, end = cursor.span_in_file(0, len(cursor.text))
+    return Explanation(start, end, f"`{cursor.text}`: {about}")
+
+
+def _told(found: Hover) -> str:
+    kind = found.kind.value if found.kind is not NameKind.ACTIVITY else "operation"
+    head = f"**{kind}** `{found.pattern}`"
+    if found.type is not None:
+        head += f": `{found.type}`"
+    lines = [head]
+    if found.title:
+        lines.append(found.title)
+    if found.initial is not None:
+        lines.append(f"initially `{print_value(found.initial)}`")
+    if found.kind is NameKind.PARAMETER and found.type is not None:
+        values = [print_value(each) for each in found.type.domain][: _MOST_VALUES + 1]
+        lines.append(
+            ", ".join(f"`{each}`" for each in values[:_MOST_VALUES]) + (" …" if len(values) > _MOST_VALUES else "")
+        )
+    if len(found.names) > 1:
+        lines.append("one of " + ", ".join(f"`{each}`" for each in found.names[:_MOST_VALUES]))
+    if found.place is not None and found.place.file:
+        lines.append(f"declared in {found.place.file}:{found.place.line}")
+    return "\n\n".join(lines)
