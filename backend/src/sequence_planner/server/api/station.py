@@ -6,8 +6,6 @@ the controller is silent the answer is 503.
 
 from __future__ import annotations
 
-from pydantic import BaseModel
-
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.controller.views.part import ControlView
@@ -38,13 +36,13 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import LiveView
+from sequence_planner.server.dependencies import AnswerModel, LiveView
 from sequence_planner.server.interface import interface
 
 router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
 
-class Answer(BaseModel):
+class Answer(AnswerModel):
     """The tick and the time (seconds since the epoch, the controller's clock) at which this was so."""
 
     tick: int
