@@ -27,6 +27,7 @@ from sequence_planner.automaton.automaton import (
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.dependencies import ordered_flags
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, without_arguments
+from sequence_planner.core.immutable import replace
 from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
@@ -610,6 +611,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
                 _by_language(document.consequence),
                 _by_language(document.action),
                 document.delay,
+                document.when.place if isinstance(document.when, SourceText) else name.place,
             )
     return found
 
@@ -617,7 +619,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
 def alarm_condition(meaning: Meaning, text: Predicate, scope: NameScope) -> Expression:
     """The condition of an alarm. What it read of an operation would become a variable, and no alarm makes any."""
     apart = Meaning(meaning.declarations, meaning.findings)
-    when = apart.predicate(text, scope)
+    when = apart.predicate(text, replace(scope, unsuggested=f"{OPERATION}."))
     if isinstance(text, SourceText):
         for seen in occurrences(when):
             if seen.name in apart.activities:
