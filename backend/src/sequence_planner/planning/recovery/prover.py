@@ -173,7 +173,7 @@ def _covers(refuted: _Refuted, task: PlanningTask) -> bool:
         and (then.restart or not now.restart)
         and then.offline <= now.offline
         and then.barred <= now.barred
-        and satisfies(asserted(task.state, tuple(goal for goal in same if goal is not None)), refuted.proof.invariant)
+        and satisfies(asserted(task.state, tuple(goal for goal in same if goal is not None)), refuted.proof)
     )
 
 
