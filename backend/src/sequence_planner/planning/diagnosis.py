@@ -22,10 +22,9 @@ from sequence_planner.planning.heuristic.search import HeuristicSearch
 from sequence_planner.planning.heuristic.unreachable import Relaxing
 from sequence_planner.planning.operation_decomposition import OperationByOperation
 from sequence_planner.planning.pdr.ic3 import Reachability
-from sequence_planner.planning.pdr.invariants import CertificateError
 from sequence_planner.planning.pdr.proof_clauses import asserted, is_met, satisfies
 from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
-from sequence_planner.planning.problem import Circumstances, Contract, Goal, Plan, Proof
+from sequence_planner.planning.problem import CertificateError, Circumstances, Contract, Goal, Plan, Proof
 from sequence_planner.planning.validation.acceptance import Acceptance, tightened
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget, SpentError
@@ -208,7 +207,7 @@ def _covers(refuted: PlanningTask, proof: Proof, task: PlanningTask) -> bool:
         refuted.goals == task.goals
         and refuted.circumstances.offline <= task.circumstances.offline
         and refuted.circumstances.barred <= task.circumstances.barred
-        and satisfies(asserted(task.state, task.goals), proof.invariant)
+        and satisfies(asserted(task.state, task.goals), proof)
     )
 
 
