@@ -48,6 +48,7 @@ def serve_editor() -> int:
             return await talk(server.protocol, streams)
         finally:
             await server.stations.close()
+            server.threads.close()
 
     return asyncio.run(talking())
 
@@ -75,4 +76,4 @@ async def _import_all(server: StationLanguageServer) -> None:
         for name in _LATER:
             importlib.import_module(f"{__package__}.{name}")
 
-    await server.worked_out(imported)
+    await server.threads.found_at_once(imported)
