@@ -224,6 +224,8 @@ def why_idle(execution: Executor, operation: str) -> str | None:
         return None
     if operation in job.completed:
         return f"another job that asks for it: for {job.title} it is completed"
+    if operation in job.skipped(automaton):
+        return f"another job that asks for it: for {job.title} another alternative is taken"
     if job.finishing is not None:
         return f"another job that asks for it: {job.title} is being stopped"
     if job.state is JobState.PAUSED:
@@ -273,6 +275,8 @@ def _step(execution: Executor, jobs: Jobs, job: Job, name: str, eligible: frozen
 def _state(execution: Executor, job: Job, name: str, eligible: frozenset[str]) -> JobStepState:
     if name in job.completed:
         return JobStepState.COMPLETED
+    if job.work_master in execution.automaton.work_masters and name in job.skipped(execution.automaton):
+        return JobStepState.SKIPPED
     if name not in eligible:
         return JobStepState.WAITING
     return JobStepState.ACTIVE if name in execution.active else JobStepState.ELIGIBLE
