@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
-from sequence_planner.model.sequences import SequencePart
+from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.registry import StageDocument
 
@@ -602,14 +602,12 @@ class WorkStepDocument(DocumentPart):
     """The operations that must be completed before it."""
 
 
-class WorkMasterDocument(SequencePart):
+class WorkMasterDocument(SequencePart, TitledDocument):
     """What a job consists of: its operations with their order, and the estimated values a new product `brings`.
 
     The order is that of a sequence, of `operations` with what comes before each, or of both together.
     """
 
-    title: Given[SourceText] = None
-    """For people."""
     brings: list[SourceText] = Field(default_factory=list)
     """The estimated values of a new product, such as `part := absent`."""
     operations: Given[dict[SourceText, WorkStepDocument | None]] = Field(default=None, min_length=1)

@@ -80,11 +80,15 @@ class SequencePart(DocumentPart):
         return [kind for kind in KINDS if getattr(self, kind) is not None]
 
 
-class SequenceDocument(SequencePart):
-    """A sequence of operations, an entry beside them: it orders them, and other sequences can use it by its name."""
+class TitledDocument(DocumentPart):
+    """Something that people know by a title."""
 
     title: Given[SourceText] = None
     """For people."""
+
+
+class SequenceDocument(SequencePart, TitledDocument):
+    """A sequence of operations, an entry beside them: it orders them, and other sequences can use it by its name."""
 
 
 def is_sequence(content: object) -> bool:

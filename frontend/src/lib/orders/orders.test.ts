@@ -86,7 +86,11 @@ test('how far an order has come is told by its job', () => {
 		begun: 0,
 		ended: null,
 		waits_for: [],
-		steps: { place: { ...step, state: 'completed' as const }, tighten: { ...step, state: 'active' as const } }
+		steps: {
+			place: { ...step, state: 'completed' as const },
+			tighten: { ...step, state: 'active' as const },
+			repair: { ...step, state: 'skipped' as const }
+		}
 	};
 	expect(progressOf(viewOf({ jobs: { 'e-1': job } }), 'e-1')).toEqual({ done: 1, all: 2, active: ['tighten'] });
 	expect(progressOf(viewOf({}), 'e-1')).toBeNull();
