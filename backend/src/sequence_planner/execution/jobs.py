@@ -151,7 +151,7 @@ class Jobs(Immutable):
         """
         eligible, master = self.eligible(job, automaton), automaton.work_masters[job.work_master]
         for branches in (*master.alternatives, *master.arbitrary):
-            begin = [branch for branch in branches if not eligible.isdisjoint(branch) and not branch.isdisjoint(wanted)]
+            begin = [branch for branch in branches if not branch.isdisjoint(eligible.intersection(wanted))]
             eligible = eligible.difference(*begin[1:])
         return eligible
 

@@ -12,6 +12,7 @@ from sequence_planner.automaton.findings import Binding, Findings, with_argument
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import NameScope, suggestion
 from sequence_planner.language.syntax import ExpressionError, Name
+from sequence_planner.language.types import Place
 from sequence_planner.model.loader import Station
 from sequence_planner.model.sequences import SequenceKind, SequencePart
 from sequence_planner.model.source import SourceText
@@ -134,10 +135,13 @@ class SequenceReader:
                 self._check_parameters(branch)
 
     def _unknown(self, name: str) -> str:
-        written = next((each for key, each in self.station.operations.items() if key == name), None)
-        if written is None:
+        bare = without_arguments(name)
+        written = self.station.operations.get(SourceText(bare, Place("", 1, 1), bare))
+        if written is None or (written.parameters and bare != name):
             known = [*self._operations, *map(str, self.station.sequences)]
             return f"there is no operation `{name}`{suggestion(name, known)}"
+        if not written.parameters:
+            return f"`{bare}` has no parameters: write `{bare}`"
         one = next(each for each in self._operations if without_arguments(each) == name)
         over = ", ".join(f"{parameter}: {enumeration}" for parameter, enumeration in written.parameters.items())
         all_of_them = f"{{for: {{{over}}}, parallel: {with_arguments(name, map(str, written.parameters))}}}"
