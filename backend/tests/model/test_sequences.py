@@ -5,15 +5,20 @@ That this allows the orders a sequence stands for, and no others, is a law of `c
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.grounding import ground
+from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.language.printer import print_expression
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.source import ModelError
+from sequence_planner.station import prepare_station
+from support.places import MODELS
 
 STATION = """
 name: engine
@@ -224,3 +229,80 @@ def said(folder: Path, sequences: str, masters: str) -> list[str]:
     with pytest.raises(ModelError) as caught:
         station(folder, sequences.replace("‹", ""), masters.replace("‹", ""))
     return [str(each).removeprefix(f"{folder}/") for each in caught.value.findings]
+
+
+# The stations of the repository mean what they did when each step of theirs was written out.
+
+_PAIRS = [f"AtBoltPair{number}TCPPose" for number in range(1, 7)]
+_ENGINE = """\
+  sequence:
+    - identify_engine
+    - bring_kit
+    - mount_ladder_frame
+    - for: {pair: bolt_pair}
+      parallel: place_bolt_pair(pair)
+    - return_kit
+    - release_engine
+  operations:
+"""
+_ENGINE_STEPS = f"""\
+  operations:
+    identify_engine:
+    bring_kit: {{after: [identify_engine]}}
+    mount_ladder_frame: {{after: [bring_kit]}}
+{"".join(f"    place_bolt_pair({pair}): {{after: [mount_ladder_frame]}}" + chr(10) for pair in _PAIRS)}\
+    return_kit: {{after: [{", ".join(f"place_bolt_pair({pair})" for pair in _PAIRS)}]}}
+"""
+_TIGHTENING = """
+# In the order in which the ladder frame settles evenly.
+tighten_bolts:
+  title: Tighten all bolts
+  for: {pair: bolt_pair}
+  sequence: tighten_bolt_pair(pair)
+"""
+_READY = "scene.attached == ATLASTOOL and not nutrunner.activate_lift)\n"
+_EACH_AFTER_THE_OTHER = "".join(
+    f"    and (pair == {later} implies bolts[{sooner}] == tightened)\n" for sooner, later in pairwise(_PAIRS)
+)
+
+
+@pytest.mark.parametrize(
+    ("model", "steps"),
+    [
+        (
+            "docking_agv",
+            {
+                "work_masters.yaml": [
+                    (
+                        "  sequence: [fetch_kit, hand_over_kit, assemble]\n",
+                        "  operations:\n    fetch_kit:\n    hand_over_kit: {after: [fetch_kit]}\n"
+                        "    assemble: {after: [hand_over_kit]}\n",
+                    )
+                ]
+            },
+        ),
+        (
+            "truck_engine_station",
+            {
+                "work_masters.yaml": [
+                    (_ENGINE, _ENGINE_STEPS),
+                    ("[tighten_oil_filter]", "[tighten_oil_filter, return_kit]"),
+                ],
+                "operations.yaml": [(_TIGHTENING, ""), (_READY, _READY + _EACH_AFTER_THE_OTHER)],
+            },
+        ),
+    ],
+)
+def test_a_station_means_the_same_as_step_by_step(
+    tmp_path: Path, model: str, steps: dict[str, list[tuple[str, str]]]
+) -> None:
+    copy = Path(copytree(MODELS / model, tmp_path / model))
+    for file, changes in steps.items():
+        text = (copy / file).read_text(encoding="utf-8")
+        for sequence, written in changes:
+            assert text.count(sequence) == 1
+            text = text.replace(sequence, written)
+        (copy / file).write_text(text, encoding="utf-8")
+    in_sequence, step_by_step = (prepare_station(each).automaton for each in (MODELS / model, copy))
+    assert in_sequence == step_by_step
+    assert model_digest(in_sequence) == model_digest(step_by_step)
