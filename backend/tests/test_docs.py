@@ -29,6 +29,7 @@ from sequence_planner.model.documents import (
     WorkStepDocument,
 )
 from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.sequences import SequenceDocument
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import synthesise
@@ -38,6 +39,7 @@ from support.station import finished
 TEXT = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))
 BLOCKS = re.findall(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
 ERRORS = re.findall(r"^\| `` (.*?) `` \| `` (\d+:\d+: .*) `` \|$", TEXT, re.MULTILINE)
+SEQUENCE_ERRORS = re.findall(r"^\| `` (.*?) `` \| `` operations\.yaml:(\d+:\d+: .*) `` \|$", TEXT, re.MULTILINE)
 EXPRESSION_ERRORS = re.findall(r"^\| `` (.*?) `` \| `` (\d+): (.*) `` \|$", TEXT, re.MULTILINE)
 FILES = {label: content for kind, label, content in BLOCKS if kind in ("yaml", "text") and " " not in label}
 
@@ -62,6 +64,7 @@ def test_there_is_something_to_try() -> None:
     assert {*documents, "resources/clamp.yaml"} < FILES.keys()
     assert {kind for kind, _, _ in BLOCKS} == {"sh", "yaml", "text", "expression", "action", "formula"}
     assert len(ERRORS) >= 7
+    assert len(SEQUENCE_ERRORS) >= 7
     assert len(EXPRESSION_ERRORS) >= 12
 
 
@@ -79,7 +82,7 @@ def test_nothing_is_to_be_said_against_it(station: Path) -> None:
 def scope_of(automaton: Automaton) -> NameScope:
     """What names mean in the clamp's document."""
     activities = {operation.activity: BOOLEAN for operation in automaton.operations.values()}
-    return NameScope({**automaton.types, **activities}, ("clamp.",))
+    return NameScope({**automaton.types, **activities}, ("clamp.",), vocabulary=automaton.vocabulary)
 
 
 def test_expressions(automaton: Automaton) -> None:
@@ -106,9 +109,15 @@ def test_what_is_quoted_stands_there() -> None:
         assert content in (REPOSITORY / file).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("line", "finding"), ERRORS)
-def test_errors_are_said_as_shown(station: Path, line: str, finding: str) -> None:
-    file = station / "resources" / "clamp.yaml"
+@pytest.mark.parametrize(
+    ("name", "line", "finding"),
+    [
+        *(("resources/clamp.yaml", *each) for each in ERRORS),
+        *(("operations.yaml", *each) for each in SEQUENCE_ERRORS),
+    ],
+)
+def test_errors_are_said_as_shown(station: Path, name: str, line: str, finding: str) -> None:
+    file = station / name
     lines = file.read_text(encoding="utf-8").split("\n")
     number = int(finding.partition(":")[0]) - 1
     indentation = len(lines[number]) - len(lines[number].lstrip())
@@ -127,6 +136,7 @@ def test_errors_are_said_as_shown(station: Path, line: str, finding: str) -> Non
         AbilityDocument,
         EffectDocument,
         OperationDocument,
+        SequenceDocument,
         SpecificationDocument,
         WorkMasterDocument,
         AlarmDocument,

@@ -121,7 +121,7 @@ function within(names: readonly string[]): Set<string> {
 }
 // Only what a form is made of. What stages name are fields of messages, which may be paths, and their texts.
 const stages = within(['stage']);
-const used = within(['station', 'resource', 'operation', 'specification', 'work_master', 'stage']);
+const used = within(['station', 'resource', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
 const loosened = (field: FieldShape): FieldShape =>
 	field.kind === 'names' ? { ...field, loose: true } : field.kind === 'lists' ? { ...field, kind: 'words' } : field;
 const kept = Object.fromEntries(

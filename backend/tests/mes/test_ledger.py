@@ -32,7 +32,9 @@ def master(name: str) -> WorkMasterView:
     operations = {
         f"{name}.{number}": WorkOperationView(title="", after=[], goal_reads=[f"{name}.part"]) for number in (1, 2)
     }
-    return WorkMasterView(title=name, brings=[], brought=[f"{name}.part"], operations=operations)
+    return WorkMasterView(
+        title=name, brings=[], brought=[f"{name}.part"], operations=operations, alternatives=[], arbitrary=[]
+    )
 
 
 def able(*writes: str, instant: bool = False) -> WorkAbilityView:

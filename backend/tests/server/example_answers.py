@@ -63,6 +63,8 @@ WORK_MASTERS = WorkMastersView(
             brings=["bolts[bolt_pair_1] := empty"],
             brought=["bolts[bolt_pair_1]"],
             operations={"tighten": WorkOperationView(title="Tighten", after=[], goal_reads=["bolts[bolt_pair_1]"])},
+            alternatives=[],
+            arbitrary=[],
         )
     },
     abilities={"robot.move": WorkAbilityView(title="Move", writes=["robot.pose"], instant=False)},

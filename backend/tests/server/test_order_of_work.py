@@ -37,7 +37,14 @@ def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def master(title: str) -> WorkMasterView:
     operation = WorkOperationView(title=title, after=[], goal_reads=["robot.pose"])
-    return WorkMasterView(title=title, brings=[], brought=[], operations={f"work {title}": operation})
+    return WorkMasterView(
+        title=title,
+        brings=[],
+        brought=[],
+        operations={f"work {title}": operation},
+        alternatives=[],
+        arbitrary=[],
+    )
 
 
 def job(title: str, state: JobStepState, started: float | None) -> JobView:

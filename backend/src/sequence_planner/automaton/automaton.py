@@ -107,11 +107,26 @@ class Flag(Immutable):
     predicate: Expression
 
 
+class Turn(Immutable):
+    """When it is an operation's turn in a sequence: right behind the operations `after`, and while none `beside` it
+    keeps it waiting.
+    """
+
+    condition: Expression
+    after: tuple[str, ...]
+    beside: tuple[str, ...]
+
+    def __str__(self) -> str:
+        words = (("behind", self.after), ("beside", self.beside))
+        return " and ".join(f"{word} {', '.join(f'`{each}`' for each in names)}" for word, names in words if names)
+
+
 class Operation(Immutable):
     """A ground operation; of several that cannot be planned together, the highest `priority` is kept.
 
     `local` is a formula of LTL over finite traces (`language.ltl`) for the run from its activation to its goal.
-    Without `repeat`, once completed, it does not activate again until it has been reset.
+    Without `repeat`, once completed, it does not activate again until it has been reset. `turns` are the parts of its
+    precondition that sequences add, by their names, to what is `written` in its place.
     """
 
     name: str
@@ -121,6 +136,8 @@ class Operation(Immutable):
     priority: int = 0
     local: Expression | None = None
     repeat: bool = True
+    turns: Mapping[str, Turn] = uncompared(default={})
+    written: Expression | None = uncompared(default=None)
 
     @property
     def activity(self) -> str:
@@ -136,16 +153,23 @@ class Specification(Immutable):
     forbidden: Expression
 
 
+Branches = tuple[frozenset[str], ...]
+"""The operations of each branch, in the order in which they are written."""
+
+
 class WorkMaster(Immutable):
     """The operations that a job consists of, each with those that must be completed before it.
 
-    `brings` are the estimated values that a new product has.
+    `brings` are the estimated values that a new product has. Of the branches of an alternative one is taken, of those
+    in arbitrary order one at a time.
     """
 
     name: str
     title: str
     operations: Mapping[str, frozenset[str]]
     brings: tuple[Assignment, ...] = ()
+    alternatives: tuple[Branches, ...] = ()
+    arbitrary: tuple[Branches, ...] = ()
 
 
 class AlarmDeclaration(Immutable):
@@ -207,6 +231,14 @@ class Automaton(Immutable):
     def job_operations(self) -> frozenset[str]:
         """The operations of work masters."""
         return frozenset(name for master in self.work_masters.values() for name in master.operations)
+
+    @cached_property
+    def branching_operations(self) -> frozenset[str]:
+        """The operations of work masters that stand in alternatives, or in arbitrary order."""
+        masters = self.work_masters.values()
+        return frozenset().union(
+            *(b for m in masters for branches in (*m.alternatives, *m.arbitrary) for b in branches)
+        )
 
     @cached_property
     def types(self) -> Mapping[str, Type]:

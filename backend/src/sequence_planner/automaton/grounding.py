@@ -28,6 +28,7 @@ from sequence_planner.automaton.automaton import (
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.dependencies import ordered_flags
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, without_arguments
+from sequence_planner.automaton.sequences.expansion import StationSequences, Steps
 from sequence_planner.core.immutable import replace
 from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
@@ -63,7 +64,6 @@ from sequence_planner.model.documents import (
     SpecificationDocument,
     TimeoutsDocument,
     Words,
-    WorkMasterDocument,
 )
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
@@ -458,28 +458,50 @@ def _ability_place(text: object, otherwise: Place) -> Place:
 # Ground operations, and the work masters that put them into jobs.
 
 BROUGHT = Writing("a new product", (Kind.ESTIMATED,))
-Steps = Mapping[SourceText, tuple[SourceText, ...]]
 
 
-def ground_operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocument]) -> dict[str, Operation]:
-    """All operations by name."""
-    return {operation.name: operation for operation in _operations(meaning, documents)}
+def ground_operations(meaning: Meaning, station: Station) -> dict[str, Operation]:
+    """All operations by name, in the order of the sequences."""
+    operations = {operation.name: operation for operation in _operations(meaning, station.operations)}
+    for name in station.sequences:
+        meaning.declarations.check_name(name)
+    ordered = station_sequences(meaning, station, operations).ordered(operations)
+    read = (
+        each
+        for operation in ordered.values()
+        for turn in operation.turns.values()
+        for each in variables(turn.condition)
+    )
+    meaning.take((), (each for each in read if each.startswith(f"{OPERATION}.")))
+    return ordered
+
+
+def station_sequences(meaning: Meaning, station: Station, operations: Collection[str]) -> StationSequences:
+    """The sequences over these ground operations; what is wrong is noted."""
+    return StationSequences(meaning.declarations, meaning.findings, station, operations)
 
 
 def ground_work_masters(
-    meaning: Meaning, documents: Mapping[SourceText, WorkMasterDocument], operations: Mapping[str, Operation]
+    meaning: Meaning, station: Station, operations: Mapping[str, Operation]
 ) -> dict[str, WorkMaster]:
     """All work masters by name."""
     masters: dict[str, WorkMaster] = {}
-    for name, document in documents.items():
+    sequences = station_sequences(meaning, station, operations)
+    ordered = {
+        name: [each for turn in operation.turns.values() for each in turn.after]
+        for name, operation in operations.items()
+    }
+    for name, document in station.work_masters.items():
         meaning.declarations.check_name(name)
-        steps = steps_of(document)
-        check_steps(meaning, steps, operations)
+        order = sequences.order_of(document)
+        check_steps(meaning, order.steps, operations, ordered)
         masters[str(name)] = WorkMaster(
             str(name),
             readable(document.title, name, {}),
-            {str(step): frozenset(map(str, before)) for step, before in steps.items()},
+            {str(step): frozenset(map(str, before)) for step, before in order.steps.items()},
             brought_by(meaning, document.brings),
+            order.alternatives,
+            order.arbitrary,
         )
     return masters
 
@@ -508,28 +530,26 @@ def _operation_place(text: Predicate, otherwise: SourceText) -> Place:
     return text.place if isinstance(text, SourceText) else otherwise.place
 
 
-def steps_of(document: WorkMasterDocument) -> Steps:
-    """The operations of a job, each with those before it."""
-    return {
-        step: () if step_document is None else tuple(step_document.after)
-        for step, step_document in document.operations.items()
-    }
-
-
-def check_steps(meaning: Meaning, steps: Steps, operations: Collection[str]) -> None:
-    """Note steps that are none of the `operations`, and those that come before themselves."""
-    findings = meaning.findings
+def check_steps(
+    meaning: Meaning, steps: Steps, operations: Collection[str], ordered: Mapping[str, Sequence[str]] | None = None
+) -> None:
+    """Note steps that are none of the `operations`, and those that come before themselves, by way of what sequences
+    have `ordered` too.
+    """
+    findings, ordered = meaning.findings, ordered or {}
     for step, before in steps.items():
         if step not in operations:
             findings.add(step, f"there is no operation `{step}`{suggestion(step, operations)}")
         for each in before:
             if each not in steps:
                 findings.add(each, f"`{each}` is no operation of this job{suggestion(each, map(str, steps))}")
+    graph = {str(step): [*map(str, before), *ordered.get(step, ())] for step, before in steps.items()}
+    others = {name: before for name, before in ordered.items() if name not in graph}
     try:
-        TopologicalSorter({str(step): map(str, before) for step, before in steps.items()}).prepare()
+        TopologicalSorter({**graph, **others}).prepare()
     except CycleError as error:
-        circle = [str(name) for name in reversed(error.args[1])]
-        first = next(step for step in steps if step == circle[0])
+        circle: list[str] = error.args[1]
+        first = next(step for step in steps if step in circle)
         findings.add(first, f"each of these would have to come before the next: {' → '.join(circle)}")
 
 
@@ -703,9 +723,9 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
     meaning = Meaning(declarations, findings)
     check_predicates(meaning)
     abilities, effects, reactions = ground_abilities(meaning, before)
-    operations = ground_operations(meaning, station.operations)
+    operations = ground_operations(meaning, station)
     specifications = ground_specifications(meaning, station.specifications, station.resources)
-    work_masters = ground_work_masters(meaning, station.work_masters, operations)
+    work_masters = ground_work_masters(meaning, station, operations)
     alarms = ground_alarms(meaning, station)
     rest = meaning.predicate(station.station.rest, meaning.scope({}))
     if isinstance(station.station.rest, SourceText):

@@ -41,8 +41,8 @@ from sequence_planner.ros.types.messages import MessageRegistry
 # The layers are those of the paper: 0 what nodes of ROS 2 measure and are told, 1 the abilities of resources with what
 # they estimate, 2 operations and specifications, 3 the order of work. All ties are uses that `gather` finds, once each.
 
-_LAYERS = {"work_master": 3, "operation": 2, "specification": 2, "ability": 1, "effect": 1, "alarm": 1}
-_OF_FILE = {OPERATIONS: "operation", SPECIFICATIONS: "specification", WORK_MASTERS: "work_master"}
+_LAYERS = {"work_master": 3, "sequence": 3, "operation": 2, "specification": 2, "ability": 1, "effect": 1, "alarm": 1}
+_OF_FILE = {SPECIFICATIONS: "specification", WORK_MASTERS: "work_master"}
 _FROM_ROS = (Manner.FEEDS, Manner.SENDS)
 _OF_SECTION = {"topics": "topic", "services": "service", "actions": "action"}
 
@@ -116,6 +116,8 @@ def graph(files: Mapping[str, str], messages: MessageRegistry | None = None) -> 
 def user(where: Where) -> ModelPart | None:
     """The part that an entry of a file belongs to: what uses what is named there. None is the station itself."""
     file, path = where.file, where.path
+    if file == OPERATIONS:
+        return ModelPart(where.owner.partition(" ")[0], None, str(path[0]))
     if (kind := _OF_FILE.get(file)) is not None:
         return ModelPart(kind, None, str(path[0]))
     if (message := message_of(file)) is not None:

@@ -6,7 +6,7 @@ advances in ticks only. What its operations are, and their order, is in its work
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from enum import StrEnum
 
 from sequence_planner.automaton.automaton import Automaton
@@ -55,8 +55,27 @@ class Job(Immutable):
         return self.state is JobState.WAITING and self.finishing is None
 
     def after(self, operation: str, automaton: Automaton) -> frozenset[str]:
-        """The operations that come before this one and are not completed."""
-        return automaton.work_masters[self.work_master].operations[operation] - self.completed.keys()
+        """The operations that come before this one, or are done one at a time with it and have begun, and are not
+        completed.
+        """
+        master = automaton.work_masters[self.work_master]
+        before = master.operations[operation]
+        for branches in master.arbitrary:
+            if any(operation in branch for branch in branches):
+                before = before.union(*(each for each in branches if operation not in each and self._has_begun(each)))
+        return before - self.completed.keys() - self.skipped(automaton) if before else before
+
+    def skipped(self, automaton: Automaton) -> frozenset[str]:
+        """The operations that are not to be done, as another branch of their alternative has begun."""
+        found: frozenset[str] = frozenset()
+        for branches in automaton.work_masters[self.work_master].alternatives:
+            taken = next((each for each in branches if self._has_begun(each)), None)
+            if taken is not None:
+                found = found.union(*branches) - taken
+        return found - self.completed.keys() if found else found
+
+    def _has_begun(self, branch: frozenset[str]) -> bool:
+        return any(name in self.started or name in self.completed for name in branch)
 
     def after_act(self, act: JobAct, active: frozenset[str], now: Timestamp) -> Job:
         """After a person or a system has asked for this, while some of its operations are `active`."""
@@ -122,15 +141,25 @@ class Jobs(Immutable):
         operations = automaton.work_masters[job.work_master].operations
         return frozenset(
             name
-            for name in operations
+            for name in operations.keys() - job.skipped(automaton)
             if name not in job.completed and not job.after(name, automaton) and not self.awaited(job, name)
         )
 
-    def idle(self, automaton: Automaton) -> frozenset[str]:
+    def in_turn(self, job: Job, automaton: Automaton, wanted: Collection[str]) -> frozenset[str]:
+        """The operations that may be active for this job, where of branches that begin in one tick only the first
+        does: that of which one is `wanted`, as it could be active or its goal is reached.
+        """
+        eligible, master = self.eligible(job, automaton), automaton.work_masters[job.work_master]
+        for branches in (*master.alternatives, *master.arbitrary):
+            begin = [branch for branch in branches if not branch.isdisjoint(eligible.intersection(wanted))]
+            eligible = eligible.difference(*begin[1:])
+        return eligible
+
+    def idle(self, automaton: Automaton, wanted: Collection[str] = ()) -> frozenset[str]:
         """The operations that do not become active, as no job asks for them."""
         if not self.by_order:
             return frozenset()
-        return automaton.job_operations.difference(*(self.eligible(job, automaton) for job in self.under_way))
+        return automaton.job_operations.difference(*(self.in_turn(job, automaton, wanted) for job in self.under_way))
 
     # How they change.
 
@@ -168,6 +197,7 @@ class Jobs(Immutable):
 
         def advance(job: Job) -> Job:
             eligible = self.eligible(job, automaton)
+            eligible = self.in_turn(job, automaton, [name for name in eligible if name in active or reached(name)])
             completed = {name: now for name in sorted(eligible) if reached(name)}
             started = {name: now for name in sorted(eligible & active) if name not in job.started}
             if completed or started:
@@ -175,7 +205,8 @@ class Jobs(Immutable):
                 job = replace(job, completed=done, started=begun)
             # What comes next is eligible from the next tick on; here it only matters whether anything is left.
             left = eligible - completed.keys()
-            return job.over(automaton.work_masters[job.work_master].operations, left, now)
+            needed = automaton.work_masters[job.work_master].operations.keys() - job.skipped(automaton)
+            return job.over(needed, left, now)
 
         return self._each(advance)
 

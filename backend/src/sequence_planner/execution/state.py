@@ -169,9 +169,14 @@ class ExecutionState(Immutable):
             return self.mode is Mode.AUTOMATIC
         return self.mode is Mode.RESTART or (self.mode is Mode.PAUSED and not self.operator_plan.restart)
 
-    def idle_operations(self, automaton: Automaton) -> frozenset[str]:
-        """The operations that do not become active."""
-        return self.done | self.out_of(ServiceKind.OPERATION) | self.jobs.idle(automaton)
+    def idle_operations(
+        self, automaton: Automaton, active: frozenset[str] = frozenset(), reached: frozenset[str] = frozenset()
+    ) -> frozenset[str]:
+        """The operations that do not become active; `active` could be for all that the automaton knows, and the goals
+        of others are `reached`.
+        """
+        out = self.done | self.out_of(ServiceKind.OPERATION)
+        return out | self.jobs.idle(automaton, (active - out) | reached)
 
     def out_of(self, kind: ServiceKind) -> frozenset[str]:
         """The names of what is out of service, of one kind."""

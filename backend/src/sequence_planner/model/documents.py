@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
+from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.registry import StageDocument
 
@@ -601,12 +602,23 @@ class WorkStepDocument(DocumentPart):
     """The operations that must be completed before it."""
 
 
-class WorkMasterDocument(DocumentPart):
-    """What a job consists of: its operations with their order, and the estimated values a new product `brings`."""
+class WorkMasterDocument(SequencePart, TitledDocument):
+    """What a job consists of: its operations with their order, and the estimated values a new product `brings`.
 
-    title: Given[SourceText] = None
-    """For people."""
+    The order is that of a sequence, of `operations` with what comes before each, or of both together.
+    """
+
     brings: list[SourceText] = Field(default_factory=list)
     """The estimated values of a new product, such as `part := absent`."""
-    operations: dict[SourceText, WorkStepDocument | None] = Field(min_length=1)
+    operations: Given[dict[SourceText, WorkStepDocument | None]] = Field(default=None, min_length=1)
     """The operations of a job, each with what comes before it."""
+
+    @model_validator(mode="after")
+    def _has_operations(self) -> WorkMasterDocument:
+        if self.kind is None and self.operations is None:
+            raise ValueError("write its `operations`, or one of sequence, parallel, alternative, arbitrary")
+        return self
+
+    @property
+    def _needs_kind(self) -> bool:
+        return False

@@ -30,13 +30,14 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.efa_document import PlainDocument
 from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.sequences import KINDS, SequenceDocument, SequencePart
 from sequence_planner.model.stages.registry import StageDocument
 
 # The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
 FILES: Mapping[str, tuple[Any, str]] = {
     "station": (StationDocument, "station.yaml"),
     "resource": (ResourceDocument, "resources/<name>.yaml"),
-    "operations": (dict[str, OperationDocument], "operations.yaml"),
+    "operations": (dict[str, OperationDocument | SequenceDocument], "operations.yaml"),
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
     "efa": (PlainDocument, "*.efa.json"),
@@ -72,11 +73,14 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", schema["cls"].__name__.removesuffix("Document"))
         made["title"] = words.capitalize()
-        if issubclass(schema["cls"], DocumentPart):
-            for name, text in _written_beneath(schema["cls"]):
-                made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
+        bases = [each for each in reversed(schema["cls"].__mro__) if issubclass(each, DocumentPart)]
+        for name, text in (each for base in bases[1:] for each in _written_beneath(base)):
+            made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
         if schema["cls"] is StageDocument:
             made |= {"minProperties": 1, "maxProperties": 1}
+        if issubclass(schema["cls"], SequencePart):
+            instead = ["operations"] if schema["cls"] is WorkMasterDocument else []
+            made["anyOf" if instead else "oneOf"] = [{"required": [key]} for key in (*KINDS, *instead)]
         if schema["cls"] is SpecificationDocument:
             kinds = [key for key in made["properties"] if key not in ("title", "parameters", "while")]
             made["oneOf"] = [{"required": [key]} for key in kinds]

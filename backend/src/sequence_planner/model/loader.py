@@ -7,7 +7,7 @@ messages/<package>/srv/*.srv  messages/<package>/action/*.action
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar, cast
 
@@ -22,7 +22,9 @@ from sequence_planner.model.documents import (
     StationDocument,
     WorkMasterDocument,
 )
+from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.paths import DEFINITIONS, FILES, FOLDERS
+from sequence_planner.model.sequences import SequenceDocument, is_sequence
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text, text_of
@@ -33,7 +35,7 @@ D = TypeVar("D", bound=BaseModel)
 @dataclass(frozen=True)
 class Station:
     """A station as written. `messages` is the folder of its message definitions; `empty` are the places of files of
-    entries that are there and have none.
+    entries that are there and have none. `sequences` stand among the operations.
     """
 
     folder: Path
@@ -43,6 +45,7 @@ class Station:
     specifications: dict[SourceText, SpecificationDocument]
     work_masters: dict[SourceText, WorkMasterDocument]
     empty: tuple[Place, ...] = ()
+    sequences: dict[SourceText, SequenceDocument] = field(default_factory=dict)
 
     @property
     def messages(self) -> Path:
@@ -92,14 +95,17 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
         path.stem: reader.whole(f"resources/{path.name}", ResourceDocument)
         for path in sorted((folder / "resources").glob("*.yaml"))
     }
-    operations = reader.entries("operations.yaml", OperationDocument)
+    entries = reader.entries("operations.yaml", DocumentPart, operation_kind)
+    operations = {name: each for name, each in entries.items() if isinstance(each, OperationDocument)}
+    sequences = {name: each for name, each in entries.items() if isinstance(each, SequenceDocument)}
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
     reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
     present = {name: resource for name, resource in resources.items() if resource is not None}
-    return Station(folder, station, present, operations, specifications, work_masters, tuple(reader.empty))
+    empty = tuple(reader.empty)
+    return Station(folder, station, present, operations, specifications, work_masters, empty, sequences)
 
 
 def _is_file(path: Path) -> bool:
@@ -148,11 +154,13 @@ class _FolderReader:
         found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
         return cast("D | None", found)
 
-    def entries(self, name: str, kind: type[D]) -> dict[SourceText, D]:
-        """A file that maps names to documents; it may be missing."""
+    def entries(
+        self, name: str, kind: type[D], kind_of: Callable[[object], type[D]] | None = None
+    ) -> dict[SourceText, D]:
+        """A file that maps names to documents, each of a `kind` that may depend on what it holds; it may be missing."""
         if not (self._folder / name).exists():
             return {}
-        found = self._once(name, kind, lambda document: _validated_entries(document, kind))
+        found = self._once(name, kind, lambda document: _validated_entries(document, kind_of or (lambda _: kind)))
         entries = cast("dict[SourceText, D] | None", found) or {}
         if not entries:
             self.empty.append(Place(str(self._folder / name), 1, 1))
@@ -185,14 +193,21 @@ class _FolderReader:
         return known[0]
 
 
-def _validated_entries(document: YamlDocument, kind: type[BaseModel]) -> tuple[object, list[Finding]]:
+def operation_kind(content: object) -> type[OperationDocument | SequenceDocument]:
+    """Return what an entry of `operations.yaml` is meant to be."""
+    return SequenceDocument if is_sequence(content) else OperationDocument
+
+
+def _validated_entries(
+    document: YamlDocument, kind_of: Callable[[object], type[BaseModel]]
+) -> tuple[object, list[Finding]]:
     if not isinstance(document.content, dict):
         message = f"expected names with their definitions, found {shown(document.content)}"
         return {}, [Finding(document.place(()), message)]
     entries: dict[SourceText, object] = {}
     findings: list[Finding] = []
     for key, content in document.content.items():
-        entry, wrong = _validated(document, content, (str(key),), kind)
+        entry, wrong = _validated(document, content, (str(key),), kind_of(content))
         findings += wrong
         if entry is not None:
             entries[key] = entry

@@ -90,6 +90,7 @@ STATION: Final[dict[str, str]] = {
     "waits.resumed": "the job to be resumed",
     "waits.job": "a job that asks for it: the station works by order, and no job asks for it",
     "waits.another-job": "another job that asks for it: for {job} it is completed",
+    "waits.another-alternative": "another job that asks for it: for {job} another alternative is taken",
     "waits.another-job-stopping": "another job that asks for it: {job} is being stopped",
     "waits.job-resumed": "{job} to be resumed",
     "waits.job-begins": "{job} to begin, which waits for {conditions}",

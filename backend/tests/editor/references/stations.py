@@ -204,3 +204,21 @@ abilities:
     "messages/cell_msgs/msg/RobotCommand.msg": "uint8 place\nuint8 speed\nstring note\n",
     "messages/cell_msgs/action/Go.action": "uint8 place\n---\n---\n",
 }
+
+IN_SEQUENCE = {
+    **CELL,
+    "operations.yaml": CELL["operations.yaml"]
+    + """\
+both:
+  for: {where: side}
+  arbitrary: "bring(where)"
+whole:
+  sequence: {alternative: [both]} # the one way that there is
+""",
+    "work_masters.yaml": CELL["work_masters.yaml"]
+    + """\
+other_job:
+  sequence: [whole]
+third_job: {parallel: {for: {which: side}, sequence: bring(which)}}
+""",
+}

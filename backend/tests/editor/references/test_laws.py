@@ -14,13 +14,14 @@ from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.model.paths import EditError
 from sequence_planner.ros.types.messages import MessageRegistry
 
-from .stations import CELL, REPOSITORY, changed, described, messages_of, of_folder, of_page, write
+from .stations import CELL, IN_SEQUENCE, REPOSITORY, changed, described, messages_of, of_folder, of_page, write
 
 STATIONS = {
     "bolt_tightening": of_folder(REPOSITORY / "models" / "bolt_tightening"),
     "model page": of_page("model.md"),
     "pipelines page": of_page("pipelines.md"),
     "cell": CELL,
+    "sequences": IN_SEQUENCE,
 }
 LARGE = of_folder(REPOSITORY / "models" / "truck_engine_station")
 FRESH = "z9"
@@ -95,8 +96,8 @@ def test_every_part_there_and_back(station: str, tmp_path: Path) -> None:
 
 
 def test_every_kind_of_part_is_among_them(tmp_path: Path) -> None:
-    write(CELL, tmp_path)
-    assert {part.kind for part in parts_of(CELL, messages_of(tmp_path))} == set(KINDS)
+    write(IN_SEQUENCE, tmp_path)
+    assert {part.kind for part in parts_of(IN_SEQUENCE, messages_of(tmp_path))} == set(KINDS)
 
 
 def test_parts_of_a_large_station_there_and_back(tmp_path: Path) -> None:

@@ -32,6 +32,7 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 		{ kind: 'variable', file: STATION, path: ['estimated'], section: 'variables' },
 		{ kind: 'alarm', file: STATION, path: ['alarms'], section: 'station_alarms' },
 		{ kind: 'operation', file: 'operations.yaml', path: [], section: 'operations' },
+		{ kind: 'sequence', file: 'operations.yaml', path: [], section: 'operations' },
 		{ kind: 'specification', file: 'specifications.yaml', path: [], section: 'specifications' },
 		{ kind: 'work_master', file: 'work_masters.yaml', path: [], section: 'work_masters' },
 		{ kind: 'message', file: '', path: null, section: 'messages' }
@@ -63,6 +64,8 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 			return { kind: 'executing', when: false, do: [], ...given };
 		case 'operation':
 			return { ...title, precondition: false, goal: true };
+		case 'sequence':
+			return { ...title, sequence: [] };
 		case 'specification':
 			return { ...title, ...(Object.keys(given).length > 0 ? given : SPECIFICATIONS.forbidden) };
 		case 'work_master':

@@ -17,7 +17,7 @@ const CONTENTS = {
 		abilities: { move: { title: 'Move', effects: { leaves: { kind: 'starting' } } } },
 		topics: 'nonsense'
 	},
-	'operations.yaml': { make: { title: 'Make' } }
+	'operations.yaml': { make: { title: 'Make' }, shift: { for: { to: 'pose' }, sequence: 'make' } }
 };
 const TREE = treeOf(FILES, CONTENTS);
 const LOOKUP = lookupOf(TREE);
@@ -35,6 +35,7 @@ describe('the tree', () => {
 			'ability move',
 			'effect leaves',
 			'operation make',
+			'sequence shift',
 			'message robot_msgs/msg/RobotState'
 		]);
 	});
@@ -49,6 +50,7 @@ describe('the tree', () => {
 			'ability:robot.move',
 			'effect:robot.move.leaves',
 			'operation:make',
+			'sequence:shift',
 			'message:robot_msgs/msg/RobotState'
 		]);
 	});
@@ -61,6 +63,7 @@ describe('the tree', () => {
 		expect(at('resources/robot.yaml', 'abilities', 'move', 'start', 'when')).toBe('parameter:robot.move.to');
 		expect(at('resources/robot.yaml', 'abilities', 'move', 'effects', 'leaves', 'when')).toBe('parameter:robot.move.to');
 		expect(at('operations.yaml', 'make', 'goal')).toBe('parameter:operation:make.to');
+		expect(at('operations.yaml', 'shift', 'sequence')).toBe('parameter:sequence:shift.to');
 		expect(at('station.yaml', 'rest')).toBeNull();
 	});
 

@@ -15,6 +15,7 @@ export type EntryKind =
 	| 'effect'
 	| 'alarm'
 	| 'operation'
+	| 'sequence'
 	| 'specification'
 	| 'work_master'
 	| 'message';
@@ -68,6 +69,10 @@ export const IN_RESOURCE = {
 	alarms: 'alarm'
 } as const satisfies Partial<Record<SectionName, EntryKind>>;
 
+/** What makes a sequence of an entry among the operations. */
+const ORDERS = ['sequence', 'parallel', 'alternative', 'arbitrary'];
+const isSequence = (value: Json): boolean => isMapping(value) && ORDERS.some((each) => each in value);
+
 export type InResource = keyof typeof IN_RESOURCE;
 
 export const idOf = (file: string, path: Path): string => [file, ...path.map((step) => encodeURIComponent(step))].join('#');
@@ -92,6 +97,7 @@ function section(name: SectionName, file: string, path: Path, children: readonly
 function entriesIn(kind: EntryKind, file: string, path: Path, content: Json | undefined): Node[] {
 	return entriesOf(valueAt(content, path)).map(([name, value]) => {
 		const here = [...path, name];
+		if (kind === 'operation' && isSequence(value)) return entry('sequence', file, here, value);
 		return entry(kind, file, here, value, kind === 'ability' ? entriesIn('effect', file, [...here, 'effects'], content) : []);
 	});
 }
@@ -265,7 +271,8 @@ export function parameterOf(node: Node, name: string): string | null {
 	const owner = rest.join(':');
 	if (kind === 'effect') return `parameter:${owner.slice(0, owner.lastIndexOf('.'))}.${name}`;
 	if (kind === 'ability' || kind === 'variable') return `parameter:${owner}.${name}`;
-	return kind === 'operation' || kind === 'specification' ? `parameter:${kind}:${owner}.${name}` : null;
+	const others: readonly (string | undefined)[] = ['operation', 'specification', 'sequence', 'work_master'];
+	return others.includes(kind) ? `parameter:${kind}:${owner}.${name}` : null;
 }
 
 /** The shape of a node's document: what its form has. */

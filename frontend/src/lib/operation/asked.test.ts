@@ -18,6 +18,7 @@ test('an operation of a job says whether it is its turn', () => {
 	expect(asked({}, 'eligible')).toEqual({ how: 'now', job: 'Engine' });
 	expect(asked({}, 'active')).toEqual({ how: 'now', job: 'Engine' });
 	expect(asked({}, 'completed')).toEqual({ how: 'done', job: 'Engine' });
+	expect(asked({}, 'skipped')).toEqual({ how: 'skipped', job: 'Engine' });
 });
 
 test('without a job it says so, and where none is needed it says nothing', () => {

@@ -2,11 +2,13 @@
 import type { StationView } from '#lib/contract.ts';
 
 export interface Asked {
-	/** Whether no job asks for it, one will, one does, or one has done. */
-	readonly how: 'none' | 'later' | 'now' | 'done';
+	/** Whether no job asks for it, one will, one does, one has done, or one has taken another alternative. */
+	readonly how: 'none' | 'later' | 'now' | 'done' | 'skipped';
 	/** The title of the job. */
 	readonly job: string;
 }
+
+const HOW = { waiting: 'later', eligible: 'now', active: 'now', completed: 'done', skipped: 'skipped' } as const;
 
 /** Null where it becomes active without a job. */
 export function askedFor(view: StationView | null, name: string): Asked | null {
@@ -15,6 +17,5 @@ export function askedFor(view: StationView | null, name: string): Asked | null {
 	const job = operation.job === null ? undefined : view.jobs[operation.job];
 	if (job === undefined) return { how: 'none', job: '' };
 	const state = job.steps[name]?.state;
-	const how = state === 'completed' ? 'done' : state === 'eligible' || state === 'active' ? 'now' : 'later';
-	return { how, job: job.title };
+	return { how: HOW[state ?? 'waiting'], job: job.title };
 }

@@ -45,7 +45,7 @@ export interface Progress {
 export function progressOf(view: StationView | null, id: string): Progress | null {
 	const job = view?.jobs[id];
 	if (view === null || job === undefined) return null;
-	const steps = Object.entries(job.steps);
+	const steps = Object.entries(job.steps).filter(([, { state }]) => state !== 'skipped');
 	return {
 		done: steps.filter(([, { state }]) => state === 'completed').length,
 		all: steps.length,

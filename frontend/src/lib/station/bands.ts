@@ -31,6 +31,7 @@ export const OF_STATION = '-';
 /** In which order kinds stand in a lane. */
 const ORDER = [
 	'work_master',
+	'sequence',
 	'operation',
 	'specification',
 	'station',

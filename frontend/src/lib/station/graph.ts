@@ -15,6 +15,7 @@ export type ThingKind = keyof typeof KINDS;
 const KINDS = {
 	station: true,
 	work_master: true,
+	sequence: true,
 	operation: true,
 	specification: true,
 	ability: true,

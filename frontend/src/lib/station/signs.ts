@@ -3,6 +3,7 @@ import type { Kind } from './bands.ts';
 
 export const SIGNS: Readonly<Record<Kind, string>> = {
 	work_master: '≡',
+	sequence: '⇉',
 	operation: '◎',
 	specification: '⊘',
 	station: '⌂',

@@ -6,7 +6,7 @@ Each answer is about reachable states; a trace leads to where it can be seen.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sequence_planner.analysis.checks.reachability import ReachabilityQuery
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
@@ -186,10 +186,20 @@ class Possibility:
             cause = self._cause(trace)
             yield FeasibilityFinding("never-active", subject, message, trace, cause=cause, consequence=True)
         elif self._is_news(operation.precondition):
-            condition = print_expression(operation.precondition)
-            yield FeasibilityFinding(
-                "never-active", subject, f"never becomes active: {_never(condition)}", relative=True
-            )
+            in_sequence = self._out_of_turn(operation)
+            keys = () if in_sequence is None else (f"operation.{operation.name}.sequence.{in_sequence}",)
+            where = "" if in_sequence is None else f" in the sequence `{in_sequence}`, {operation.turns[in_sequence]}"
+            message = f"never becomes active{where}: {_never(print_expression(operation.precondition))}"
+            subject = replace(subject, keys=(*keys, *subject.keys))
+            yield FeasibilityFinding("never-active", subject, message, relative=not keys)
+
+    def _out_of_turn(self, operation: Operation) -> str | None:
+        """The sequence that keeps the operation from ever becoming active; None where its own precondition does."""
+        written = operation.precondition if operation.written is None else operation.written
+        if not operation.turns or not self._inquiry.may_ever(written):
+            return None
+        together = {name: conjunction(written, turn.condition) for name, turn in operation.turns.items()}
+        return next((name for name, each in together.items() if not self._inquiry.may_ever(each)), min(together))
 
     def _goal(self, subject: Subject, operation: Operation, active: Function) -> Iterator[FeasibilityFinding]:
         inquiry, plain = self._inquiry, self._automaton.one_at_a_time

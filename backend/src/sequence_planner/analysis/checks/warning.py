@@ -58,12 +58,17 @@ def parts(automaton: Automaton) -> Iterator[ModelCondition]:
         needs = _start_parts(ability_name)
         yield ModelCondition(effect.name, "effect's condition", effect.guard, "so the effect never happens", needs)
     for operation in automaton.operations.values():
-        key = f"operation.{operation.name}"
-        precondition = ModelCondition(
-            key, "precondition", operation.precondition, "so the operation never becomes active"
-        )
-        yield precondition
-        yield ModelCondition(key, "goal", operation.goal, "so the operation is never completed", (precondition.name,))
+        key, consequence = f"operation.{operation.name}", "so the operation never becomes active"
+        written = operation.precondition if operation.written is None else operation.written
+        conditions = [ModelCondition(key, "precondition", written, consequence)]
+        for sequence, turn in operation.turns.items():
+            both, what = conjunction(written, turn.condition), f"precondition in the sequence `{sequence}`"
+            consequence = f"so `{operation.name}` never becomes active in the sequence `{sequence}`, {turn}"
+            place_in_it = f"{key}.sequence.{sequence}"
+            conditions.append(ModelCondition(place_in_it, what, both, consequence, (conditions[0].name,)))
+        yield from conditions
+        active = tuple(each.name for each in conditions)
+        yield ModelCondition(key, "goal", operation.goal, "so the operation is never completed", active)
 
 
 def _of_ability(ability: Ability) -> Iterator[ModelCondition]:

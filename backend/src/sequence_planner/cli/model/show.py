@@ -146,6 +146,8 @@ def _lines(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
             yield from ("", f"work master {master.name}: {master.title}")
             for step, before in master.operations.items():
                 yield f"  {step}" + (f" after {', '.join(sorted(before))}" if before else "")
+            for what, groups in (("one of", master.alternatives), ("one at a time", master.arbitrary)):
+                yield from (f"  {what}: {' | '.join(', '.join(sorted(each)) for each in group)}" for group in groups)
             yield from _actions("brings", master.brings)
     for alarm in automaton.alarms.values():
         if _chosen(alarm.name, wanted):

@@ -76,6 +76,8 @@ def described_automaton(
             name: {
                 "title": master.title,
                 "operations": {step: sorted(before) for step, before in master.operations.items()},
+                "alternatives": [[sorted(branch) for branch in branches] for branches in master.alternatives],
+                "arbitrary": [[sorted(branch) for branch in branches] for branches in master.arbitrary],
                 "brings": _described_actions(master.brings),
             }
             for name, master in automaton.work_masters.items()

@@ -157,6 +157,8 @@ def _master(automaton: Automaton, master: WorkMaster) -> WorkMasterView:
         brings=[print_assignment(action) for action in master.brings],
         brought=sorted({target(action) for action in master.brings}),
         operations={name: _operation(automaton, name, after) for name, after in master.operations.items()},
+        alternatives=[[sorted(branch) for branch in branches] for branches in master.alternatives],
+        arbitrary=[[sorted(branch) for branch in branches] for branches in master.arbitrary],
     )
 
 

@@ -70,7 +70,8 @@ class Previewing:
         """All of it. Without a planner it says why there is no plan, and the rest all the same."""
         execution, automaton, revision = self._execution, self._execution.automaton, self._execution.revision
         now, then = execution.state, execution.corrected(values)
-        active = update_operations(automaton, then, execution.active) - execution.conduct.idle_operations(automaton)
+        active = update_operations(automaton, then, execution.active)
+        active -= execution.conduct.idle_operations(automaton, active)
         before, after = self._startable(now), self._startable(then)
         wrong_now, wrong_then = (self._doubting.contradictions(state).because for state in (now, then))
         changes = [self._changed(name, value) for name, value in values.items()]

@@ -187,7 +187,7 @@ class WhoCan:
                 continue
             elif jobs.by_order and name in automaton.job_operations:
                 job = jobs.having(name, automaton)
-                if job is not None and name not in job.completed:
+                if job is not None and name not in job.completed and name not in job.skipped(automaton):
                     yield name
             elif evaluate(operation.goal, execution.state) is not True:
                 yield name

@@ -371,12 +371,17 @@ class WorkOperationView(View):
 
 
 class WorkMasterView(View):
-    """A work master: its operations, the estimates that a new product `brings`, and the variables of these."""
+    """A work master: its operations, the estimates that a new product `brings`, and the variables of these.
+
+    Of the branches of each of the `alternatives` one is taken, of those in `arbitrary` order one at a time.
+    """
 
     title: str
     brings: list[str]
     brought: list[str]
     operations: dict[str, WorkOperationView]
+    alternatives: list[list[list[str]]]
+    arbitrary: list[list[list[str]]]
 
 
 class WorkAbilityView(View):

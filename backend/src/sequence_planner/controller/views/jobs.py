@@ -233,6 +233,8 @@ def why_idle(execution: Executor, operation: str) -> Message | None:
         return None
     if operation in job.completed:
         return message("waits.another-job", job=job.title)
+    if operation in job.skipped(automaton):
+        return message("waits.another-alternative", job=job.title)
     if job.finishing is not None:
         return message("waits.another-job-stopping", job=job.title)
     if job.state is JobState.PAUSED:
@@ -285,6 +287,8 @@ def _step(execution: Executor, jobs: Jobs, job: Job, name: str, eligible: frozen
 def _state(execution: Executor, job: Job, name: str, eligible: frozenset[str]) -> JobStepState:
     if name in job.completed:
         return JobStepState.COMPLETED
+    if job.work_master in execution.automaton.work_masters and name in job.skipped(execution.automaton):
+        return JobStepState.SKIPPED
     if name not in eligible:
         return JobStepState.WAITING
     return JobStepState.ACTIVE if name in execution.active else JobStepState.ELIGIBLE

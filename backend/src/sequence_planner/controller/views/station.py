@@ -132,6 +132,7 @@ class JobStepState(StrEnum):
     ELIGIBLE = "eligible"  # active as soon as its precondition holds
     ACTIVE = "active"
     COMPLETED = "completed"
+    SKIPPED = "skipped"  # another branch of its alternative was taken
 
 
 class JobStepView(View):

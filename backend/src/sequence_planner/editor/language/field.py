@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 from sequence_planner.automaton.findings import Binding, instance_name, with_arguments
 from sequence_planner.automaton.grounding import Meaning, Writing
 from sequence_planner.language.resolver import NameScope
-from sequence_planner.language.types import Type
+from sequence_planner.language.syntax import Expression, conjunction
+from sequence_planner.language.types import Place, Type
 from sequence_planner.model.documents import Parameters
+from sequence_planner.model.fields import Predicate
 from sequence_planner.model.source import SourceText
 
 # What grounding does with the text of a field, for one choice of the parameters.
@@ -74,6 +76,24 @@ def condition(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
     return meaning.predicate(text, scope)
 
 
+def all_of(meaning: Meaning, texts: Iterable[Predicate], scope: NameScope) -> Expression:
+    """The condition that all of `texts` hold."""
+    return conjunction(*(meaning.predicate(text, scope) for text in texts))
+
+
 def with_text(texts: Sequence[SourceText], index: int, text: SourceText) -> list[SourceText]:
     """`texts` with `text` as that entry, or as their last if there are not so many."""
     return [*texts[:index], text, *texts[index + 1 :]]
+
+
+def field_of_parameter(name: str) -> TextField:
+    """The enumeration of the parameter `name`."""
+    key = placed(name)
+    return TextField(
+        FieldKind.ENUMERATION, lambda meaning, text, scope: meaning.declarations.check_parameters({key: text})
+    )
+
+
+def placed(name: str) -> SourceText:
+    """A name as a key of documents, at no place in particular."""
+    return SourceText(name, Place("", 1, 1), name)

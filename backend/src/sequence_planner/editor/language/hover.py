@@ -120,11 +120,7 @@ class _Hovering:
                 full = f"{self._field.resource}.{word}"
                 return self._family(span, full, (full,), self._lexicon.family.get(full))
             case FieldKind.OPERATION:
-                family = self._lexicon.family.get(f"{OPERATION}.{word}.active")
-                return None if family is None else Hover(
-                    span.start, span.end, word, NameKind.OPERATION, word, (word,), title=family.title,
-                    place=self._lexicon.within(family.place), part=f"operation:{word}",
-                )  # fmt: skip
+                return self._operation(span, word)
             case FieldKind.ABILITY:
                 return self._ability(span)
         return None
@@ -190,6 +186,24 @@ class _Hovering:
                     part=f"ability:{family.name}",
                 )  # fmt: skip
         return None
+
+    def _operation(self, span: Span, word: str) -> Hover | None:
+        """An operation, for all choices of the parameters, or a sequence."""
+        if (name := self._name(span)) is None:
+            return None
+        full = tuple(dict.fromkeys(str(scope.substitute(name)) for scope in self._scopes()))
+        families = (self._lexicon.family.get(f"{OPERATION}.{each}.active") for each in full)
+        if (family := next((each for each in families if each is not None), None)) is not None:
+            title, place, part = family.title, family.place, _part(family)
+        else:
+            sequences = self._lexicon.station.sequences
+            if (key := next((each for each in sequences if each == word), None)) is None:
+                return None
+            title, place, part = sequences[key].title, key.place, f"sequence:{word}"
+        return Hover(
+            span.start, span.end, word, NameKind.OPERATION, word, full[:_MOST_NAMES], title=title,
+            place=self._lexicon.within(place), part=part,
+        )  # fmt: skip
 
     def _variable(self, span: Span, name: Name) -> Hover | None:
         found = [variable.name for scope in self._scopes() if (variable := scope.find(name)) is not None]

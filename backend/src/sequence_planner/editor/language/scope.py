@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice, product
@@ -14,27 +14,30 @@ from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.findings import Findings, instance_name, with_arguments
 from sequence_planner.automaton.grounding import (
-    BROUGHT,
     CANCEL,
     EFFECT,
     FINISH,
     START,
     Meaning,
-    Steps,
     Writing,
     alarm_condition,
-    brought_by,
     check_acknowledgement,
-    check_steps,
     exclusive_abilities,
     observable_condition,
-    steps_of,
 )
-from sequence_planner.editor.language.field import FieldKind, TextField, condition, with_text
+from sequence_planner.editor.language.field import (
+    FieldKind,
+    TextField,
+    all_of,
+    condition,
+    field_of_parameter,
+    placed,
+    with_text,
+)
 from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.editor.language.sequences import field_of_sequence, field_of_work_master
 from sequence_planner.language.resolver import NameScope
 from sequence_planner.language.suggestions import beginning_with
-from sequence_planner.language.syntax import conjunction
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
 from sequence_planner.model.documents import (
     AbilityDocument,
@@ -42,7 +45,6 @@ from sequence_planner.model.documents import (
     ResourceDocument,
     SpecificationDocument,
     VariableDocument,
-    WorkMasterDocument,
 )
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
@@ -238,8 +240,7 @@ class _AbilityFields:
         self, texts: list[SourceText], index: int, guards: tuple[Predicate, ...], writing: Writing
     ) -> TextField:
         def read(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
-            holds = conjunction(*(meaning.predicate(guard, scope) for guard in guards))
-            return meaning.actions(with_text(texts, index, text), scope, holds, writing)
+            return meaning.actions(with_text(texts, index, text), scope, all_of(meaning, guards, scope), writing)
 
         return TextField(FieldKind.ACTION, read, writing=writing, **self._around)
 
@@ -271,20 +272,7 @@ def field_of_variable(
     return None
 
 
-def field_of_parameter(name: str) -> TextField:
-    """The enumeration of the parameter `name`."""
-    key = placed(name)
-    return TextField(
-        FieldKind.ENUMERATION, lambda meaning, text, scope: meaning.declarations.check_parameters({key: text})
-    )
-
-
-def placed(name: str) -> SourceText:
-    """A name as a key of documents, at no place in particular."""
-    return SourceText(name, Place("", 1, 1), name)
-
-
-# The fields of the documents beside the resources: station, operations, specifications and work masters.
+# The fields of the documents beside the resources: station, operations and specifications.
 
 
 def field_of_station(station: Station, path: EntryPath, meaning: Meaning) -> TextField | None:
@@ -349,46 +337,6 @@ def _of_specification(
 
 
 def _unread(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
-    return None
-
-
-def field_of_work_master(station: Station, path: EntryPath, operations: Collection[str]) -> TextField | None:
-    """The field at `path` of `work_masters.yaml`. An operation of the job is the name of its entry."""
-    match path:
-        case (str(name), *rest):
-            document = station.work_masters.get(placed(name))
-            steps: Steps = {} if document is None else steps_of(document)
-            return _of_work_master(document, steps, tuple(rest), operations)
-    return None
-
-
-def _of_work_master(
-    document: WorkMasterDocument | None, steps: Steps, path: EntryPath, operations: Collection[str]
-) -> TextField | None:
-    match path:
-        case ("brings", int(index)):
-            texts = [] if document is None else document.brings
-
-            def bring(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
-                return brought_by(meaning, with_text(texts, index, text))
-
-            return TextField(FieldKind.ACTION, bring, writing=BROUGHT)
-        case ("operations", str(name)):
-
-            def step(meaning: Meaning, text: SourceText, scope: NameScope) -> None:
-                renamed = {text if each == name else each: before for each, before in steps.items()}
-                check_steps(meaning, renamed if name in steps else {**steps, text: ()}, operations)
-
-            return TextField(FieldKind.OPERATION, step, choices=tuple(operations))
-        case ("operations", str(name), "after", int(index)):
-
-            def before(meaning: Meaning, text: SourceText, scope: NameScope) -> None:
-                key = placed(name)
-                others = with_text(steps.get(key, ()), index, text)
-                check_steps(meaning, {**steps, key: tuple(others)}, operations)
-
-            choices = tuple(str(each) for each in steps if each != name)
-            return TextField(FieldKind.OPERATION, before, choices=choices)
     return None
 
 
@@ -459,11 +407,11 @@ class Lexicon:
             case ("station.yaml",):
                 return field_of_station(station, path, meaning)
             case ("operations.yaml",):
-                return field_of_operation(station, path, given)
+                return field_of_sequence(station, path, self.operations) or field_of_operation(station, path, given)
             case ("specifications.yaml",):
                 return field_of_specification(station, path, given)
             case ("work_masters.yaml",):
-                return field_of_work_master(station, path, self.operations)
+                return field_of_work_master(station, path, self.operations, meaning)
         return None
 
     def meaning(self, field: TextField, findings: Findings | None = None) -> Meaning:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from enum import StrEnum
 
 from sequence_planner.editor.symbols.collectors import Expressions, Naming, steps_of
@@ -14,6 +15,8 @@ from sequence_planner.editor.symbols.index import (
     Occurrence,
     TextContext,
     Where,
+    branches_in,
+    operation_part,
     parameters,
     value_of,
     variable_of,
@@ -42,7 +45,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 class Manner(StrEnum):
     """What who uses a thing does with it. Those of a pipeline are said from its side: it feeds a variable."""
 
-    RUNS = "runs"  # a work master, an operation
+    RUNS = "runs"  # a work master or a sequence, an operation
     AFTER = "after"  # a work master: others wait for it
     BRINGS = "brings"  # a work master: the value for a new product
     GOAL = "goal"
@@ -84,7 +87,12 @@ _BY_KEY = {
     "specification": {"exclusive": Manner.EXCLUDES, "order": Manner.ORDERS, "zone": Manner.ZONE},
     "work_master": {"brings": Manner.BRINGS},
 }
-_OTHERWISE = {"specification": Manner.FORBIDS, "work_master": Manner.RUNS, "message": Manner.CARRIES}
+_OTHERWISE = {
+    "specification": Manner.FORBIDS,
+    "work_master": Manner.RUNS,
+    "sequence": Manner.RUNS,
+    "message": Manner.CARRIES,
+}
 
 
 def manner_of(part: ModelPart, by: ModelPart | None, path: EntryPath, declared: Declared, *, writes: bool) -> Manner:
@@ -245,10 +253,12 @@ class _Walk:
             self._read.condition(entry(document, "when"), at.to("when"))
 
     def operations(self, content: object) -> None:
-        """Preconditions, goals and formulas."""
+        """Preconditions, goals and formulas, and sequences."""
         for name, document in pairs(content):
-            part = ModelPart("operation", None, str(name))
+            part = operation_part(name, document)
             at = self._whole(part, OPERATIONS, name, document)
+            if part.kind == "sequence":
+                self._sequence(part.id, document, at)
             for key in ("precondition", "goal"):
                 self._read.condition(entry(document, key), at.to(key))
             self._read.condition(entry(document, "local"), at.to("local"), is_formula=True)
@@ -281,19 +291,35 @@ class _Walk:
     def work_masters(self, content: object) -> None:
         """The operations of jobs, and what a new product brings."""
         for name, document in pairs(content):
-            at = Where(WORK_MASTERS, (str(name),), f"work master {name}", 1)
-            self._add(ModelPart("work_master", None, str(name)), at, name, declares=True)
+            part = ModelPart("work_master", None, str(name))
+            at = Where(WORK_MASTERS, (str(name),), f"work master {name}", 1, TextContext(None, part.id))
+            self._add(part, at, name, declares=True)
+            self._sequence(part.id, document, at)
             self._read.actions(entry(document, "brings"), at.to("brings"))
             for step, inner in pairs(entry(document, "operations")):
                 self._operation(step, at.to("operations", step))
                 for index, before in enumerate(items(entry(inner, "after"))):
                     self._operation(before, at.to("operations", step, "after", index))
 
+    def _sequence(self, holder: str, document: object, at: Where) -> None:
+        """The operations and sequences that a part of a sequence orders."""
+        self._parameters(holder, entry(document, "for"), at.to("for"))
+        around = replace(at.around, parameters={**at.around.parameters, **parameters(entry(document, "for"))})
+        for branch, path in branches_in(document):
+            below = replace(at.to(*path), around=around)
+            if isinstance(branch, SourceText):
+                self._operation(branch, below)
+            else:
+                self._sequence(holder, branch, below)
+
     def _operation(self, text: object, where: Where) -> None:
-        """An operation with its arguments."""
+        """An operation with its arguments, or a sequence."""
         if (name := self._name(text, where)) is None or not isinstance(text, SourceText) or len(name.path) != 1:
             return
         step = steps_of(name, text)[0]
+        if step.word.text in self._naming.declared.sequences:
+            self._add(ModelPart("sequence", None, step.word.text), where, text, step.word.span, whole=name.span)
+            return
         self._add(ModelPart("operation", None, step.word.text), where, text, step.word.span, whole=name.span)
         of = self._naming.declared.operations.get(step.word.text, {})
         self._naming.note_arguments(step.arguments, of, where, text, name.span)

@@ -22,6 +22,8 @@ from sequence_planner.editor.symbols.texts import (
 )
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.paths import EditError, shown_path
+from sequence_planner.model.sequences import KINDS as SEQUENCE_KINDS
+from sequence_planner.model.sequences import is_sequence
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE, GoalState
@@ -39,6 +41,7 @@ KINDS: Mapping[str, str] = {
     "effect": "the effect",
     "alarm": "the alarm",
     "operation": "the operation",
+    "sequence": "the sequence",
     "specification": "the specification",
     "work_master": "the work master",
     "parameter": "the parameter",
@@ -58,7 +61,7 @@ class ModelPart(NamedTuple):
     """Something with a name. `owner` is what it belongs to, without which the name does not tell it:
 
     the enumeration of a value; the resource of a variable, an ability or a flow; the ability of an effect; and for a
-    parameter the full name of its ability or variable, or `operation:` or `specification:` and a name.
+    parameter the full name of its ability or variable, or the id of what else it belongs to, such as `operation:press`.
     """
 
     kind: str
@@ -119,7 +122,7 @@ def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
             return part._replace(owner=new.name)
         case "ability" | "variable" if part.kind in _WITHIN and owner == old.full:
             return part._replace(owner=new.full)
-        case "operation" | "specification" if part.kind == "parameter" and owner == old.id:
+        case "operation" | "specification" | "sequence" | "work_master" if part.kind == "parameter" and owner == old.id:
             return part._replace(owner=new.id)
     return part
 
@@ -161,6 +164,7 @@ class Declared:
         self.variables: dict[str, DeclaredVariable] = {}
         self.abilities: dict[str, Parameters] = {}
         self.operations: dict[str, Parameters] = {}
+        self.sequences: set[str] = set()
         self.parts: list[ModelPart] = []
         self.sent: set[str] = set()  # topics on which the station speaks
         station = content.get(STATION)
@@ -226,13 +230,19 @@ class Declared:
 
     def _read_others(self, content: ModelContent) -> None:
         for name, document in pairs(content.get(OPERATIONS)):
-            part = ModelPart("operation", None, str(name))
-            self.operations[part.name] = parameters(entry(document, "parameters"))
-            self._note(part, self.operations[part.name], part.id)
+            part = operation_part(name, document)
+            if part.kind == "operation":
+                self.operations[part.name] = parameters(entry(document, "parameters"))
+                self._note(part, self.operations[part.name], part.id)
+            else:
+                self.sequences.add(part.name)
+                self._note(part, parameters_within(document), part.id)
         for name, document in pairs(content.get(SPECIFICATIONS)):
             part = ModelPart("specification", None, str(name))
             self._note(part, parameters(entry(document, "parameters")), part.id)
-        self.parts += [ModelPart("work_master", None, str(name)) for name, _ in pairs(content.get(WORK_MASTERS))]
+        for name, document in pairs(content.get(WORK_MASTERS)):
+            part = ModelPart("work_master", None, str(name))
+            self._note(part, parameters_within(document), part.id)
 
     def _note(self, part: ModelPart, of: Parameters, holder: str) -> None:
         self.parts.append(part)
@@ -242,6 +252,29 @@ class Declared:
 def parameters(written: object) -> Parameters:
     """The parameters of a part, each with its enumeration."""
     return {str(name): str(of) for name, of in pairs(written) if isinstance(of, SourceText)}
+
+
+def operation_part(name: str, document: object) -> ModelPart:
+    """What an entry of `operations.yaml` is."""
+    return ModelPart("sequence" if is_sequence(document) else "operation", None, str(name))
+
+
+def parameters_within(document: object) -> Parameters:
+    """The parameters of a sequence, and of all parts of it."""
+    found = dict(parameters(entry(document, "for")))
+    for branch, _ in branches_in(document):
+        found |= parameters_within(branch)
+    return found
+
+
+def branches_in(document: object) -> Iterator[tuple[object, tuple[str | int, ...]]]:
+    """The branches of a part of a sequence, each with where it stands in that."""
+    for kind in SEQUENCE_KINDS:
+        written = entry(document, kind)
+        if isinstance(written, list):
+            yield from ((branch, (kind, index)) for index, branch in enumerate(written))
+        elif written is not None:
+            yield written, (kind,)
 
 
 def is_activity(names: list[str]) -> bool:

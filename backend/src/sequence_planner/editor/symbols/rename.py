@@ -169,7 +169,7 @@ def usage_of(found: Occurrence) -> Usage:
 # Why a part cannot be called so: its new name is none, or taken, or not the model's alone.
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_SHARING = ("variable", "ability")  # of a resource, which have no names in common
+_SHARING = (("variable", "ability"), ("operation", "sequence"))  # which have no names in common
 
 
 def require_name(part: ModelPart, name: str) -> None:
@@ -213,8 +213,9 @@ def require_free(new: ModelPart, declared: Declared, gathered: Gathered, content
 
 def _rivals(new: ModelPart) -> Iterator[ModelPart]:
     yield new
-    if new.kind in _SHARING and new.owner is not None:
-        yield from (new._replace(kind=kind) for kind in _SHARING if kind != new.kind)
+    if new.kind != "variable" or new.owner is not None:  # of a station there are no abilities
+        for kinds in _SHARING:
+            yield from (new._replace(kind=kind) for kind in kinds if new.kind in kinds and kind != new.kind)
 
 
 def _undeclared(declared: Declared) -> Iterator[ModelPart]:

@@ -67,6 +67,12 @@ class Vocabulary:
         found = [each for each in self.ordered if values.issubset(each.values)]
         return min(found, key=lambda each: len(each.values), default=None)
 
+    def named(self, prefixes: tuple[str, ...]) -> list[str]:
+        """The names that can stand in a condition, those under one of `prefixes` without it."""
+        found = [*self.predicates, *self.relations, *self.maps]
+        own = [name.removeprefix(prefix) for prefix in prefixes for name in found if name.startswith(prefix)]
+        return [*own, *found]
+
     def declared(self) -> tuple[object, ...]:
         """All that is declared: where it is equal, each text means the same."""
         return (self.domains, self.ordered, self.relations, self.maps, self.predicates)

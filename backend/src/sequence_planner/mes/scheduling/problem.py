@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict, deque
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from itertools import islice
@@ -340,14 +340,26 @@ def _work(
     order: JobOrder, master: WorkMasterView, job: JobView | None, view: StationView, known: KnownTimes
 ) -> JobWork:
     operations: dict[str, WorkOperation] = {}
+    steps = {} if job is None else job.steps
+    begun = {name for name, step in steps.items() if step.started is not None or step.ended is not None}
+    passed_over = _passed_over(master, begun)
     for name, operation in master.operations.items():
-        step = None if job is None else job.steps.get(name)
-        if step is not None and step.state is JobStepState.COMPLETED:
+        step = steps.get(name)
+        if name in passed_over or (step is not None and step.state is JobStepState.COMPLETED):
             continue
         resources = known.resources(name, _resources(operation.goal_reads, view))
         started = step.started if step is not None and step.state is JobStepState.ACTIVE else None
         operations[name] = WorkOperation(frozenset(operation.after), known.seconds(name), resources, started)
     return JobWork(order.id, order.priority, order.due, order.earliest, operations, order.is_at_station)
+
+
+def _passed_over(master: WorkMasterView, begun: Set[str]) -> set[str]:
+    """The operations of alternatives that are not counted on: those of all branches but the one begun, or the first."""
+    found: set[str] = set()
+    for branches in master.alternatives:
+        taken = next((branch for branch in branches if not begun.isdisjoint(branch)), branches[0])
+        found.update(name for branch in branches if branch is not taken for name in branch)
+    return found
 
 
 def _resources(variables: Iterable[str], view: StationView) -> frozenset[str]:

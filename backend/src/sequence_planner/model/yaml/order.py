@@ -12,11 +12,12 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.sequences import SequenceDocument
 from sequence_planner.model.yaml.reader import EntryPath
 
 _FILES: dict[str, object] = {
     "station.yaml": StationDocument,
-    "operations.yaml": dict[str, OperationDocument],
+    "operations.yaml": dict[str, OperationDocument | SequenceDocument],
     "specifications.yaml": dict[str, SpecificationDocument],
     "work_masters.yaml": dict[str, WorkMasterDocument],
 }
@@ -38,4 +39,4 @@ def _order(kind: object, path: EntryPath) -> tuple[str, ...]:
         return _order(fields.get(str(path[0])), path[1:])
     if get_origin(kind) in (dict, list):
         return _order(get_args(kind)[-1], path[1:]) if path else ()
-    return next((found for each in get_args(kind) if (found := _order(each, path))), ())
+    return tuple(dict.fromkeys(name for each in get_args(kind) for name in _order(each, path)))

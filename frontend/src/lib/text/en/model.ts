@@ -34,6 +34,7 @@ export const model = {
 		alarm: 'Alarm',
 		effect: 'Effect',
 		operation: 'Operation',
+		sequence: 'Sequence',
 		specification: 'Specification',
 		work_master: 'Work master',
 		message: 'Message definition'

@@ -119,8 +119,9 @@ export const operate = {
 			none: (): string => 'no job asks for it',
 			later: (job: string): string => `later in ${job}`,
 			now: (job: string): string => `for ${job}`,
-			done: (job: string): string => `done for ${job}`
-		} as Readonly<Record<'none' | 'later' | 'now' | 'done', (job: string) => string>>,
+			done: (job: string): string => `done for ${job}`,
+			skipped: (job: string): string => `not needed for ${job}`
+		} as Readonly<Record<'none' | 'later' | 'now' | 'done' | 'skipped', (job: string) => string>>,
 		leftOut: 'left out of the plan'
 	},
 	resources: {

@@ -25,6 +25,7 @@ export const station = {
 	kind: {
 		station: ['Station', 'stations'],
 		work_master: ['Work master', 'work masters'],
+		sequence: ['Sequence', 'sequences'],
 		operation: ['Operation', 'operations'],
 		specification: ['Specification', 'specifications'],
 		ability: ['Ability', 'abilities'],

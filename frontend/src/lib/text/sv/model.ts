@@ -33,6 +33,7 @@ export const model: Text['model'] = {
 		alarm: 'Larm',
 		effect: 'Effekt',
 		operation: 'Operation',
+		sequence: 'Sekvens',
 		specification: 'Specifikation',
 		work_master: 'Arbetsmall',
 		message: 'Meddelandedefinition'

@@ -118,7 +118,8 @@ export const operate: Text['operate'] = {
 			none: () => 'inget jobb kräver den',
 			later: (job) => `senare i ${job}`,
 			now: (job) => `för ${job}`,
-			done: (job) => `klar för ${job}`
+			done: (job) => `klar för ${job}`,
+			skipped: (job) => `behövs inte för ${job}`
 		},
 		leftOut: 'utanför planen'
 	},

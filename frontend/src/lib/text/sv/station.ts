@@ -24,6 +24,7 @@ export const station: Text['station'] = {
 	kind: {
 		station: ['Station', 'stationer'],
 		work_master: ['Arbetsmall', 'arbetsmallar'],
+		sequence: ['Sekvens', 'sekvenser'],
 		operation: ['Operation', 'operationer'],
 		specification: ['Specifikation', 'specifikationer'],
 		ability: ['Förmåga', 'förmågor'],
