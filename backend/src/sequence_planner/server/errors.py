@@ -21,7 +21,6 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
-from sequence_planner.core.data_models import complained
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.editor.processes import BodyError
 from sequence_planner.mes.order import OrderCommand, OrderRefused

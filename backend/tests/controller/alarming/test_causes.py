@@ -148,7 +148,11 @@ def test_a_question_names_the_operations_that_it_decides() -> None:
     shown = alarms(rig)
     shown.questions = [
         QuestionView(
-            variable="bolts[bolt_pair_1]", believed="placed", possible=["empty"], because=["a does not go with b"]
+            variable="bolts[bolt_pair_1]",
+            believed="placed",
+            possible=["empty"],
+            because=["a does not go with b"],
+            because_messages=[],
         )
     ]
     told = shown.current(None, Timestamp(1000, 10))["contradiction"]

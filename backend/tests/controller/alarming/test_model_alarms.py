@@ -13,7 +13,6 @@ from controller.alarming.scene import Told, acknowledge, alarms_of, shelve
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.controller.alarms.alarm import KIND, aside_from
-from sequence_planner.controller.alarms.message import Wording
 from sequence_planner.controller.alarms.model_conditions import ModelAlarms
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.restore import RestoredState
@@ -22,6 +21,7 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.language.types import Value
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.source import ModelError
+from sequence_planner.texts.message import Wording
 from support.places import MODELS
 from support.simulated import Rig, never
 

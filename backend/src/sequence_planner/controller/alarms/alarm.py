@@ -17,9 +17,9 @@ from sequence_planner.controller.alarms.kinds import (
     AlarmKind,
     Cause,
 )
-from sequence_planner.controller.alarms.message import Argument, Item, Message, as_it_was, message, quoted
 from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.controller.views.station import AlarmGroup, AlarmMessages, AlarmState, AlarmView, Priority
+from sequence_planner.controller.views.wording import title_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
@@ -27,6 +27,7 @@ from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import variables
 from sequence_planner.planning.heuristic.relaxation import reachable
 from sequence_planner.planning.problem import Circumstances
+from sequence_planner.texts.message import Argument, Item, Message, as_it_was, message, quoted
 
 # How urgent an alarm is.
 
@@ -66,7 +67,8 @@ class Consequences:
         if execution.production is not Production.STARTED:
             return message("wait.not-started")
         if execution.operator_plan is not None:
-            return message("wait.errand", title=message("quoted", title=execution.operator_plan.title), until=until)
+            title = title_text(execution.operator_plan.title)
+            return message("wait.errand", title=message("quoted", title=title), until=until)
         if execution.mode is not Mode.AUTOMATIC:
             return message("wait.mode", mode=message(f"mode.{execution.mode}"))
         names = sorted(execution.active.intersection(operations))
@@ -363,10 +365,10 @@ class PutAside(BaseModel):
 
     model_config = ConfigDict(frozen=True)
     priority: Priority
-    text: str | Message  # a string where it is of a program that wrote no other
-    past: str | Message = ""
-    consequence: str | Message
-    action: str | Message
+    text: Message | str  # a string where it is of a program that wrote no other
+    past: Message | str = ""
+    consequence: Message | str
+    action: Message | str
     kind: str = ""
     subject: str = ""
     by: str

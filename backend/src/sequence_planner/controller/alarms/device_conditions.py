@@ -17,7 +17,6 @@ from sequence_planner.controller.alarms.kinds import (
     AlarmKind,
     Cause,
 )
-from sequence_planner.controller.alarms.message import Argument, Message, as_it_was, message
 from sequence_planner.controller.io.inputs import InputError, InputErrors, Inputs, InputTopic
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
@@ -25,6 +24,7 @@ from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
+from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
 GRACE = 30.0  # seconds after the start for devices to be heard first
 STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
@@ -137,7 +137,7 @@ class DeviceAlarms:
 
     def _mismatches(self) -> Iterator[Cause]:
         """Of each resource one: what was built from other definitions is so on every topic."""
-        troubles: dict[str, dict[str, str]] = {}
+        troubles: dict[str, dict[str, Message]] = {}
         for topic, trouble in self._network.troubles.items():
             troubles.setdefault(self._network.resource_of(topic), {})[topic] = trouble
         for resource, by_topic in troubles.items():

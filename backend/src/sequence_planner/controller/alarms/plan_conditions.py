@@ -22,13 +22,12 @@ from sequence_planner.controller.alarms.kinds import (
     UNDECIDED,
     Cause,
 )
-from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.explain import idle_since, waits_for
 from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.who_can import WhoCan
-from sequence_planner.controller.views.wording import end_text, value_text
+from sequence_planner.controller.views.wording import end_text, reason_text, title_text, value_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.plan_tracker import formula_of, why_none
 from sequence_planner.execution.state import OutOfService
@@ -36,6 +35,7 @@ from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
 from sequence_planner.language.syntax import variables
 from sequence_planner.planning.problem import PlanAnswer, Verdict
+from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
 START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
 END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
@@ -165,11 +165,11 @@ class PlanAlarms:
             abilities = self._execution.automaton.abilities
             titles = [abilities[each.name].title for each in gone]
             texts = [
-                message("given-up.failure", ability=title, why=each.why)
+                message("given-up.failure", ability=title, why=as_it_was(each.why, "late."))
                 for title, each in zip(titles, gone, strict=True)
             ]
             past = [
-                message("given-up.failure", ability=title, why=in_the_past(each.why))
+                message("given-up.failure", ability=title, why=as_it_was(in_the_past(each.why), "late."))
                 for title, each in zip(titles, gone, strict=True)
             ]
             one = len(gone) == 1
@@ -232,7 +232,8 @@ class PlanAlarms:
                 "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]
             )
         yield ERRAND_WAITS.cause(
-            "", {"what": what, "title": message("quoted", title=operator_plan.title), "by": operator_plan.by}
+            "",
+            {"what": what, "title": message("quoted", title=title_text(operator_plan.title)), "by": operator_plan.by},
         )
 
     def _violated(self) -> Iterator[Cause]:
@@ -264,12 +265,12 @@ class PlanAlarms:
     def _why_none(self) -> Message:
         plan = self._execution.plan
         if plan.answer is None or plan.reason not in (why_none(plan.answer, blind) for blind in (False, True)):
-            return message("no-plan.other", reason=plan.reason)
+            return message("no-plan.other", reason=reason_text(plan.reason))
         if plan.reason == why_none(plan.answer, blind=True):
-            return message("no-plan.unknown", reason=plan.reason)
+            return message("no-plan.unknown", reason=reason_text(plan.reason))
         if plan.answer.verdict is Verdict.NONE_AT_ALL:
-            return message("no-plan.none", reason=plan.reason)
-        return message("no-plan.found", reason=plan.reason)
+            return message("no-plan.none", reason=reason_text(plan.reason))
+        return message("no-plan.found", reason=reason_text(plan.reason))
 
     def _needed(self) -> Message:
         """Say what to do where there is no plan: what is out of service may be all that is missing."""

@@ -25,17 +25,17 @@ from sequence_planner.controller.alarms.kinds import (
     UNSAFE_STATE,
     Cause,
 )
-from sequence_planner.controller.alarms.message import Argument, Message, as_it_was, message
 from sequence_planner.controller.features.tasks import TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import DeploymentView, QuestionView
-from sequence_planner.controller.views.wording import value_text
+from sequence_planner.controller.views.wording import ended_text, title_text, value_text
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.printer import print_value
+from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
 
 class StationAlarms:
@@ -174,7 +174,10 @@ class StationAlarms:
         if last is None or last.done or last.by is not None or self._execution.operator_plan is not None:
             return
         if self._execution.mode is not Mode.AUTOMATIC:
-            yield ERRAND.cause(str(last.ended.epoch), {"title": message("quoted", title=last.title), "why": last.why})
+            yield ERRAND.cause(
+                str(last.ended.epoch),
+                {"title": message("quoted", title=title_text(last.title)), "why": ended_text(last.why)},
+            )
 
     def _forces(self) -> Iterator[Cause]:
         started = self._execution.production is Production.STARTED

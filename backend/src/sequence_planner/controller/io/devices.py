@@ -22,6 +22,7 @@ from sequence_planner.ros.qos import QualityEvent
 from sequence_planner.ros.transport import Sample, TellsServices, Transport
 from sequence_planner.simulation.manual_interface import NODE as EMULATED_DEVICES
 from sequence_planner.station import ReadyStation
+from sequence_planner.texts.message import message
 
 LOG = structlog.get_logger(__name__)
 
@@ -115,7 +116,7 @@ class Devices:
 
     def obstacles(self) -> tuple[str, ...]:
         """Return what keeps every ability from starting."""
-        owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
+        owed = [message("waits.command", topic=topic) for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
     def flows(self, among: Container[str] | None = None) -> FlowsView:

@@ -37,6 +37,7 @@ from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import Assignment, Expression, conjunction, variables
 from sequence_planner.language.types import Value
+from sequence_planner.texts.message import Message, message
 
 # Why each estimated variable is believed to have its value: who wrote it, when, from which evidence.
 #
@@ -228,7 +229,7 @@ Price = Callable[[str, Value], float]  # of a variable's value; infinite where i
 class Contradictions:
     """`because` says which belief does not go together with which measurement; by one of `hypotheses` all fits."""
 
-    because: tuple[str, ...] = ()
+    because: tuple[Message, ...] = ()
     hypotheses: tuple[Hypothesis, ...] = ()
 
 
@@ -250,7 +251,10 @@ def questions(automaton: Automaton, found: Contradictions, state: State) -> list
             continue
         said = [hypothesis.get(name, believed) for hypothesis in found.hypotheses]
         possible = [value for value in automaton.types[name].domain if value in said]
-        question = QuestionView(variable=name, believed=believed, possible=possible, because=list(found.because))
+        because = list(found.because)
+        question = QuestionView(
+            variable=name, believed=believed, possible=possible, because=[*because], because_messages=because
+        )
         asked.append((sum(said.count(value) ** 2 for value in possible), question))
     return [question for _, question in sorted(asked, key=lambda each: each[0])]
 
@@ -303,7 +307,7 @@ def _fits(fits: StateSet, state: State) -> bool:
 
 def _of_pairs(automaton: Automaton, known: NeverTogether, state: State) -> Contradictions:
     """By pairs: each estimate by itself, and only where it could have some other value."""
-    because: list[str] = []
+    because: list[Message] = []
     options: dict[str, list[Value]] = {}
     for name in automaton.names(Kind.ESTIMATED):
         excluded = {(value, other) for one, value, other, seen in known.pairs if one == name and state[other] == seen}
@@ -324,7 +328,7 @@ def _last_first(automaton: Automaton, names: Iterable[str]) -> list[str]:
     return sorted(names, key=lambda name: order.index(automaton.variables[name].kind))
 
 
-def _because(automaton: Automaton, state: State, names: Iterable[str]) -> str:
+def _because(automaton: Automaton, state: State, names: Iterable[str]) -> Message:
     """That the belief in some of `names` does not go with what the others are measured to be."""
     told = set(names)
     believed: list[str] = []
@@ -334,7 +338,7 @@ def _because(automaton: Automaton, state: State, names: Iterable[str]) -> str:
         if value is not None:
             kind = automaton.variables[name].kind
             (believed if kind is Kind.ESTIMATED else measured).append(value_text(automaton, name, value))
-    return f"{' and '.join(believed)} is believed, which never goes together with {' and '.join(measured)}"
+    return message("belief.never", believed=" and ".join(believed), measured=" and ".join(measured))
 
 
 def _different(hypotheses: Iterable[Hypothesis]) -> tuple[Hypothesis, ...]:
@@ -439,7 +443,12 @@ class RestoredOutputs:
             if reacts := self._reactions(name, state):
                 others = (other for other in automaton.types[name].domain if other != value)
                 quiet = [v for v in others if not self._reactions(name, self._execution.corrected({**real, name: v}))]
-                yield name, UndecidedOutputView(value=value, reacts=reacts, quiet=quiet, unsafe=self._unsafe(name))
+                yield (
+                    name,
+                    UndecidedOutputView(
+                        value=value, reacts=[*reacts], reacts_messages=reacts, quiet=quiet, unsafe=self._unsafe(name)
+                    ),
+                )
 
     def _unsafe(self, name: str) -> list[Value]:
         """The values that would lead out of the safe states while all else is as it is."""
@@ -448,7 +457,7 @@ class RestoredOutputs:
         domain = execution.automaton.types[name].domain
         return [value for value in domain if leaves(safe, state, execution.corrected({name: value}))]
 
-    def _reactions(self, name: str, state: State) -> list[str]:
+    def _reactions(self, name: str, state: State) -> list[Message]:
         found = (_reaction(self._execution.automaton, effect, state) for effect in self._readers.get(name, ()))
         return list(dict.fromkeys(text for text in found if text is not None))
 
@@ -464,7 +473,7 @@ def _readers(automaton: Automaton) -> Mapping[str, list[Effect]]:
     return readers
 
 
-def _reaction(automaton: Automaton, effect: Effect, state: State) -> str | None:
+def _reaction(automaton: Automaton, effect: Effect, state: State) -> Message | None:
     """Return what the effect would change; None where it certainly would change nothing."""
     guard = evaluate(effect.guard, state)
     if guard is False:
@@ -479,9 +488,11 @@ def _reaction(automaton: Automaton, effect: Effect, state: State) -> str | None:
         return None
     if guard is None:
         unknown = sorted(n for n in read_variables(automaton, (effect.guard,)) if state[n] is None)
-        return f"{effect.resource} may react: {' and '.join(unknown)} unknown"
-    said = (f"{n} changes" if v is None else value_text(automaton, n, v) for n, v in changes.items())
-    return f"{effect.resource} reacts: {' and '.join(said)}"
+        return message("reacts.may", resource=effect.resource, variables=" and ".join(unknown))
+    said = [
+        message("reacts.changes", variable=n) if v is None else value_text(automaton, n, v) for n, v in changes.items()
+    ]
+    return message("reacts.does", resource=effect.resource, changes=said)
 
 
 # What a person should look at: beliefs that do not fit what is measured, and outputs that nobody has decided on.

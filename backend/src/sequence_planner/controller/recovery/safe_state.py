@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import StateSet
-from sequence_planner.controller.alarms.message import Argument, Item, Message, message
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.syntax import Comparison, Constant, Expression, Not, Variable, variables
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Circumstances, RecoveryPath, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import deciding, violated
+from sequence_planner.texts.message import Argument, Item, Message, message
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.controller.commands.bus import handles
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.recovery import TryAbility
-from sequence_planner.controller.recovery.explain import ConditionContext, of_ability
+from sequence_planner.controller.recovery.explain import ConditionContext, obstacles, of_ability
 from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard, OperatorPlanStarted, Ticked, TickOutcome
@@ -20,6 +20,7 @@ from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.syntax import TRUE
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Plan, PlanTick
+from sequence_planner.texts.message import Message, message
 
 # What has come of the last trial of an ability: its run from the start to the end, and the reactions of its device.
 
@@ -159,11 +160,11 @@ class Trials:
             return CommandRefused("not-startable", "It may not start now", detail)
         return None
 
-    def _lacking(self, ability: Ability) -> Iterator[str]:
+    def _lacking(self, ability: Ability) -> Iterator[Message]:
         execution = self._execution
         if execution.conduct.stepping and not execution.conduct.steps:
-            yield "a step: the station goes step by step"
-        yield from execution.obstacles
+            yield message("waits.step")
+        yield from obstacles(execution)
         guard = self._around.guards().get(ability.name)
         yield from (each.text for each in of_ability(execution, ability, self._around.feeds, guard))
 
@@ -171,7 +172,7 @@ class Trials:
 def _operator_plan(ability: Ability, command: TryAbility, moment: Timestamp) -> OperatorPlan:
     return OperatorPlan(
         kind=OperatorPlanKind.TRIAL,
-        title=f"Try: {ability.title}",
+        title=message("offer.try", ability=ability.title),
         plan=Plan((PlanTick((), (ability.name,)), PlanTick((), ())), minimal_ticks=False, minimal_starts=True),
         goal=TRUE if ability.finish_guard is None else ability.finish_guard,
         by=command.actor.name,

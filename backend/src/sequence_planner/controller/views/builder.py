@@ -50,7 +50,7 @@ from sequence_planner.controller.views.station import (
     VariableKind,
     VariableView,
 )
-from sequence_planner.controller.views.wording import diagnosis_view
+from sequence_planner.controller.views.wording import diagnosis_view, reason_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -61,6 +61,7 @@ from sequence_planner.language.printer import print_expression
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Contract, Plan
 from sequence_planner.synthesis.guards import SupervisorGuard
+from sequence_planner.texts.message import as_it_was
 
 # Whether a view tells more than the one before: a station at rest is not shown anew again and again.
 
@@ -321,6 +322,7 @@ class ViewBuilder:
         return PlanView(
             status=execution.plan.status,
             reason=execution.plan.reason,
+            reason_message=reason_text(execution.plan.reason),
             steps=steps,
             ticks=len(plan.ticks) if plan else 0,
             minimal_ticks=plan is not None and plan.minimal_ticks,
@@ -341,6 +343,7 @@ class ViewBuilder:
         return ReplacementView(
             at=at,
             why=replacement.why,
+            why_message=reason_text(replacement.why),
             dropped=[
                 DroppedStepView(ability=each.name, title=each.title, resource=each.resource) for each in abilities
             ],
@@ -367,7 +370,8 @@ class ViewBuilder:
             expected_start=due.start if due and step.started is None else None,
             expected_end=due.end if due else None,
             new=replacement is not None and step.number in replacement.new,
-            waits_for=waiting,
+            waits_for=[*waiting],
+            waits_for_messages=waiting,
         )
 
     def _tasks(self, goes_on: bool) -> dict[str, TaskView]:
@@ -400,7 +404,7 @@ class ViewBuilder:
                 deadline=feed.pipeline.deadline,
                 fresh=feed.fresh(moment.monotonic),
                 peers=self._network.peers[name],
-                trouble=self._network.troubles.get(name) or feed.trouble,
+                **_trouble(self._network.troubles.get(name) or feed.trouble),
             )
         for name, command in self._commander.topics.items():
             views[name] = TopicView(
@@ -412,7 +416,7 @@ class ViewBuilder:
                 deadline=None,
                 fresh=command.last is not None,
                 peers=self._network.peers[name],
-                trouble=self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed,
+                **_trouble(self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed),
             )
         return views
 
@@ -423,6 +427,10 @@ def _why(execution: Executor) -> DiagnosisView | None:
         return None
     conduct = execution.conduct
     return diagnosis_view(diagnosis, conduct.out_of(ServiceKind.RESOURCE), conduct.answers)
+
+
+def _trouble(trouble: str | None) -> dict[str, Any]:
+    return {"trouble": trouble, "trouble_message": None if trouble is None else as_it_was(trouble)}
 
 
 def _contract(plan: Plan | None) -> Contract | None:

@@ -19,11 +19,12 @@ from sequence_planner.controller.views.station import (
     WayBackStepView,
     WayBackView,
 )
-from sequence_planner.controller.views.wording import end_text
+from sequence_planner.controller.views.wording import end_text, ended_text, title_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import ExecutionState
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production, ServiceKind
 from sequence_planner.planning.problem import RecoveryPath, WayBackAnswer
+from sequence_planner.texts.message import as_it_was, message
 
 _ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
 
@@ -91,6 +92,7 @@ def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
     return OperatorPlanView(
         kind=errand.kind,
         title=errand.title,
+        title_message=title_text(errand.title),
         by=errand.by,
         why=errand.why,
         since=errand.taken.epoch,
@@ -106,7 +108,13 @@ def last_operator_plan_view(conduct: ExecutionState) -> LastOperatorPlanView | N
     if last is None:
         return None
     return LastOperatorPlanView(
-        title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability
+        title=last.title,
+        title_message=title_text(last.title),
+        done=last.done,
+        why=last.why,
+        why_message=ended_text(last.why),
+        ended=last.ended.epoch,
+        ability=last.ability,
     )
 
 
@@ -128,6 +136,7 @@ def service_views(automaton: Automaton, conduct: ExecutionState) -> list[Service
             since=each.since.epoch,
             by=each.by,
             why=each.why,
+            why_message=None if each.by is not None else as_it_was(each.why, "late."),
         )
         for each in sorted(conduct.service.values(), key=lambda each: (each.since.epoch, each.of, each.name))
     ]
@@ -155,6 +164,8 @@ def way_back(automaton: Automaton, outside: SafeStateMonitor, feeds: Mapping[str
     answer = outside.answer if situation.certain else None
     found = answer if isinstance(answer, WayBackAnswer) else None
     way = found.way if found is not None else None
+    depends = message("unsafe.depends", topics=", ".join(awaits))
+    reason = outside.way() if situation.certain else depends
     return WayBackView(
         violated=named(situation.violated),
         threatened=named(found.threatened) if found is not None else [],
@@ -163,9 +174,8 @@ def way_back(automaton: Automaton, outside: SafeStateMonitor, feeds: Mapping[str
         ticks=len(way.ticks) if way is not None else None,
         steps=_steps(automaton, way) if way is not None else [],
         breaks=named(way.breaks) if way is not None else [],
-        reason=str(outside.way())
-        if situation.certain
-        else f"Whether the state is safe depends on {', '.join(awaits)}.",
+        reason=reason,
+        reason_message=reason,
     )
 
 
