@@ -11,7 +11,7 @@ from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
     NameScope,
-    resolve_assignment,
+    resolve_assignments,
     resolve_formula,
     resolve_predicate,
 )
@@ -90,7 +90,7 @@ def test_expressions(automaton: Automaton) -> None:
     for text in lines_of("expression"):
         resolve_predicate(parse(text), scope)
     for text in lines_of("action"):
-        resolve_assignment(parse_assignment(text), scope)
+        resolve_assignments(parse_assignment(text), scope)
     for text in lines_of("formula"):
         resolve_formula(parse_formula(text), scope)
 

@@ -247,8 +247,9 @@ def test_who_has_stood_by_for_another_begins_with_what_that_one_has_done(beside:
     last = LastDeployment(beside / "socket")
     last.tell_that_it_stands_by()
     assert DeploymentFolder(beside).runs
-    known = last.known(RestoredState(left_out=("an estimate",)))
-    assert (known.left_out, known.control) == (("an estimate",), None)
+    left_out = (message("restored.repeats", name="polish"),)
+    known = last.known(RestoredState(left_out=left_out))
+    assert (known.left_out, known.control) == (left_out, None)
 
 
 NEW = {"station.yaml": "title: new\n", "resources/another.yaml": "title: another\n"}

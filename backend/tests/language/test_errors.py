@@ -116,7 +116,8 @@ NO_CHAIN = "comparisons do not chain: join two with and"
         ),
         (
             "‹move_to_position.executing›",
-            "unknown variable `move_to_position.executing`; did you mean `move_to_position(home).executing`?",
+            "unknown variable `move_to_position.executing`; did you mean `move_to_position(…).executing`, as in "
+            "`move_to_position(home).executing`?",
         ),
         ("‹bolts(left)› == placed", "unknown variable `bolts(left)`; did you mean `bolts[left]`?"),
         # Formulas out of place

@@ -29,7 +29,6 @@ from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declaratio
 from sequence_planner.automaton.dependencies import ordered_flags
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, without_arguments
 from sequence_planner.automaton.sequences.expansion import StationSequences, Steps
-from sequence_planner.core.immutable import replace
 from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
@@ -691,7 +690,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
 def alarm_condition(meaning: Meaning, text: Predicate, scope: NameScope) -> Expression:
     """The condition of an alarm. What it read of an operation would become a variable, and no alarm makes any."""
     apart = Meaning(meaning.declarations, meaning.findings)
-    when = apart.predicate(text, replace(scope, unsuggested=f"{OPERATION}."))
+    when = apart.predicate(text, scope.not_suggesting(f"{OPERATION}."))
     if isinstance(text, SourceText):
         for seen in occurrences(when):
             if seen.name in apart.activities:

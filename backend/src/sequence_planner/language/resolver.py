@@ -669,7 +669,7 @@ def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
     flags = [other for other in begun if "." not in other[len(word) + 1 :]]
     if 0 < len(flags) < 4:  # an ability or operation, and no resource
         return f"; write {' or '.join(flags)}"
-    own = [*values, *scope.short(), *scope.parameters, *scope.vocabulary.named(scope.prefixes)]
+    own = [*values, *scope.short(), *scope.parameters, *scope.vocabulary.names_beside(scope.prefixes)]
     if near := _suggestion_of(word, own, scope.names, 0.7):
         return near
     if values:

@@ -132,11 +132,17 @@ def test_outputs_that_nobody_has_decided_on_are_an_alarm() -> None:
 
 def test_what_did_not_come_back_is_an_alarm_until_production_is_started() -> None:
     rig = Rig()
-    left_out = ("speed was 3, and ranges over 0..2 now", "operation polish was completed, and is none")
+    left_out = (
+        message("restored.range", name="speed", value="3", range="0..2"),
+        message("restored.repeats", name="polish"),
+    )
     shown = alarms(rig, RestoredState(left_out=left_out))
     told = shown.current(None, Timestamp(1000, 10))["not-restored"]
     assert told.text.endswith("could not be fully restored: speed was 3, and ranges over 0..2 now, and 1 more")
-    assert tuple(told.parts) == left_out
+    assert tuple(told.parts) == (
+        "speed was 3, and ranges over 0..2 now",
+        "operation polish was completed, and is none that does not repeat",
+    )
     rig.start_production()
     assert there(shown, Timestamp(1001, 11)) == set()
 

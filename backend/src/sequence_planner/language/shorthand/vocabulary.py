@@ -67,7 +67,7 @@ class Vocabulary:
         found = [each for each in self.ordered if values.issubset(each.values)]
         return min(found, key=lambda each: len(each.values), default=None)
 
-    def named(self, prefixes: tuple[str, ...]) -> list[str]:
+    def names_beside(self, prefixes: tuple[str, ...]) -> list[str]:
         """The names that can stand in a condition, those under one of `prefixes` without it."""
         found = [*self.predicates, *self.relations, *self.maps]
         own = [name.removeprefix(prefix) for prefix in prefixes for name in found if name.startswith(prefix)]
