@@ -31,6 +31,7 @@ from sequence_planner.process.parent_watch import DEPLOYED, OVERTAKEN
 from sequence_planner.startup import deployment
 from sequence_planner.startup.deployment import LONGEST_START, UnderWay
 from sequence_planner.startup.station_process import Executed, StationProcess
+from sequence_planner.texts.message import message
 from support.people import EVA
 from support.places import SINGLE_BOLT
 

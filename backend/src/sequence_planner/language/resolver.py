@@ -15,7 +15,7 @@ from functools import cached_property
 from itertools import product
 from operator import itemgetter
 
-from sequence_planner.core.immutable import Immutable
+from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.language.evaluator import RELATIONS
 from sequence_planner.language.lexer import KEYWORDS, PREFIX_LETTERS
 from sequence_planner.language.parser import temporal_refused
@@ -112,7 +112,11 @@ class NameScope(Immutable):
         """The same with further parameters."""
         given = {**self.parameters, **parameters}
         copies *= self.copies
-        return NameScope(self.variables, self.prefixes, given, self.vocabulary, copies, self.unsuggested)
+        return replace(self, parameters={**self.parameters, **parameters}, copies=self.copies * copies)
+
+    def not_suggesting(self, beginning: str) -> NameScope:
+        """The same, where no name that begins so is told to be meant."""
+        return replace(self, unsuggested=beginning)
 
     def substitute(self, name: Name) -> Name:
         """`name` with the parameters among its arguments replaced by their values."""

@@ -17,6 +17,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.state import LastOperatorPlan, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
+from sequence_planner.texts.message import message
 from support.simulated import Rig, never
 
 
