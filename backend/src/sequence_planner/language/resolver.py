@@ -110,8 +110,6 @@ class NameScope(Immutable):
 
     def binding(self, parameters: Mapping[str, tuple[str, EnumerationType]], copies: int = 1) -> NameScope:
         """The same with further parameters."""
-        given = {**self.parameters, **parameters}
-        copies *= self.copies
         return replace(self, parameters={**self.parameters, **parameters}, copies=self.copies * copies)
 
     def not_suggesting(self, beginning: str) -> NameScope:
