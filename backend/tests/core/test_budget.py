@@ -49,6 +49,18 @@ def test_a_part_of_work_is_as_much_work_however_little_time_it_is_a_part_of() ->
     assert part.spent
 
 
+def test_what_must_be_brought_to_an_end_has_the_time_of_the_whole_however_much_it_works() -> None:
+    budget = Budget.seconds(LONG)
+    part = budget.working(0.01)
+    end = part.by_the_clock()
+    work_for(0.02)
+    assert part.spent
+    assert not end.spent
+    assert end.until == budget.until
+    budget.call_off()
+    assert end.spent
+
+
 def test_calling_off_ends_all_that_is_of_it() -> None:
     whole = Budget.seconds(LONG)
     parts = [whole.part(0.5), whole.working(LONG), whole.working(LONG).part(0.5)]

@@ -88,6 +88,10 @@ class Budget:
         """As much of it as this process works for so many seconds, however long others hold it up."""
         return self._of_this(self.until, min(time.process_time() + seconds, self._worked_until))
 
+    def by_the_clock(self) -> Budget:
+        """The same, however much this process works meanwhile."""
+        return self._of_this(self.until, inf)
+
     def seconds_of_work(self, seconds: float) -> Budget:
         """As `working`, and by the clock no more than some times as long."""
         working = self.working(seconds)

@@ -59,7 +59,8 @@ class Sums:
             for goal in task.goals:
                 conserved = self._conserved(goal.predicate, task.state, self._rows, budget.require)
                 if conserved is not None:
-                    check_conserved(self._automaton, task, conserved, budget.require)
+                    # What is claimed is checked even where its turn is over by then: to begin anew would cost more.
+                    check_conserved(self._automaton, task, conserved, budget.by_the_clock().require)
                     return Finding(proof=Proof(NAME, (), conserved))
         except SpentError:
             pass
