@@ -65,7 +65,7 @@ def starting() -> None:
     wall, cpu = [], []
     for _ in range(LOOKS):
         began, before = time.perf_counter(), os.times()
-        asked = {"processId": None, "rootUri": None, "capabilities": {}}
+        asked: dict[str, object] = {"processId": None, "rootUri": None, "capabilities": {}}
         body = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": asked}).encode()
         subprocess.run(
             COMMAND, input=b"Content-Length: %d\r\n\r\n%s" % (len(body), body), stdout=subprocess.PIPE, check=False
