@@ -21,11 +21,11 @@ estimated:
 """
 
 
-def resource(number: int) -> str:
+def resource(number: int, abilities: int = ABILITIES) -> str:
     """A file of YAML."""
     before = f"{EVERYWHERE} and machine_{number - 1}.held" if number else EVERYWHERE
     more = "" if number else f", {EVERYWHERE} := true"
-    abilities = "".join(
+    written = "".join(
         f"""
   step_{step}:
     title: Step {step}
@@ -38,7 +38,7 @@ def resource(number: int) -> str:
     effects:
       arrives_{step}: {{kind: executing, when: place != target, do: [place := target]}}
 """
-        for step in range(ABILITIES)
+        for step in range(abilities)
     )
     return f"""title: Machine {number}
 measured:
@@ -47,16 +47,16 @@ output:
   target: {{type: place, initial: p0}}
 estimated:
   held: {{type: bool}}
-abilities:{abilities}"""
+abilities:{written}"""
 
 
-def files() -> dict[str, str]:
+def files(abilities: int = ABILITIES) -> dict[str, str]:
     """The model: texts by their paths below its folder."""
     operations = "".join(
         f"work_{n}:\n  precondition: true\n  goal: machine_{n}.held\n" for n in range(0, RESOURCES, 20)
     )
     made = {"station.yaml": STATION, "operations.yaml": operations}
-    return {**made, **{f"resources/machine_{number}.yaml": resource(number) for number in range(RESOURCES)}}
+    return {**made, **{f"resources/machine_{number}.yaml": resource(number, abilities) for number in range(RESOURCES)}}
 
 
 def main() -> None:

@@ -101,7 +101,8 @@ class Editor:
 
     def answer(self, number: int | None) -> Any:  # noqa: ANN401
         """Return what is answered. Raises `RefusedError`."""
-        answered = self.answers[number].get(timeout=PATIENCE)
+        until(lambda: not self.answers[number].empty(), "an answer")
+        answered = self.answers[number].get()
         if "error" in answered:
             raise RefusedError(answered["error"]["code"], answered["error"]["message"])
         return answered["result"]

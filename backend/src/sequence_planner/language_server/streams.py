@@ -65,7 +65,7 @@ class ClientStreams:
             if not chunk:
                 return
 
-    async def message(self) -> bytes | None:
+    async def next_message(self) -> bytes | None:
         """The body of the next message; None where no more come."""
         length: int | None = None
         while True:
@@ -129,7 +129,7 @@ async def talk(protocol: LanguageServerProtocol, streams: ClientStreams) -> int:
     protocol.set_writer(streams)
     streams.start_reading()
     is_shut_down = False
-    while (body := await streams.message()) is not None:
+    while (body := await streams.next_message()) is not None:
         try:
             plain = json.loads(body)
         except (ValueError, RecursionError) as error:
