@@ -407,7 +407,7 @@ class ExecutorBase:
             self._end_operator_plan("", now, done=True)
         elif (what := self._trial_overdue(now)) is not None:
             self._break_off(ability, now)
-            self._end_operator_plan(message("ended.late", ability=title, late=what.message()), now)
+            self._end_operator_plan(message("ended.late", ability=title, late=what.words()), now)
 
     def _trial_overdue(self, now: Timestamp) -> Late | None:
         """Say what has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""

@@ -47,7 +47,7 @@ class Late:
     begun: bool
     within: float
 
-    def message(self) -> Message:
+    def words(self) -> Message:
         """Say it, as in `has not begun within 2 s`."""
         return message("late.finished" if self.begun else "late.begun", seconds=self.within)
 
@@ -76,7 +76,7 @@ def to_call_off(automaton: Automaton, order: PlanCursor, now: Timestamp) -> dict
     for step in order.running:
         ability = automaton.abilities[step.ability]
         if ability.timeouts.replan and (what := overdue(step, ability, now.monotonic)) is not None:
-            late[step.ability] = what.message()
+            late[step.ability] = what.words()
     return late
 
 

@@ -90,7 +90,7 @@ class _Running:
             moves = moves or (late is None and not human)
             if late is not None and not human and self._concerns(step.ability):
                 title = self._automaton.abilities[step.ability].title
-                found.append(message("waits.late", ability=title, late=late.message()))
+                found.append(message("waits.late", ability=title, late=late.words()))
         found += self._tasks()
         conduct = self._execution.conduct
         if conduct.production is not Production.STARTED or not conduct.executes_operations:
@@ -125,7 +125,7 @@ class _Running:
                 "waits.task",
                 task=task.title,
                 resource=self._automaton.resources.get(resource, resource),
-                late="" if late is None else message("waits.task-late", late=late.message()),
+                late="" if late is None else message("waits.task-late", late=late.words()),
                 problem=cannot,
             )
 
