@@ -7,6 +7,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.views.execution import force_views, operator_plan_view, packml, service_views
 from sequence_planner.controller.views.jobs import job_views
 from sequence_planner.controller.views.station import StepStatus
+from sequence_planner.controller.views.wording import reason_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.plan_tracker import PlannedStart
 from sequence_planner.execution.record.codec import HistoryError
@@ -76,7 +77,8 @@ def _plan(execution: Executor) -> PastPlanView:
         _step(execution, each, StepStatus.PLANNED if index else StepStatus.NEXT)
         for index, each in enumerate(order.ahead)
     ]
-    return PastPlanView(status=execution.plan.status, reason=execution.plan.reason, steps=past + ahead)
+    reason = reason_text(execution.plan.reason)
+    return PastPlanView(status=execution.plan.status, reason=reason, reason_message=reason, steps=past + ahead)
 
 
 def _step(execution: Executor, step: PlannedStart, status: StepStatus) -> PastStepView:

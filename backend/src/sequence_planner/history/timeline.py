@@ -18,23 +18,29 @@ from sequence_planner.controller.views.station import (
     ServiceView,
     StepStatus,
 )
+from sequence_planner.controller.views.wording import reason_text
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.execution.events import Answered, Asked
 from sequence_planner.execution.record.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.journal.run_journal import RecordPlace, RunRecord
+from sequence_planner.texts.message import Message
 
 # What is asked about the past, and what is told of it.
 
 
 class RunRecordView(View):
-    """Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what."""
+    """Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what.
+
+    `plan_message` is why the plan is as `content` says, for readers of other languages.
+    """
 
     number: int
     time: float
     kind: str
     content: dict[str, JsonValue]
+    plan_message: Message | None
     hash: str
 
 
@@ -89,6 +95,7 @@ class PastPlanView(View):
 
     status: PlanStatus
     reason: str
+    reason_message: Message
     steps: list[PastStepView]
 
 
@@ -156,7 +163,15 @@ def record_view(record: RunRecord) -> RunRecordView:
     """A record as it is shown. What a snapshot keeps for replay is left out: it is shown as the past that it is."""
     content = json.loads(record.content)
     content.pop("memory", None)
-    return RunRecordView(number=record.number, time=record.time, kind=record.kind, content=content, hash=record.hash)
+    reason = content.get("plan", {}).get("reason")
+    return RunRecordView(
+        number=record.number,
+        time=record.time,
+        kind=record.kind,
+        content=content,
+        plan_message=reason_text(reason) if reason else None,
+        hash=record.hash,
+    )
 
 
 # What happened between two times, for a time line: what is a mark of its own, and how much there is of all else.

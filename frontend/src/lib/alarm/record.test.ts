@@ -6,7 +6,7 @@ import { arrivals, frequent, past, reachesTo, turnsOf, withNewest, withOlder } f
 
 function record(number: number, event = 'came', rest: Partial<Alarm> = {}, key = 'silent:robot'): RunRecord {
 	const content = { alarm: key, event, ...alarm(rest) } as unknown as RunRecord['content'];
-	return { number, time: number, kind: 'alarm', content, hash: '' };
+	return { number, time: number, kind: 'alarm', content, plan_message: null, hash: '' };
 }
 
 describe('of the turns in the life of an alarm', () => {

@@ -6,7 +6,7 @@ import { changedAt, sortedBy } from './state.ts';
 import { EVERYTHING_OF_NOTE, isAct, questionOf } from './sought.ts';
 
 function record(number: number, time: number): RunRecord {
-	return { number, time, kind: 'ticked', content: {}, hash: '' };
+	return { number, time, kind: 'ticked', content: {}, plan_message: null, hash: '' };
 }
 
 function act(number: number, time: number, about: number | null = null): AuditRecord {

@@ -1,6 +1,6 @@
 /** A record of the run in words: what happened, on what, by whom and why. */
-import { wordsOf } from '#lib/text/message.ts';
-import type { Alarm } from '#lib/contract.ts';
+import type { Alarm, Message } from '#lib/contract.ts';
+import { told as said, wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';
 import type { Names } from './names.ts';
@@ -17,6 +17,7 @@ export interface Told {
 export interface Tellable {
 	readonly kind: string;
 	readonly content: Readonly<Record<string, unknown>>;
+	readonly plan_message?: Message | null;
 }
 
 type Content = Readonly<Record<string, unknown>>;
@@ -36,6 +37,7 @@ const DEEDS = [
 
 export function told(record: Tellable, names: Names): Told {
 	const { kind, content } = record;
+	const reason = said(record.plan_message, textOf(partOf(content, 'plan')?.['reason']));
 	const what = partOf(content, 'what') ?? content;
 	const nothing = { on: '', who: textOf(what['by']), why: textOf(what['why']), outcome: '' };
 	const words = say().history.words;
@@ -45,11 +47,11 @@ export function told(record: Tellable, names: Names): Told {
 		case 'snapshot':
 			return { ...nothing, what: words.snapshot };
 		case 'ticked':
-			return { ...nothing, ...tick(content, names) };
+			return { ...nothing, ...tick(content, reason, names) };
 		case 'asked':
 			return { ...nothing, what: what['contract'] === 'minimal' ? words.askedBetter : words.asked };
 		case 'answered':
-			return { ...nothing, ...answered(content, what) };
+			return { ...nothing, ...answered(content, what, reason) };
 		case 'unanswered':
 			return { ...nothing, what: planWords(content) ?? words.unanswered };
 		case 'explained':
@@ -143,13 +145,12 @@ export function planWords(content: Content): string | null {
 	}
 }
 
-function tick(content: Content, names: Names): Partial<Told> & { what: string } {
+function tick(content: Content, why: string, names: Names): Partial<Told> & { what: string } {
 	const words = say().history.words;
 	const done = DEEDS.flatMap(([part, of]) => {
 		const ids = textsOf(content[part]);
 		return ids.length === 0 ? [] : [{ what: words[part], on: list(ids.map(names[of])) }];
 	});
-	const why = textOf(partOf(content, 'plan')?.['reason']);
 	const plan = planWords(content);
 	if (plan !== null) done.push({ what: plan, on: '' });
 	const [first] = done;
@@ -162,14 +163,13 @@ function tick(content: Content, names: Names): Partial<Told> & { what: string } 
 	return { what: done.map((each) => each.what).join(', '), on: on.join(' · '), why };
 }
 
-function answered(content: Content, what: Content): Partial<Told> & { what: string } {
+function answered(content: Content, what: Content, why: string): Partial<Told> & { what: string } {
 	const words = say().history.words;
-	const plan = partOf(content, 'plan');
 	const found = partOf(partOf(what, 'answer') ?? {}, 'plan');
 	const ticks = Array.isArray(found?.['ticks']) ? found['ticks'] : [];
 	const starts = ticks.reduce((sum: number, each: unknown) => sum + startsOf(each), 0);
 	const length = 'answer' in what ? (found === null ? words.noPlan : words.starts(starts)) : '';
-	return { what: planWords(content) ?? words.answered, why: textOf(plan?.['reason']), outcome: length };
+	return { what: planWords(content) ?? words.answered, why, outcome: length };
 }
 
 function startsOf(tick: unknown): number {
