@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
+from sequence_planner.model.fields import Action, DocumentPart, Given, Predicate, Seconds, TypeName
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.registry import StageDocument
 
@@ -123,7 +123,7 @@ class FlowDocument(DocumentPart):
 # What each document of a station may hold. Texts keep their place (`SourceText`), so that errors can name it.
 
 
-Parameters = dict[SourceText, SourceText]
+Parameters = dict[SourceText, TypeName]
 
 
 def _interval(value: object) -> object:
@@ -153,7 +153,7 @@ class VariableDocument(DocumentPart):
     A measured or output variable without one has the type of the message field that it belongs to.
     """
 
-    type: Given[SourceText] = None
+    type: Given[TypeName] = None
     """`bool`, an enumeration, or a range such as `0..3`. May be left out where a message field tells it."""
     initial: Given[bool | int | SourceText] = None
     """The first value; without it the first of the type."""
@@ -168,7 +168,7 @@ class StartDocument(DocumentPart):
 
     when: Predicate = True
     """Condition for a start beside `enabled`."""
-    do: list[SourceText] = Field(default_factory=list)
+    do: list[Action] = Field(default_factory=list)
     """Actions on outputs and estimates, such as `wanted := closed`."""
 
 
@@ -177,7 +177,7 @@ class FinishDocument(DocumentPart):
 
     when: Predicate
     """As soon as this holds, the finish actions are taken."""
-    do: list[SourceText] = Field(default_factory=list)
+    do: list[Action] = Field(default_factory=list)
     """Actions on outputs and estimates."""
 
 
@@ -188,7 +188,7 @@ class EffectDocument(DocumentPart):
     """For the reader: when in a run it is expected."""
     when: Predicate
     """The condition under which it happens, on measured and output variables."""
-    do: list[SourceText] = Field(min_length=1)
+    do: list[Action] = Field(min_length=1)
     """Actions on measured variables, all taken at once."""
     takes: Duration = (0.5, 0.5)
     """Seconds, or the fewest and the most; emulated devices take so long."""
@@ -208,7 +208,7 @@ class HumanDocument(DocumentPart):
 class CancelDocument(DocumentPart):
     """Actions taken when a running ability is called off."""
 
-    do: list[SourceText] = Field(min_length=1)
+    do: list[Action] = Field(min_length=1)
     """Actions on outputs and estimates."""
 
 

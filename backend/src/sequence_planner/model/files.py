@@ -39,12 +39,12 @@ MOST_FILES = 2_000
 MOST_CHARACTERS = 10_000_000  # of all files together
 STAGES = "stages"
 _UNFINISHED = ".unfinished"
-SEARCHED_FOLDERS = ("resources", "messages")  # where files are looked for
+SEARCHED_FOLDERS = ("resources", "types", "messages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
 _NO_TEXT = re.compile("[\0\ud800-\udfff]")
-_PATH = re.compile(rf"{'|'.join(map(re.escape, FILES))}|resources/{_NAME}\.yaml|{_DEFINITIONS}")
+_PATH = re.compile(rf"{'|'.join(map(re.escape, FILES))}|(?:resources|types)/{_NAME}\.yaml|{_DEFINITIONS}")
 
 
 def is_of_model(path: str) -> bool:
@@ -56,8 +56,8 @@ def check_path(path: str) -> None:
     """Raises `EditError` for a path that is none of a model's files."""
     if not is_of_model(path):
         raise EditError(
-            f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, and "
-            "messages/<package>/msg/<Name>.msg (or srv, or action)"
+            f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, "
+            "types/<name>.yaml, and messages/<package>/msg/<Name>.msg (or srv, or action)"
         )
 
 

@@ -1,15 +1,16 @@
 """A station's folder, brought together.
 
-station.yaml  resources/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  messages/<package>/msg/*.msg
-messages/<package>/srv/*.srv  messages/<package>/action/*.action
+station.yaml  resources/*.yaml  types/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml
+messages/<package>/msg/*.msg  messages/<package>/srv/*.srv  messages/<package>/action/*.action
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
@@ -26,6 +27,10 @@ from sequence_planner.model.paths import DEFINITIONS, FILES, FOLDERS
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text, text_of
+
+if TYPE_CHECKING:
+    from sequence_planner.model.types.instances import InstancesBefore
+    from sequence_planner.model.types.layers import WrittenInstance
 
 D = TypeVar("D", bound=BaseModel)
 
@@ -60,6 +65,7 @@ class ReadBefore:
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, type[BaseModel]], tuple[str, object, tuple[Finding, ...]]] = {}
+        self.instances: InstancesBefore | None = None
 
     def find(self, name: str, kind: type[BaseModel], text: str) -> tuple[object, tuple[Finding, ...]] | None:
         """Return what the file `name` holds as `kind`, and what is wrong with it; None unless it was read with this
@@ -88,18 +94,14 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     reader = _FolderReader(folder, before)
     reader.findings += unread_files(folder)
     station = reader.whole("station.yaml", StationDocument)
-    resources = {
-        path.stem: reader.whole(f"resources/{path.name}", ResourceDocument)
-        for path in sorted((folder / "resources").glob("*.yaml"))
-    }
+    resources = reader.all_resources(station)
     operations = reader.entries("operations.yaml", OperationDocument)
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
     reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
-    present = {name: resource for name, resource in resources.items() if resource is not None}
-    return Station(folder, station, present, operations, specifications, work_masters, tuple(reader.empty))
+    return Station(folder, station, resources, operations, specifications, work_masters, tuple(reader.empty))
 
 
 def _is_file(path: Path) -> bool:
@@ -111,12 +113,13 @@ def _is_file(path: Path) -> bool:
 
 def unread_files(folder: Path) -> Iterator[Finding]:
     """Yield the files in the folder of a station that are no part of it, though their names are almost right."""
-    for path in sorted((*folder.glob("*.yml"), *folder.glob("resources/*.yml"))):
+    for path in sorted(each for below in ("", "resources/", "types/") for each in folder.glob(f"{below}*.yml")):
         yield Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read")
-    for path in sorted((folder / "resources").glob("*")):
-        if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
-            message = "this is not read: each resource is a file <name>.yaml in this folder"
-            yield Finding(Place(str(path), 1, 1), message)
+    for below, what in (("resources", "resource"), ("types", "type")):
+        for path in sorted((folder / below).glob("*")):
+            if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
+                message = f"this is not read: each {what} is a file <name>.yaml in this folder"
+                yield Finding(Place(str(path), 1, 1), message)
     for kind, what in DEFINITIONS.items():
         for path in sorted((folder / "messages").rglob(f"*.{kind}")):
             if len(path.relative_to(folder).parts) != 4 or path.parent.name != kind:
@@ -130,6 +133,8 @@ def unread_files(folder: Path) -> Iterator[Finding]:
             message = f"this file is not read{suggestion(path.name, FILES)}"
             yield Finding(Place(str(path), 1, 1), message)
 
+
+_OF_INSTANCES = frozenset({"type", "arguments", "remove"})  # keys that no other resource has
 
 # The content of a file and what is wrong with it, from the file as it was read.
 _Reading = Callable[[YamlDocument], tuple[object, list[Finding]]]
@@ -147,6 +152,44 @@ class _FolderReader:
         """A file that is one document."""
         found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
         return cast("D | None", found)
+
+    def all_resources(self, station: StationDocument | None) -> dict[str, ResourceDocument]:
+        """The resources, those that are instances of types as if they were written out."""
+        paths = sorted((self._folder / "resources").glob("*.yaml"))
+        found = {path.stem: self._once(f"resources/{path.name}", ResourceDocument, _resource) for path in paths}
+        types = self._types()
+        if types or not all(each is None or isinstance(each, ResourceDocument) for each in found.values()):
+            found = self._instantiated(found, types, station)
+        return cast("dict[str, ResourceDocument]", {name: each for name, each in found.items() if each is not None})
+
+    def _types(self) -> dict[str, WrittenInstance | None]:
+        """The types of the station, by their names; None where one cannot be read."""
+        paths = sorted((self._folder / "types").glob("*.yaml"))
+        if not paths:
+            return {}
+        from sequence_planner.model.types.layers import read_type  # noqa: PLC0415 (few stations have one)
+
+        found = {
+            path.stem: self._once(f"types/{path.name}", BaseModel, partial(read_type, package="")) for path in paths
+        }
+        return cast("dict[str, WrittenInstance | None]", found)
+
+    def _instantiated(
+        self, found: dict[str, object], types: dict[str, WrittenInstance | None], station: StationDocument | None
+    ) -> dict[str, object]:
+        from sequence_planner.model.types.instances import Instances, InstancesBefore  # noqa: PLC0415
+        from sequence_planner.model.types.layers import WrittenInstance  # noqa: PLC0415
+
+        if station is None:  # nobody knows its enumerations
+            return {}
+        self._before.instances = self._before.instances or InstancesBefore()
+        instances = Instances(types, station, found, self._before.instances)
+        made = {
+            name: instances.made_of(name, each) if isinstance(each, WrittenInstance) else each
+            for name, each in found.items()
+        }
+        self.findings.extend(instances.findings)
+        return made
 
     def entries(self, name: str, kind: type[D]) -> dict[SourceText, D]:
         """A file that maps names to documents; it may be missing."""
@@ -183,6 +226,15 @@ class _FolderReader:
             self._before.keep(name, kind, text, *known)
         self.findings.extend(known[1])
         return known[0]
+
+
+def _resource(document: YamlDocument) -> tuple[object, list[Finding]]:
+    """A resource, or an instance of a type, which is made one when that is known."""
+    if isinstance(document.content, dict) and not _OF_INSTANCES.isdisjoint(document.content):
+        from sequence_planner.model.types.layers import read_instance  # noqa: PLC0415
+
+        return read_instance(document)
+    return _validated(document, document.content, (), ResourceDocument)
 
 
 def _validated_entries(document: YamlDocument, kind: type[BaseModel]) -> tuple[object, list[Finding]]:

@@ -5,19 +5,20 @@ from __future__ import annotations
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.grounding import ground_variables
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import AbilityDocument, ResourceDocument, StationDocument
-from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.loader import Station
+from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.types.layers import written_out
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text
 from sequence_planner.pipelines.builder import Built, build_what_is_sound, flow_name
@@ -30,7 +31,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 #
 # pydantic alone says what is wrong. It is taken out, and the rest is looked at again.
 
-D = TypeVar("D", bound=DocumentPart)
+D = TypeVar("D", bound=BaseModel)
 
 # Where the stages of an entry of each section stand.
 STAGES: Mapping[str, tuple[str, ...]] = {
@@ -157,13 +158,7 @@ class Sketch:
     @property
     def resources(self) -> Mapping[str, YamlDocument]:
         """The documents of resources, by their names."""
-        return {resource_of(file): document for file, document in self.documents.items() if resource_of(file)}
-
-
-def resource_of(file: str) -> str:
-    """The resource that a file is about; nothing for other files."""
-    at = PurePosixPath(file)
-    return at.stem if at.parts[:1] == ("resources",) else ""
+        return {name: document for file, document in self.documents.items() if (name := resource_of(file))}
 
 
 @dataclass
@@ -186,14 +181,14 @@ class DraftReader:
         """The draft that consists of these files."""
         registry, findings = self._messages(files)
         documents, unread, wrong = self._documents(files)
-        return _sketch(self.folder, documents, unread, registry, [*findings, *wrong])
+        return _sketch(self.folder, written_out(documents), unread, registry, [*findings, *wrong])
 
     def _documents(self, files: Files) -> tuple[dict[str, YamlDocument], tuple[str, ...], list[Finding]]:
         """The documents; one that cannot be read stands as it was when it could be."""
         found: dict[str, YamlDocument] = {}
         unread: list[str] = []
         findings: list[Finding] = []
-        for path in sorted({STATION, *(each for each in files if resource_of(each))}):
+        for path in sorted({STATION, *(each for each in files if resource_of(each) or type_of(each))}):
             text = files.get(path, NOTHING)
             known = self._read.get(path)
             if known is None or known[0] != text:
@@ -296,7 +291,7 @@ def _station(document: YamlDocument) -> StationDocument:
 
 def _cut_names(cut: Mapping[tuple[str, EntryPath], int]) -> list[str]:
     """Return what pipelines are called of which not all stages can be read."""
-    return [pipeline_name(resource_of(file), path) for file, path in cut]
+    return [pipeline_name(resource_of(file) or "", path) for file, path in cut]
 
 
 def pipeline_name(resource: str, path: EntryPath) -> str:

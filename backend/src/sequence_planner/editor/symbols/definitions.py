@@ -154,7 +154,7 @@ def gather(
     """Return what is named in the files, and where. With `word`, only in expressions that hold it; with `file`, all
     that is in that one, and perhaps more.
     """
-    gathered = Gathered()
+    gathered = Gathered(content)
     declared = Declared(content, messages)
     naming = Naming(declared, gathered)
     walk = _Walk(naming, Expressions(naming, word))
