@@ -142,7 +142,7 @@ def _ties(declared: Declared, gathered: Gathered) -> tuple[ModelEdge, ...]:
         by = user(where)
         manner = manner_of(each.part, by, where.path[where.depth :], declared, writes=each.writes)
         inner = shown_path(where.path[where.depth :])
-        found[ModelEdge(each.part, by, manner, each.file, place.line, place.column, inner, True)] = None
+        found[ModelEdge(each.part, by, manner, each.home_file, place.line, place.column, inner, True)] = None
     for unwritten in gathered.unwritten:
         where = unwritten.where
         home = homes.get((where.file, where.path[: where.depth]))

@@ -315,12 +315,12 @@ class Occurrence:
     home: tuple[str, EntryPath] | None = None
 
     @property
-    def file(self) -> str:
+    def home_file(self) -> str:
         """The file in which the part is named."""
         return self.where.file if self.home is None else self.home[0]
 
     @property
-    def path(self) -> EntryPath:
+    def home_path(self) -> EntryPath:
         """The entry of that file."""
         return self.where.path if self.home is None else self.home[1]
 

@@ -159,12 +159,20 @@ def usage_of(found: Occurrence) -> Usage:
     """A place as people see it."""
     where, span = found.where, found.span
     if found.text is None:
-        return Usage(found.part, found.file, (), 1, 1, 0, found.part.name, where.said, found.declares)
+        return Usage(found.part, found.home_file, (), 1, 1, 0, found.part.name, where.said, found.declares)
     place = found.text.at(span)
     written = found.text[span.start : span.end]
     length = span.end - span.start
     return Usage(
-        found.part, found.file, found.path, place.line, place.column, length, written, where.said, found.declares
+        found.part,
+        found.home_file,
+        found.home_path,
+        place.line,
+        place.column,
+        length,
+        written,
+        where.said,
+        found.declares,
     )
 
 
@@ -349,7 +357,7 @@ def by_file(changes: Iterable[tuple[Occurrence, str]]) -> dict[str, list[tuple[O
     found: dict[str, list[tuple[Occurrence, str]]] = defaultdict(list)
     for occurrence, name in changes:
         if occurrence.text is not None:
-            found[occurrence.file].append((occurrence, name))
+            found[occurrence.home_file].append((occurrence, name))
     return found
 
 
@@ -457,7 +465,7 @@ def _meaning(content: ModelContent, declared: Declared, gathered: Gathered, call
     for each in gathered.occurrences:
         if each.text is not None:
             part = called(each.part)
-            file = each.file
+            file = each.home_file
             place = each.text.place
             found.setdefault(file, {}).setdefault((place.line, place.column, each.span.start, part), each.declares)
     moved = {file_of(name): file_of(called(ModelPart("resource", None, name)).name) for name in declared.resources}

@@ -57,6 +57,8 @@ class Instances:
         self._resources = resources
         self._before = before
         self.findings: list[Finding] = []
+        self._enumerations = {str(name): values for name, values in station.enumeration_values().items()}
+        self._ranges = [*map(str, station.enumerations), *map(str, station.sets)]
         self._sound = {name for name, type_ in types.items() if type_ is not None and self._is_sound(type_)}
 
     def made_of(self, name: str, written: WrittenInstance) -> ResourceDocument | None:
@@ -110,18 +112,14 @@ class Instances:
             if parameter.of is not None and (of := type_.parameters.get(parameter.of)) is not None:
                 if of.kind != "enumeration":
                     self._note(parameter.of, f"`{parameter.of}` is {_WANTED[of.kind]}, and no enumeration")
-            elif parameter.of is not None and parameter.of not in self._station.enumerations:
-                near = suggestion(parameter.of, [*type_.parameters, *self._station.enumerations])
+            elif parameter.of is not None and parameter.of not in self._ranges:
+                near = suggestion(parameter.of, [*type_.parameters, *self._ranges])
                 self._note(parameter.of, f"unknown enumeration `{parameter.of}`{near}")
         return len(self.findings) == before
 
     def _values(self) -> dict[str, str]:
         """The values of the station, each with its enumeration."""
-        return {str(value): str(name) for name in self._station.enumerations for value in self._values_of(name) or ()}
-
-    def _values_of(self, enumeration: str) -> list[SourceText] | None:
-        written: object = self._station.enumerations.get(enumeration)  # type: ignore[call-overload]
-        return written if isinstance(written, list) else None
+        return {str(value): name for name, values in self._enumerations.items() for value in values}
 
     def _check_arguments(self, instance: str, type_: Layer, by: Layer) -> None:
         """Note what is wrong with the arguments that a layer gives to a type."""
@@ -152,14 +150,14 @@ class Instances:
             found = shown(content) if given.kind == parameter.kind else f"`{given.text}`, {_WANTED.get(given.kind)}"
             quotes = ": put it into quotes" if is_number and parameter.kind == "text" else ""
             self._note(place, f"expected {self._expected(parameter)} for `{name}`, found {found}{quotes}")
-        elif parameter.kind == "enumeration" and content not in self._station.enumerations:
-            self._note(place, f"unknown enumeration `{content}`{suggestion(given.text, self._station.enumerations)}")
+        elif parameter.kind == "enumeration" and content not in self._ranges:
+            self._note(place, f"unknown enumeration `{content}`{suggestion(given.text, self._ranges)}")
         elif parameter.kind == "resource" and content not in self._resources:
             self._note(place, f"unknown resource `{content}`{suggestion(given.text, self._resources)}")
         elif parameter.kind == "value":
             assert parameter.of is not None
             of = made[parameter.of].text if parameter.of in made else str(parameter.of)
-            values = self._values_of(of)
+            values = self._enumerations.get(of)
             if values is not None and content not in values:
                 near = suggestion(given.text, values)
                 self._note(place, f"`{content}` is no value of `{of}`, and `{name}` is one{near}")

@@ -49,9 +49,10 @@ class WrittenInstance:
             for name, variable in _entries(self.own.get(section)):  # type: ignore[call-overload]
                 found[str(name)] = "variable"
                 found |= dict.fromkeys((str(each) for each, _ in _entries(_at(variable, "for"))), "parameter")
-        for name, ability in _entries(_at(self.own, "abilities")):
-            found[str(name)] = "ability"
-            found |= dict.fromkeys((str(each) for each, _ in _entries(_at(ability, "parameters"))), "parameter")
+        for section, what in (("abilities", "ability"), ("predicates", "predicate")):
+            for name, part in _entries(_at(self.own, section)):
+                found[str(name)] = what
+                found |= dict.fromkeys((str(each) for each, _ in _entries(_at(part, "parameters"))), "parameter")
         return found
 
 
