@@ -9,8 +9,11 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.model.documents import PackageSourceDocument
+from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import ModelError
 from sequence_planner.model.types.documents import InstanceHead, ParameterDocument, TypeHead
+from sequence_planner.model.types.packages import PackageDocument
 from sequence_planner.station import prepare_station
 from support.places import DOCS
 from support.station import finished
@@ -72,7 +75,7 @@ def test_errors_are_said_as_shown(station: Path, file: str, written: str, line: 
     assert f"{name}:{line}:{column}: {message}" in str(caught.value).split("\n")
 
 
-@pytest.mark.parametrize("part", [InstanceHead, TypeHead, ParameterDocument])
-def test_every_key_is_described(part: type[ParameterDocument]) -> None:
+@pytest.mark.parametrize("part", [InstanceHead, TypeHead, ParameterDocument, PackageDocument, PackageSourceDocument])
+def test_every_key_is_described(part: type[DocumentPart]) -> None:
     for name in part.model_fields:
         assert f"`{name}`" in TEXT, f"{name} of {part.__name__} is not described"

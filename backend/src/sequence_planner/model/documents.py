@@ -493,6 +493,23 @@ class ResourceDocument(DocumentPart):
     """Conditions with a name, which other conditions use by it."""
 
 
+class PackageSourceDocument(DocumentPart):
+    """Where a package is brought from: a folder, or a revision of a git repository."""
+
+    path: Given[SourceText] = None
+    """A folder, from that of the station."""
+    git: Given[SourceText] = None
+    """The address of a repository: `https://`, `ssh://` or `file://`."""
+    revision: Given[SourceText] = None
+    """A tag, a branch or a commit of it."""
+
+    @model_validator(mode="after")
+    def _is_somewhere(self) -> PackageSourceDocument:
+        if (self.path is None) == (self.git is None) or (self.git is None) != (self.revision is None):
+            raise ValueError("a package is brought from a `path`, or from a `git` repository at a `revision`")
+        return self
+
+
 class StationDocument(DocumentPart):
     """The station as a whole: what is common to its resources. `rest` describes the states of rest."""
 
@@ -518,6 +535,8 @@ class StationDocument(DocumentPart):
     """What people are told of the station as a whole when something is wrong."""
     rest: Predicate = True
     """The states to which the station can always be brought back."""
+    packages: dict[SourceText, PackageSourceDocument] = Field(default_factory=dict)
+    """Packages of types of resources, and where each is brought from."""
     takeover: Literal["confirm", "automatic"] = "confirm"
     """After a hot standby has taken command: with `true`, a person confirms that production goes on."""
 

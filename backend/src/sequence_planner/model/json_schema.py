@@ -32,6 +32,7 @@ from sequence_planner.model.efa_document import PlainDocument
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
+from sequence_planner.model.types.packages import PackageDocument
 
 # The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
 FILES: Mapping[str, tuple[Any, str]] = {
@@ -39,6 +40,7 @@ FILES: Mapping[str, tuple[Any, str]] = {
     "resource": (ResourceDocument, "resources/<name>.yaml"),
     "instance": (InstanceDocument, "resources/<name>.yaml with a type"),
     "type": (TypeDocument, "types/<name>.yaml"),
+    "package": (PackageDocument, "packages/<name>/package.yaml"),
     "operations": (dict[str, OperationDocument], "operations.yaml"),
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),

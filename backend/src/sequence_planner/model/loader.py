@@ -55,6 +55,12 @@ class Station:
         return self.folder / "messages"
 
     @property
+    def message_folders(self) -> list[Path]:
+        """The folders of message definitions that there are: the station's own, and those of its packages."""
+        packages = (self.folder / "packages" / name / "messages" for name in self.station.packages)
+        return [each for each in (self.messages, *packages) if each.is_dir()]
+
+    @property
     def title(self) -> str:
         """The name that people call it by."""
         return self.station.title or self.station.name
@@ -94,7 +100,8 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     reader = _FolderReader(folder, before)
     reader.findings += unread_files(folder)
     station = reader.whole("station.yaml", StationDocument)
-    resources = reader.all_resources(station)
+    station, types = reader.packaged(station)
+    resources = reader.all_resources(station, types)
     operations = reader.entries("operations.yaml", OperationDocument)
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
@@ -145,6 +152,7 @@ class _FolderReader:
         self._folder = folder
         self._before = before or ReadBefore()
         self._names: set[str] = set()
+        self._brought: dict[str, list[str]] = {}
         self.findings: list[Finding] = []
         self.empty: list[Place] = []
 
@@ -153,11 +161,36 @@ class _FolderReader:
         found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
         return cast("D | None", found)
 
-    def all_resources(self, station: StationDocument | None) -> dict[str, ResourceDocument]:
+    def packaged(
+        self, station: StationDocument | None
+    ) -> tuple[StationDocument | None, dict[str, WrittenInstance | None]]:
+        """The station with the enumerations of its packages, and the types of these."""
+        if station is None or not (station.packages or (self._folder / "packages").is_dir()):
+            return station, {}
+        from sequence_planner.model.types.layers import read_type  # noqa: PLC0415 (few stations have packages)
+        from sequence_planner.model.types.packages import UsedPackages  # noqa: PLC0415
+
+        used = UsedPackages(self._folder, station)
+        self.findings.extend(used.findings)
+        self._brought = used.brought
+        types: dict[str, WrittenInstance | None] = {
+            f"{package}.*": None for package in station.packages if package not in used.packages
+        }
+        for package in used.packages:
+            for file in used.files_of(package):
+                found = self._once(file, BaseModel, partial(read_type, package=package))
+                types[f"{package}.{Path(file).stem}"] = cast("WrittenInstance | None", found)
+        if not used.enumerations:
+            return station, types
+        return station.model_copy(update={"enumerations": {**used.enumerations, **station.enumerations}}), types
+
+    def all_resources(
+        self, station: StationDocument | None, of_packages: dict[str, WrittenInstance | None]
+    ) -> dict[str, ResourceDocument]:
         """The resources, those that are instances of types as if they were written out."""
         paths = sorted((self._folder / "resources").glob("*.yaml"))
         found = {path.stem: self._once(f"resources/{path.name}", ResourceDocument, _resource) for path in paths}
-        types = self._types()
+        types = {**self._types(), **of_packages}
         if types or not all(each is None or isinstance(each, ResourceDocument) for each in found.values()):
             found = self._instantiated(found, types, station)
         return cast("dict[str, ResourceDocument]", {name: each for name, each in found.items() if each is not None})
@@ -183,7 +216,7 @@ class _FolderReader:
         if station is None:  # nobody knows its enumerations
             return {}
         self._before.instances = self._before.instances or InstancesBefore()
-        instances = Instances(types, station, found, self._before.instances)
+        instances = Instances(types, station, found, self._before.instances, self._brought)
         made = {
             name: instances.made_of(name, each) if isinstance(each, WrittenInstance) else each
             for name, each in found.items()
@@ -235,6 +268,17 @@ def _resource(document: YamlDocument) -> tuple[object, list[Finding]]:
 
         return read_instance(document)
     return _validated(document, document.content, (), ResourceDocument)
+
+
+def station_packages(document: YamlDocument) -> StationDocument:
+    """A station of which only its name and its packages are looked at. Raises `ModelError`."""
+    content = document.content
+    if isinstance(content, dict):
+        content = {key: each for key, each in content.items() if key in ("name", "packages")}
+    station, findings = _validated(document, content, (), StationDocument)
+    if findings:
+        raise ModelError(findings)
+    return cast(StationDocument, station)
 
 
 def _validated_entries(document: YamlDocument, kind: type[BaseModel]) -> tuple[object, list[Finding]]:

@@ -42,7 +42,7 @@ class InstancesBefore:
 
 class Instances:
     """The instances of a station. `types` are known by their names, those of packages as `package.name`; None is one
-    of which something is wrong. What is found is noted in `findings`.
+    of which something is wrong. `brought` are the enumerations of each package. What is found is noted in `findings`.
     """
 
     def __init__(
@@ -51,6 +51,7 @@ class Instances:
         station: StationDocument,
         resources: Collection[str],
         before: InstancesBefore,
+        brought: Mapping[str, Collection[str]],
     ) -> None:
         self._types = types
         self._station = station
@@ -59,6 +60,7 @@ class Instances:
         self.findings: list[Finding] = []
         self._enumerations = {str(name): values for name, values in station.enumeration_values().items()}
         self._ranges = [*map(str, station.enumerations), *map(str, station.sets)]
+        self._brought = brought
         self._sound = {name for name, type_ in types.items() if type_ is not None and self._is_sound(type_)}
 
     def made_of(self, name: str, written: WrittenInstance) -> ResourceDocument | None:
@@ -95,7 +97,7 @@ class Instances:
     def _is_sound(self, type_: WrittenInstance) -> bool:
         """Check whether the parameters of a type hide nothing."""
         before = len(self.findings)
-        values = {} if type_.package else self._values()
+        values = self._values(self._brought.get(type_.package, ()) if type_.package else self._enumerations)
         for name, parameter in type_.parameters.items():
             if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
                 message = "is no name: use letters, digits and `_`, and none of the words of the language"
@@ -117,9 +119,9 @@ class Instances:
                 self._note(parameter.of, f"unknown enumeration `{parameter.of}`{near}")
         return len(self.findings) == before
 
-    def _values(self) -> dict[str, str]:
-        """The values of the station, each with its enumeration."""
-        return {str(value): name for name, values in self._enumerations.items() for value in values}
+    def _values(self, enumerations: Collection[str]) -> dict[str, str]:
+        """The values of these enumerations, each with its own."""
+        return {str(value): name for name in enumerations for value in self._enumerations.get(name, ())}
 
     def _check_arguments(self, instance: str, type_: Layer, by: Layer) -> None:
         """Note what is wrong with the arguments that a layer gives to a type."""

@@ -122,7 +122,8 @@ def layers_of(
         if type_ is None:
             what = "a type is a file types/<name>.yaml, or package.name"
             said = Finding(named.place, f"unknown type `{named}`: {what}{suggestion(named, types)}")
-            return layers, None if full in types else said, False
+            is_told = full in types or f"{full.partition('.')[0]}.*" in types  # or its whole package is unusable
+            return layers, None if is_told else said, False
         layers.append(Layer(full, type_, _arguments(instance, type_, layers[-1], len(layers) > 1)))
     return layers, None, True
 
