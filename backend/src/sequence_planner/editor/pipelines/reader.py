@@ -133,6 +133,7 @@ def _key(mapping: Mapping[SourceText, object], name: str) -> SourceText:
 # A draft read as far as it can be: its documents with their places, and the pipelines that are sound in it.
 
 MESSAGES, STATION, NOTHING = "messages/", "station.yaml", "name: draft\n"
+_OF_PACKAGE = f"/{MESSAGES}"  # in `packages/<name>/messages/`
 # Sections of a resource in which something has to do with pipelines.
 OURS = frozenset({*STAGES, "measured", "output", "estimated"})
 
@@ -203,7 +204,7 @@ class DraftReader:
 
     def _messages(self, files: Files) -> tuple[MessageRegistry, list[Finding]]:
         """The message types; definitions that cannot be used are left out."""
-        definitions = {path: text for path, text in files.items() if path.startswith(MESSAGES)}
+        definitions = {path: text for path, text in files.items() if path.startswith(MESSAGES) or _OF_PACKAGE in path}
         if self._registry is None or self._definitions != definitions:
             self._definitions = definitions
             self._registry, self._wrong = self._defined(dict(definitions))
@@ -214,9 +215,11 @@ class DraftReader:
         folder = self.folder / MESSAGES
         while True:
             shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(self.folder / "packages", ignore_errors=True)
             write_files(definitions, self.folder)
+            folders = [each for each in (folder, *self.folder.glob(f"packages/*/{MESSAGES}")) if each.is_dir()]
             try:
-                return MessageRegistry.from_folder(folder if folder.is_dir() else None), findings
+                return MessageRegistry.from_folder(None, *folders), findings
             except MessageDefinitionError as error:
                 path = str(error.path).removeprefix(f"{self.folder}/")
                 findings.append(Finding(Place(path, error.line, error.column), error.text))

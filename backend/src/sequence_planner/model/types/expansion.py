@@ -37,22 +37,22 @@ class _InText(IntEnum):
 
 
 @dataclass(frozen=True)
-class Shape:
+class DocumentShape:
     """What may stand at an entry: how its text is read, whether it can be a number, and what is within it."""
 
     text: _InText = _InText.NAMES
     is_number: bool = False
     keys: _InText = _InText.NAMES
-    fields: Mapping[str, Shape] = field(default_factory=dict)
-    entries: Shape | None = None
+    fields: Mapping[str, DocumentShape] = field(default_factory=dict)
+    entries: DocumentShape | None = None
 
-    def step_into(self, step: str | int) -> Shape:
+    def step_into(self, step: str | int) -> DocumentShape:
         """Return what may stand at a step within it."""
         return self.fields.get(str(step)) or self.entries or ANYTHING
 
-    def with_either(self, other: Shape) -> Shape:
+    def with_either(self, other: DocumentShape) -> DocumentShape:
         """Return what may stand where one of both does."""
-        return Shape(
+        return DocumentShape(
             max(self.text, other.text),
             self.is_number or other.is_number,
             max(self.keys, other.keys),
@@ -61,17 +61,17 @@ class Shape:
         )
 
 
-ANYTHING = Shape()
+ANYTHING = DocumentShape()
 _MARKED = {TextUse.TYPE: _InText.TYPE, TextUse.CONDITION: _InText.EXPRESSION, TextUse.ACTION: _InText.EXPRESSION}
 
 
 @cache
-def resource_shape() -> Shape:
+def resource_shape() -> DocumentShape:
     """The shape of a resource."""
     return _shape_of(ResourceDocument)
 
 
-def _shape_of(annotation: object) -> Shape:
+def _shape_of(annotation: object) -> DocumentShape:
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return _marked(_shape_of(arguments[0]), arguments[1:])
@@ -84,17 +84,17 @@ def _shape_of(annotation: object) -> Shape:
         is_value = made.is_number and SourceText in map(_plain, arguments)
         return replace(made, text=max(made.text, _InText.VALUE)) if is_value else made
     if origin in (dict, Mapping):
-        return Shape(keys=_shape_of(arguments[0]).text, entries=_shape_of(arguments[1]))
+        return DocumentShape(keys=_shape_of(arguments[0]).text, entries=_shape_of(arguments[1]))
     if origin in (list, tuple):
         entries = _shape_of(arguments[0])
-        return Shape(is_number=origin is tuple and entries.is_number, entries=entries)
+        return DocumentShape(is_number=origin is tuple and entries.is_number, entries=entries)
     if annotation in (int, float):
-        return Shape(is_number=True)
+        return DocumentShape(is_number=True)
     if annotation is Any:
-        return Shape(_InText.VALUE, True, entries=Shape(_InText.VALUE, True))
+        return DocumentShape(_InText.VALUE, True, entries=DocumentShape(_InText.VALUE, True))
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         fields = annotation.model_fields.items()
-        return Shape(
+        return DocumentShape(
             fields={
                 info.alias or name: _marked(_shape_of(info.annotation), tuple(info.metadata)) for name, info in fields
             }
@@ -106,7 +106,7 @@ def _plain(annotation: object) -> object:
     return get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
 
 
-def _marked(shape: Shape, marks: tuple[object, ...]) -> Shape:
+def _marked(shape: DocumentShape, marks: tuple[object, ...]) -> DocumentShape:
     for mark in marks:
         if isinstance(mark, FormulaMark):
             return replace(shape, text=_InText.EXPRESSION)
@@ -161,7 +161,7 @@ class Expansion:
         self.duplicates: list[SourceText] = []
         self.unknown: list[SourceText] = []
 
-    def expanded(self, content: object, shape: Shape, path: EntryPath = (), made_at: EntryPath = ()) -> object:
+    def expanded(self, content: object, shape: DocumentShape, path: EntryPath = (), made_at: EntryPath = ()) -> object:
         """The content of the type for this instance. What stands at `path` stands at `made_at` then."""
         if self._places is not None and self._document is not None:
             self._places.copy_from(self._document, path, made_at, self._instance)
@@ -187,7 +187,7 @@ class Expansion:
         """A text that is given to another type."""
         return self._text(text, _InText.VALUE)
 
-    def _scalar(self, text: SourceText, shape: Shape) -> object:
+    def _scalar(self, text: SourceText, shape: DocumentShape) -> object:
         if shape.is_number and (found := self._arguments.get(text)) is not None and found.kind == "number":
             return found.content
         return self._text(text, shape.text)
