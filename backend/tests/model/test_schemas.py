@@ -13,11 +13,13 @@ from jsonschema import Draft202012Validator
 
 from sequence_planner.model.json_schema import FILES, schema_of
 from sequence_planner.model.yaml.reader import read_text
-from support.places import BOLT_TIGHTENING, DOCS, MODELS, REPOSITORY, STATIONS
+from support.places import DOCS, MODELS, REPOSITORY, STATIONS
 
 SCHEMAS = DOCS / "schemas"
 FOLDERS = [path.parent for folder in (MODELS, STATIONS) for path in sorted(folder.glob("*/station.yaml"))]
-DOCUMENTS = [path for station in FOLDERS for path in (*station.glob("*.yaml"), *station.glob("resources/*.yaml"))]
+DOCUMENTS = [
+    path for station in FOLDERS for below in ("", "resources/", "types/") for path in station.glob(f"{below}*.yaml")
+]
 PAGE = (DOCS / "model.md").read_text(encoding="utf-8")
 SHOWN = dict(re.findall(r"^```yaml ([\w/]+\.yaml)\n((?:.*\n)*?)```$", PAGE, re.MULTILINE))
 
@@ -41,8 +43,7 @@ def test_every_document_of_the_page_too(file: str) -> None:
 
 
 def test_the_documents_name_their_schemas() -> None:
-    truck = BOLT_TIGHTENING
-    for path in (*truck.glob("*.yaml"), *truck.glob("resources/*.yaml")):
+    for path in (path for path in DOCUMENTS if path.is_relative_to(MODELS)):
         named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", path.read_text(encoding="utf-8"))
         assert named, path
         assert (path.parent / named[1]).resolve() == SCHEMAS / f"{schema_name(str(path))}.schema.json"
@@ -65,6 +66,13 @@ def test_the_documents_name_their_schemas() -> None:
         ("resource", "topics: {/a: {type: a/msg/B, direction: inn}}\n"),
         ("resource", "topics: {/a: {type: a/msg/B, direction: in, pipeline: [{}]}}\n"),
         ("resource", "topics: {/a: {type: a/msg/B, direction: in, pipeline: [{rename: {a: b}, constant: {c: 1}}]}}\n"),
+        ("instance", "type: 5\n"),
+        ("instance", "type: a\narguments: {b: [1]}\n"),
+        ("instance", "type: a\nabilities: {a: {effects: {e: {takes: slow}}}}\n"),
+        ("instance", "type: a\ntopics: {/a: {pipeline: [{}]}}\n"),
+        ("type", "parameters: {a: number}\nabilities: {a: {effects: {e: {kind: begin}}}}\n"),
+        ("type", "parameters: {a: numbr}\n"),
+        ("type", "parameters: {a: {default: 1}}\n"),
         ("operations", "fetch: {goal: true}\n"),
         ("operations", "fetch:\n"),
         ("specifications", "a: {title: nothing forbidden}\n"),
@@ -83,8 +91,25 @@ def test_both_ways_to_write_a_duration(takes: str) -> None:
     assert complaints("resource", f"abilities: {{a: {{effects: {{e: {effect}}}}}}}\n") == []
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("instance", "type: a\narguments: {b: 1, c: d}\nabilities: {a: {effects: {e: {takes: 1}}}}\n"),
+        ("type", "parameters: {a: number, b: {kind: value, of: c}}\nabilities: {a: {effects: {e: {takes: [0, a]}}}}\n"),
+    ],
+)
+def test_a_part_may_be_in_the_type_and_its_rest_in_the_instance(name: str, text: str) -> None:
+    assert complaints(name, text) == []
+
+
 def schema_name(file: str) -> str:
-    return "resource" if "resources/" in file else Path(file).stem
+    match Path(file).parent.name:
+        case "types":
+            return "type"
+        case "resources":
+            text = SHOWN.get(file) or Path(file).read_text(encoding="utf-8")
+            return "instance" if re.search("^type:", text, re.MULTILINE) else "resource"
+    return Path(file).stem
 
 
 def complaints(name: str, text: str) -> list[str]:

@@ -29,12 +29,13 @@ from sequence_planner.language.types import (
     Value,
     contains,
 )
+from sequence_planner.model import fields
 from sequence_planner.model.documents import AbilityDocument, EnumerationDocument, Parameters, VariableDocument
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
 
-FLAGS = ("enabled", "executing", "finished")
+FLAGS = fields.FLAGS
 OPERATION = "operation"  # the first part of the name of what the tick knows of an operation
 MOST_VALUES = 1000  # of a range; every value costs memory in plans and supervisors
 

@@ -71,6 +71,11 @@ COMMANDS = (
         "Look at what `run` is told by a configuration file and by the environment.",
     ),
     LazyCommand(
+        "packages",
+        "station.packages:packages",
+        "Packages of types of resources: bring them, and see what is here.",
+    ),
+    LazyCommand(
         "messages",
         "model.messages:messages",
         "Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy.",

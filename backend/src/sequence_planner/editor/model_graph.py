@@ -26,10 +26,9 @@ from sequence_planner.editor.symbols.texts import (
     ModelContent,
     entry,
     message_of,
-    resource_of,
     text_at,
 )
-from sequence_planner.model.paths import shown_path
+from sequence_planner.model.paths import resource_of, shown_path
 from sequence_planner.model.source import Finding
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE
@@ -145,14 +144,15 @@ def _ties(declared: Declared, gathered: Gathered) -> tuple[ModelEdge, ...]:
         by = user(where)
         manner = manner_of(each.part, by, where.path[where.depth :], declared, writes=each.writes)
         inner = shown_path(where.path[where.depth :])
-        found[ModelEdge(each.part, by, manner, where.file, place.line, place.column, inner, True)] = None
+        found[ModelEdge(each.part, by, manner, each.home_file, place.line, place.column, inner, True)] = None
     for unwritten in gathered.unwritten:
         where = unwritten.where
         home = homes.get((where.file, where.path[: where.depth]))
         line, column = (home.line, home.column) if home else (1, 1)
         by, inner = user(where), shown_path(where.path[where.depth :])
         manner = manner_of(unwritten.part, by, where.path[where.depth :], declared, writes=unwritten.writes)
-        found[ModelEdge(unwritten.part, by, manner, where.file, line, column, inner, False)] = None
+        file = home.file if home else where.file
+        found[ModelEdge(unwritten.part, by, manner, file, line, column, inner, False)] = None
     return tuple(found)
 
 
@@ -183,7 +183,7 @@ class _Things:
         variable = self._declared.variables.get(part.full) if part.kind == "variable" else None
         section = None if variable is None else variable.section
         return ModelNode(
-            part, self._layer(part, section), self._standing(part), self._resource(part, place), section,
+            part, self._layer(part, section), self._standing(part), self._resource(part, where, place), section,
             self._within(part), None if where is None else self._title(where.file, where.path), place,
         )  # fmt: skip
 
@@ -224,17 +224,18 @@ class _Things:
                 return self._first[part].by
         return None
 
-    def _resource(self, part: ModelPart, place: Usage | None) -> str | None:
+    def _resource(self, part: ModelPart, where: Where | None, place: Usage | None) -> str | None:
         """The resource to which it belongs: for what is of ROS 2, that in whose file it stands."""
         if part.kind in ("variable", "ability", "flow", "alarm"):
             return part.owner
         if part.kind == "resource":
             return part.name
         is_in_file = part.kind in ("topic", "service", "action", "effect", "parameter") and place is not None
-        return resource_of(place.file) if is_in_file and place is not None else None
+        file = place.file if where is None and place is not None else "" if where is None else where.file
+        return resource_of(file) if is_in_file else None
 
     def _title(self, file: str, path: EntryPath) -> str | None:
-        content = self._content.get(file)
+        content = self._content.whole.get(file)
         found = text_at(content, "title") if not path else entry(content, *map(str, path), "title")
         return str(found) if isinstance(found, str) else None
 

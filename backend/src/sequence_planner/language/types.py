@@ -10,11 +10,14 @@ from sequence_planner.core.immutable import Immutable
 
 
 class Place(NamedTuple):
-    """The place where something stands; line and column count from 1."""
+    """The place where something stands; line and column count from 1. What stands in the type of a resource is known
+    by the `instance`, in words, for which it was read.
+    """
 
     file: str
     line: int
     column: int
+    instance: str = ""
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"

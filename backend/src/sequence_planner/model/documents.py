@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from sequence_planner.model.fields import DocumentPart, Given, Predicate, Seconds
+from sequence_planner.model.fields import Action, DocumentPart, Given, Predicate, Seconds, TypeName
 from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.registry import StageDocument
@@ -124,7 +124,7 @@ class FlowDocument(DocumentPart):
 # What each document of a station may hold. Texts keep their place (`SourceText`), so that errors can name it.
 
 
-Parameters = dict[SourceText, SourceText]
+Parameters = dict[SourceText, TypeName]
 
 
 def _interval(value: object) -> object:
@@ -154,7 +154,7 @@ class VariableDocument(DocumentPart):
     A measured or output variable without one has the type of the message field that it belongs to.
     """
 
-    type: Given[SourceText] = None
+    type: Given[TypeName] = None
     """`bool`, an enumeration, or a range such as `0..3`. May be left out where a message field tells it."""
     initial: Given[bool | int | SourceText] = None
     """The first value; without it the first of the type."""
@@ -169,7 +169,7 @@ class StartDocument(DocumentPart):
 
     when: Predicate = True
     """Condition for a start beside `enabled`."""
-    do: list[SourceText] = Field(default_factory=list)
+    do: list[Action] = Field(default_factory=list)
     """Actions on outputs and estimates, such as `wanted := closed`."""
 
 
@@ -178,7 +178,7 @@ class FinishDocument(DocumentPart):
 
     when: Predicate
     """As soon as this holds, the finish actions are taken."""
-    do: list[SourceText] = Field(default_factory=list)
+    do: list[Action] = Field(default_factory=list)
     """Actions on outputs and estimates."""
 
 
@@ -189,7 +189,7 @@ class EffectDocument(DocumentPart):
     """For the reader: when in a run it is expected."""
     when: Predicate
     """The condition under which it happens, on measured and output variables."""
-    do: list[SourceText] = Field(min_length=1)
+    do: list[Action] = Field(min_length=1)
     """Actions on measured variables, all taken at once."""
     takes: Duration = (0.5, 0.5)
     """Seconds, or the fewest and the most; emulated devices take so long."""
@@ -209,7 +209,7 @@ class HumanDocument(DocumentPart):
 class CancelDocument(DocumentPart):
     """Actions taken when a running ability is called off."""
 
-    do: list[SourceText] = Field(min_length=1)
+    do: list[Action] = Field(min_length=1)
     """Actions on outputs and estimates."""
 
 
@@ -494,6 +494,23 @@ class ResourceDocument(DocumentPart):
     """Conditions with a name, which other conditions use by it."""
 
 
+class PackageSourceDocument(DocumentPart):
+    """Where a package is brought from: a folder, or a revision of a git repository."""
+
+    path: Given[SourceText] = None
+    """A folder, from that of the station."""
+    git: Given[SourceText] = None
+    """The address of a repository: `https://`, `ssh://` or `file://`."""
+    revision: Given[SourceText] = None
+    """A tag, a branch or a commit of it."""
+
+    @model_validator(mode="after")
+    def _is_somewhere(self) -> PackageSourceDocument:
+        if (self.path is None) == (self.git is None) or (self.git is None) != (self.revision is None):
+            raise ValueError("a package is brought from a `path`, or from a `git` repository at a `revision`")
+        return self
+
+
 class StationDocument(DocumentPart):
     """The station as a whole: what is common to its resources. `rest` describes the states of rest."""
 
@@ -519,6 +536,8 @@ class StationDocument(DocumentPart):
     """What people are told of the station as a whole when something is wrong."""
     rest: Predicate = True
     """The states to which the station can always be brought back."""
+    packages: dict[SourceText, PackageSourceDocument] = Field(default_factory=dict)
+    """Packages of types of resources, and where each is brought from."""
     takeover: Literal["confirm", "automatic"] = "confirm"
     """After a hot standby has taken command: with `true`, a person confirms that production goes on."""
 

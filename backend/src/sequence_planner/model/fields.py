@@ -4,6 +4,7 @@ share.
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import Annotated, TypeVar
 
 from pydantic import BeforeValidator, ConfigDict, Field
@@ -28,9 +29,23 @@ def _given(value: object) -> object:
     return value
 
 
+# What is known of each ability: the names of its conditions, which others may use.
+FLAGS = ("enabled", "executing", "finished")
+
 # What may be left out, and is not left empty: a key without a value says nothing.
 Given = Annotated[T | None, BeforeValidator(_given)]
 
+
+class TextUse(Enum):
+    """Marks what a text of a document is, for those who look into it: all others are names and texts for people."""
+
+    CONDITION = "condition"
+    ACTION = "action"
+    TYPE = "type"  # an enumeration, or another type of a variable
+
+
 # A predicate is a text of the guard language; YAML itself reads a bare `true` as a truth value.
-Predicate = SourceText | bool
+Predicate = Annotated[SourceText | bool, TextUse.CONDITION]
+Action = Annotated[SourceText, TextUse.ACTION]
+TypeName = Annotated[SourceText, TextUse.TYPE]
 Seconds = Annotated[float, Field(ge=0, le=86_400)]

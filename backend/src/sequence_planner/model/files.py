@@ -39,12 +39,16 @@ MOST_FILES = 2_000
 MOST_CHARACTERS = 10_000_000  # of all files together
 STAGES = "stages"
 _UNFINISHED = ".unfinished"
-SEARCHED_FOLDERS = ("resources", "messages")  # where files are looked for
+SEARCHED_FOLDERS = ("resources", "types", "messages", "packages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
 _NO_TEXT = re.compile("[\0\ud800-\udfff]")
-_PATH = re.compile(rf"{'|'.join(map(re.escape, FILES))}|resources/{_NAME}\.yaml|{_DEFINITIONS}")
+_OF_PACKAGE = rf"package\.yaml|types/{_NAME}\.yaml|{_DEFINITIONS}"
+_PATH = re.compile(
+    rf"{'|'.join(map(re.escape, FILES))}|packages\.lock|(?:resources|types)/{_NAME}\.yaml|{_DEFINITIONS}"
+    rf"|packages/{_NAME}/(?:{_OF_PACKAGE})"
+)
 
 
 def is_of_model(path: str) -> bool:
@@ -56,8 +60,9 @@ def check_path(path: str) -> None:
     """Raises `EditError` for a path that is none of a model's files."""
     if not is_of_model(path):
         raise EditError(
-            f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, and "
-            "messages/<package>/msg/<Name>.msg (or srv, or action)"
+            f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, "
+            "types/<name>.yaml, messages/<package>/msg/<Name>.msg (or srv, or action), packages.lock, and those of a "
+            "package in packages/<name>"
         )
 
 
@@ -125,6 +130,31 @@ def _found(folder: Path | str, below: str = "") -> Iterator[tuple[str, os.DirEnt
                 yield from _found(entry.path, f"{name}/")
             elif is_of_model(name) and entry.is_file():
                 yield name, entry
+
+
+def is_package_name(name: str) -> bool:
+    """Return whether a package can be called so."""
+    return re.fullmatch(_NAME, name) is not None
+
+
+def is_of_package(path: str) -> bool:
+    """Return whether a file belongs to a package, by its path there."""
+    return re.fullmatch(_OF_PACKAGE, path) is not None
+
+
+def package_files(folder: Path) -> dict[str, str]:
+    """The files of the package in `folder`; those that are no UTF-8 text are left out, and all links.
+
+    Raises `OSError`.
+    """
+    files: dict[str, str] = {}
+    whole = folder.resolve()
+    for path in sorted(each for below in ("*.yaml", "types/*", "messages/*/*/*") for each in folder.glob(below)):
+        name = path.relative_to(folder).as_posix()
+        is_file = is_of_package(name) and path.resolve() == whole / name and path.is_file()
+        if is_file and (text := _text(path)) is not None:
+            files[name] = text
+    return files
 
 
 def _text(path: Path) -> str | None:

@@ -32,11 +32,16 @@ from sequence_planner.model.efa_document import PlainDocument
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.sequences import KINDS, SequenceDocument, SequencePart
 from sequence_planner.model.stages.registry import StageDocument
+from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
+from sequence_planner.model.types.packages import PackageDocument
 
 # The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
 FILES: Mapping[str, tuple[Any, str]] = {
     "station": (StationDocument, "station.yaml"),
     "resource": (ResourceDocument, "resources/<name>.yaml"),
+    "instance": (InstanceDocument, "resources/<name>.yaml with a type"),
+    "type": (TypeDocument, "types/<name>.yaml"),
+    "package": (PackageDocument, "packages/<name>/package.yaml"),
     "operations": (dict[str, OperationDocument | SequenceDocument], "operations.yaml"),
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
@@ -73,9 +78,9 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", schema["cls"].__name__.removesuffix("Document"))
         made["title"] = words.capitalize()
-        bases = [each for each in reversed(schema["cls"].__mro__) if issubclass(each, DocumentPart)]
-        for name, text in (each for base in bases[1:] for each in _written_beneath(base)):
-            made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
+        for part in schema["cls"].__mro__:
+            for name, text in _written_beneath(part) if issubclass(part, DocumentPart) else ():
+                made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
         if schema["cls"] is StageDocument:
             made |= {"minProperties": 1, "maxProperties": 1}
         if issubclass(schema["cls"], SequencePart):
@@ -102,7 +107,35 @@ def schema_of(name: str) -> dict[str, Any]:
     """The schema of one of `FILES`."""
     content, title = FILES[name]
     made = TypeAdapter(content).json_schema(schema_generator=_Generator)
+    if name in ("instance", "type"):
+        kept = _partial(made, made["$defs"], set())
+        made = _with_parameters(kept) if name == "type" else kept
     return {"$schema": _Generator.schema_dialect, **made, "title": title}
+
+
+def _partial(schema: Any, of: dict[str, Any], done: set[str]) -> Any:  # noqa: ANN401 (a schema of any form)
+    """Let anything be left out that the other half, an instance or its type, may have: all but what is in lists."""
+    if (reference := schema.get("$ref", "").rpartition("/")[2]) and reference not in done | {"ParameterDocument"}:
+        done.add(reference)
+        _partial(of[reference], of, done)
+    schema.pop("required", None)
+    within = schema.get("additionalProperties")
+    for each in (*schema.get("properties", {}).values(), *schema.get("anyOf", ()), *([within] if within else ())):
+        _partial(each, of, done)
+    return schema
+
+
+def _with_parameters(schema: Any) -> Any:  # noqa: ANN401
+    """Let the name of a parameter stand where a number may."""
+    if isinstance(schema, list):
+        return [_with_parameters(each) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    if schema.get("type") not in ("number", "integer"):
+        return {key: _with_parameters(each) for key, each in schema.items()}
+    about = {key: schema[key] for key in ("description", "default") if key in schema}
+    number = {key: each for key, each in schema.items() if key not in about}
+    return {**about, "anyOf": [number, {"type": "string"}]}
 
 
 def write_schemas(folder: Path) -> None:

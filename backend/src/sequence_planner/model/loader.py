@@ -1,15 +1,16 @@
 """A station's folder, brought together.
 
-station.yaml  resources/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  messages/<package>/msg/*.msg
-messages/<package>/srv/*.srv  messages/<package>/action/*.action
+station.yaml  resources/*.yaml  types/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml
+messages/<package>/msg/*.msg  messages/<package>/srv/*.srv  messages/<package>/action/*.action
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
@@ -28,6 +29,10 @@ from sequence_planner.model.sequences import SequenceDocument, is_sequence
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text, text_of
+
+if TYPE_CHECKING:
+    from sequence_planner.model.types.instances import InstancesBefore
+    from sequence_planner.model.types.layers import WrittenInstance
 
 D = TypeVar("D", bound=BaseModel)
 
@@ -53,6 +58,12 @@ class Station:
         return self.folder / "messages"
 
     @property
+    def message_folders(self) -> list[Path]:
+        """The folders of message definitions that there are: the station's own, and those of its packages."""
+        packages = (self.folder / "packages" / name / "messages" for name in self.station.packages)
+        return [each for each in (self.messages, *packages) if each.is_dir()]
+
+    @property
     def title(self) -> str:
         """The name that people call it by."""
         return self.station.title or self.station.name
@@ -63,6 +74,7 @@ class ReadBefore:
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, type[BaseModel]], tuple[str, object, tuple[Finding, ...]]] = {}
+        self.instances: InstancesBefore | None = None
 
     def find(self, name: str, kind: type[BaseModel], text: str) -> tuple[object, tuple[Finding, ...]] | None:
         """Return what the file `name` holds as `kind`, and what is wrong with it; None unless it was read with this
@@ -91,10 +103,8 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     reader = _FolderReader(folder, before)
     reader.findings += unread_files(folder)
     station = reader.whole("station.yaml", StationDocument)
-    resources = {
-        path.stem: reader.whole(f"resources/{path.name}", ResourceDocument)
-        for path in sorted((folder / "resources").glob("*.yaml"))
-    }
+    station, types = reader.packaged(station)
+    resources = reader.all_resources(station, types)
     entries = reader.entries("operations.yaml", DocumentPart, operation_kind)
     operations = {name: each for name, each in entries.items() if isinstance(each, OperationDocument)}
     sequences = {name: each for name, each in entries.items() if isinstance(each, SequenceDocument)}
@@ -103,9 +113,8 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
-    present = {name: resource for name, resource in resources.items() if resource is not None}
     empty = tuple(reader.empty)
-    return Station(folder, station, present, operations, specifications, work_masters, empty, sequences)
+    return Station(folder, station, resources, operations, specifications, work_masters, empty, sequences)
 
 
 def _is_file(path: Path) -> bool:
@@ -117,12 +126,13 @@ def _is_file(path: Path) -> bool:
 
 def unread_files(folder: Path) -> Iterator[Finding]:
     """Yield the files in the folder of a station that are no part of it, though their names are almost right."""
-    for path in sorted((*folder.glob("*.yml"), *folder.glob("resources/*.yml"))):
+    for path in sorted(each for below in ("", "resources/", "types/") for each in folder.glob(f"{below}*.yml")):
         yield Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read")
-    for path in sorted((folder / "resources").glob("*")):
-        if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
-            message = "this is not read: each resource is a file <name>.yaml in this folder"
-            yield Finding(Place(str(path), 1, 1), message)
+    for below, what in (("resources", "resource"), ("types", "type")):
+        for path in sorted((folder / below).glob("*")):
+            if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
+                message = f"this is not read: each {what} is a file <name>.yaml in this folder"
+                yield Finding(Place(str(path), 1, 1), message)
     for kind, what in DEFINITIONS.items():
         for path in sorted((folder / "messages").rglob(f"*.{kind}")):
             if len(path.relative_to(folder).parts) != 4 or path.parent.name != kind:
@@ -137,6 +147,8 @@ def unread_files(folder: Path) -> Iterator[Finding]:
             yield Finding(Place(str(path), 1, 1), message)
 
 
+_OF_INSTANCES = frozenset({"type", "arguments", "remove"})  # keys that no other resource has
+
 # The content of a file and what is wrong with it, from the file as it was read.
 _Reading = Callable[[YamlDocument], tuple[object, list[Finding]]]
 
@@ -146,6 +158,7 @@ class _FolderReader:
         self._folder = folder
         self._before = before or ReadBefore()
         self._names: set[str] = set()
+        self._brought: dict[str, list[str]] = {}
         self.findings: list[Finding] = []
         self.empty: list[Place] = []
 
@@ -153,6 +166,69 @@ class _FolderReader:
         """A file that is one document."""
         found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
         return cast("D | None", found)
+
+    def packaged(
+        self, station: StationDocument | None
+    ) -> tuple[StationDocument | None, dict[str, WrittenInstance | None]]:
+        """The station with the enumerations of its packages, and the types of these."""
+        if station is None or not (station.packages or (self._folder / "packages").is_dir()):
+            return station, {}
+        from sequence_planner.model.types.layers import read_type  # noqa: PLC0415 (few stations have packages)
+        from sequence_planner.model.types.packages import UsedPackages  # noqa: PLC0415
+
+        used = UsedPackages(self._folder, station)
+        self.findings.extend(used.findings)
+        self._brought = used.brought
+        types: dict[str, WrittenInstance | None] = {
+            f"{package}.*": None for package in station.packages if package not in used.packages
+        }
+        for package in used.packages:
+            for file in used.files_of(package):
+                found = self._once(file, BaseModel, partial(read_type, package=package))
+                types[f"{package}.{Path(file).stem}"] = cast("WrittenInstance | None", found)
+        if not used.enumerations:
+            return station, types
+        return station.model_copy(update={"enumerations": {**used.enumerations, **station.enumerations}}), types
+
+    def all_resources(
+        self, station: StationDocument | None, of_packages: dict[str, WrittenInstance | None]
+    ) -> dict[str, ResourceDocument]:
+        """The resources, those that are instances of types as if they were written out."""
+        paths = sorted((self._folder / "resources").glob("*.yaml"))
+        found = {path.stem: self._once(f"resources/{path.name}", ResourceDocument, _resource) for path in paths}
+        types = {**self._types(), **of_packages}
+        if types or not all(each is None or isinstance(each, ResourceDocument) for each in found.values()):
+            found = self._instantiated(found, types, station)
+        return cast("dict[str, ResourceDocument]", {name: each for name, each in found.items() if each is not None})
+
+    def _types(self) -> dict[str, WrittenInstance | None]:
+        """The types of the station, by their names; None where one cannot be read."""
+        paths = sorted((self._folder / "types").glob("*.yaml"))
+        if not paths:
+            return {}
+        from sequence_planner.model.types.layers import read_type  # noqa: PLC0415 (few stations have one)
+
+        found = {
+            path.stem: self._once(f"types/{path.name}", BaseModel, partial(read_type, package="")) for path in paths
+        }
+        return cast("dict[str, WrittenInstance | None]", found)
+
+    def _instantiated(
+        self, found: dict[str, object], types: dict[str, WrittenInstance | None], station: StationDocument | None
+    ) -> dict[str, object]:
+        from sequence_planner.model.types.instances import Instances, InstancesBefore  # noqa: PLC0415
+        from sequence_planner.model.types.layers import WrittenInstance  # noqa: PLC0415
+
+        if station is None:  # nobody knows its enumerations
+            return {}
+        self._before.instances = self._before.instances or InstancesBefore()
+        instances = Instances(types, station, found, self._before.instances, self._brought)
+        made = {
+            name: instances.made_of(name, each) if isinstance(each, WrittenInstance) else each
+            for name, each in found.items()
+        }
+        self.findings.extend(instances.findings)
+        return made
 
     def entries(
         self, name: str, kind: type[D], kind_of: Callable[[object], type[D]] | None = None
@@ -191,6 +267,26 @@ class _FolderReader:
             self._before.keep(name, kind, text, *known)
         self.findings.extend(known[1])
         return known[0]
+
+
+def _resource(document: YamlDocument) -> tuple[object, list[Finding]]:
+    """A resource, or an instance of a type, which is made one when that is known."""
+    if isinstance(document.content, dict) and not _OF_INSTANCES.isdisjoint(document.content):
+        from sequence_planner.model.types.layers import read_instance  # noqa: PLC0415
+
+        return read_instance(document)
+    return _validated(document, document.content, (), ResourceDocument)
+
+
+def station_packages(document: YamlDocument) -> StationDocument:
+    """A station of which only its name and its packages are looked at. Raises `ModelError`."""
+    content = document.content
+    if isinstance(content, dict):
+        content = {key: each for key, each in content.items() if key in ("name", "packages")}
+    station, findings = _validated(document, content, (), StationDocument)
+    if findings:
+        raise ModelError(findings)
+    return cast(StationDocument, station)
 
 
 def operation_kind(content: object) -> type[OperationDocument | SequenceDocument]:

@@ -12,11 +12,27 @@ if TYPE_CHECKING:
 
 # What lies in a station's folder.
 
-FOLDERS = ("resources", "messages", "stages")
+FOLDERS = ("resources", "types", "messages", "stages", "packages")
 # What files below `messages` define, by what their names end with.
 DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
+
+
+_RESOURCE = re.compile(r"resources/([^/]+)\.yaml")
+_TYPE = re.compile(r"(?:packages/(\w+)/)?types/(\w+)\.yaml")
+
+
+def resource_of(file: str) -> str | None:
+    """The name of the resource that a file of a model describes; None for other files."""
+    found = _RESOURCE.fullmatch(file)
+    return None if found is None else found[1]
+
+
+def type_of(file: str) -> str | None:
+    """The name of the type that a file of a model describes, that of a package as `package.name`; None for others."""
+    found = _TYPE.fullmatch(file)
+    return None if found is None else ".".join(filter(None, found.groups()))
 
 
 # How people name an entry of a document: `abilities.run_nut.start.do[0]`.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
@@ -29,8 +29,29 @@ class ModelError(Exception):
     """A model that cannot be used, with all that was found wrong in it."""
 
     def __init__(self, findings: list[Finding]) -> None:
-        self.findings = sorted(set(findings))
+        self.findings = told_once(sorted(set(findings)))
         super().__init__("\n".join(map(str, self.findings)))
+
+
+def told_once(findings: list[Finding]) -> list[Finding]:
+    """The same, with one for what is wrong in a type, which names the instances that have it."""
+    if not any(finding.place.instance for finding in findings):
+        return findings
+    told: dict[tuple[Place, str], list[Finding]] = {}
+    for finding in findings:
+        own = re.escape(finding.place.instance.partition(" ")[0] or "\0")
+        alike = re.sub(rf"\b{own}\b", "\0", finding.message)
+        told.setdefault((finding.place._replace(instance=""), alike), []).append(finding)
+    return [
+        Finding(place, each[0].message if not each[0].place.instance else f"{_instances(each)}: {each[0].message}")
+        for (place, _), each in told.items()
+    ]
+
+
+def _instances(findings: list[Finding]) -> str:
+    first, *others = (finding.place.instance for finding in findings)
+    names = [first, *(other.partition(" ")[0] for other in others)]
+    return f"in {', '.join(names[:-1])} and {names[-1]}" if others else f"in {first}"
 
 
 class SourceText(str):
@@ -40,7 +61,7 @@ class SourceText(str):
     place: Place
     raw: str
 
-    def __new__(cls, text: str, place: Place, raw: str) -> SourceText:
+    def __new__(cls, text: str, place: Place, raw: str) -> Self:
         """`raw` is the text as written, quotes and line breaks included; it begins at `place`."""
         self = super().__new__(cls, text)
         self.place = place
@@ -66,7 +87,7 @@ class SourceText(str):
         above = self.raw[:index]
         breaks = above.count("\n")
         column = index - above.rfind("\n") if breaks else self.place.column + index
-        return Place(self.place.file, self.place.line + breaks, column)
+        return self.place._replace(line=self.place.line + breaks, column=column)
 
     def written(self, span: Span) -> tuple[int, int]:
         """Return where a span of this text, which begins and ends with no white space, begins and ends in `raw`."""
@@ -120,3 +141,68 @@ def _is_space(written: str) -> bool:
     """Return whether a character is white space, as it is or by an escape such as `\\n` or `\\x20`."""
     is_number = len(written) > 2 and written[1] in "xuU"
     return written.isspace() or written in _ESCAPED_SPACE or (is_number and chr(int(written[2:], 16)).isspace())
+
+
+# Texts of a type of resources, with arguments in the place of parameters.
+
+
+class Piece(NamedTuple):
+    """A part of a text, from `start` to `end`, that stands for what was written from `begin` to `stop`."""
+
+    start: int
+    end: int
+    begin: int
+    stop: int
+    argument: SourceText | None
+
+
+class ExpandedText(SourceText):
+    """A text of a type in which arguments stand for parameters. It knows where it is written in the type."""
+
+    __slots__ = ("pieces", "template")
+    template: SourceText
+    pieces: tuple[Piece, ...]
+
+    def __new__(cls, template: SourceText, text: str, pieces: tuple[Piece, ...], place: Place) -> Self:
+        """`text` was made of `template`, which stands at `place`."""
+        self = super().__new__(cls, text, place, template.raw)
+        self.template, self.pieces = template, pieces
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return ExpandedText, (self.template, str(self), self.pieces, self.place)
+
+    def at(self, span: Span) -> Place:
+        """The place in the type of a span; where it is an argument, with the place of that."""
+        place = self.template.at(self.in_template(span))
+        argument = self.argument(Span(span.start, span.start))
+        instance = self.place.instance
+        return place._replace(instance=instance if argument is None else with_given_at(instance, argument.place))
+
+    def written(self, span: Span) -> tuple[int, int]:
+        """Return where a span begins and ends in `raw`."""
+        return self.template.written(self.in_template(span))
+
+    def argument(self, span: Span) -> SourceText | None:
+        """The argument within which a span lies."""
+        found = (each.argument for each in self.pieces if each.start <= span.start < each.end and span.end <= each.end)
+        return next(found, None)
+
+    def in_template(self, span: Span) -> Span:
+        """The span of the template that this span of the text was made of."""
+        return Span(self._before(span.start, at_end=False), self._before(span.end, at_end=True))
+
+    def _before(self, index: int, *, at_end: bool) -> int:
+        shift = 0
+        for piece in self.pieces:
+            if index < piece.start or (at_end and index == piece.start):
+                break
+            if index < piece.end or (at_end and index == piece.end):
+                return piece.stop if at_end else piece.begin
+            shift = piece.stop - piece.end
+        return index + shift
+
+
+def with_given_at(instance: str, place: Place) -> str:
+    """An instance by its name, with another place in it."""
+    return f"{instance.partition(' ')[0]} ({place})"

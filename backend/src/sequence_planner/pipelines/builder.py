@@ -366,7 +366,7 @@ def _check_ignored(document: TopicDocument, building: ChainBuilding, message: Re
 def load_messages(station: Station) -> MessageRegistry:
     """The message types of a station. Raises `ModelError` with the place of a definition that cannot be used."""
     try:
-        return MessageRegistry.from_folder(station.messages if station.messages.is_dir() else None)
+        return MessageRegistry.from_folder(None, *station.message_folders)
     except MessageDefinitionError as error:
         raise ModelError([Finding(Place(str(error.path), error.line, 1), error.text)]) from error
 

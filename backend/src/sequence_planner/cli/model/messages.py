@@ -25,7 +25,8 @@ def messages(
     except ModelError as error:
         refuse(str(error))
     try:
-        for package in write_ament_package(station.messages, ament):
-            typer.echo(package)
+        for folder in station.message_folders or [station.messages]:
+            for package in write_ament_package(folder, ament):
+                typer.echo(package)
     except OSError as error:
         refuse(f"{ament} cannot be written to: {error.strerror}")

@@ -66,9 +66,9 @@ class LanguageDraft:
     def messages(self) -> MessageRegistry | None:
         """The message types that it defines; None where they cannot be read."""
         with self._folder_of(self._files):
-            definitions = Path("messages")
+            folders = [each for each in (Path("messages"), *Path().glob("packages/*/messages")) if each.is_dir()]
             try:
-                return MessageRegistry.from_folder(definitions if definitions.is_dir() else None)
+                return MessageRegistry.from_folder(None, *folders)
             except MessageDefinitionError:
                 return None
 

@@ -103,6 +103,8 @@ class Places:
         # Where several begin at one place, the innermost is last; what an alias repeats belongs to its anchor.
         first: dict[tuple[int, int], EntryPath] = {}
         for path, place in document.places.items():
+            if place.file != document.file:  # what an instance has of its type
+                continue
             at = (place.line, place.column)
             known = first.get(at)
             if known is None or path[: len(known)] == known:

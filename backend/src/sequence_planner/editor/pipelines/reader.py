@@ -5,19 +5,20 @@ from __future__ import annotations
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.grounding import ground_variables
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import AbilityDocument, ResourceDocument, StationDocument
-from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.loader import Station
+from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.types.layers import written_out
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text
 from sequence_planner.pipelines.builder import Built, build_what_is_sound, flow_name
@@ -30,7 +31,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 #
 # pydantic alone says what is wrong. It is taken out, and the rest is looked at again.
 
-D = TypeVar("D", bound=DocumentPart)
+D = TypeVar("D", bound=BaseModel)
 
 # Where the stages of an entry of each section stand.
 STAGES: Mapping[str, tuple[str, ...]] = {
@@ -132,6 +133,7 @@ def _key(mapping: Mapping[SourceText, object], name: str) -> SourceText:
 # A draft read as far as it can be: its documents with their places, and the pipelines that are sound in it.
 
 MESSAGES, STATION, NOTHING = "messages/", "station.yaml", "name: draft\n"
+_OF_PACKAGE = f"/{MESSAGES}"  # in `packages/<name>/messages/`
 # Sections of a resource in which something has to do with pipelines.
 OURS = frozenset({*STAGES, "measured", "output", "estimated"})
 
@@ -157,13 +159,7 @@ class Sketch:
     @property
     def resources(self) -> Mapping[str, YamlDocument]:
         """The documents of resources, by their names."""
-        return {resource_of(file): document for file, document in self.documents.items() if resource_of(file)}
-
-
-def resource_of(file: str) -> str:
-    """The resource that a file is about; nothing for other files."""
-    at = PurePosixPath(file)
-    return at.stem if at.parts[:1] == ("resources",) else ""
+        return {name: document for file, document in self.documents.items() if (name := resource_of(file))}
 
 
 @dataclass
@@ -186,14 +182,14 @@ class DraftReader:
         """The draft that consists of these files."""
         registry, findings = self._messages(files)
         documents, unread, wrong = self._documents(files)
-        return _sketch(self.folder, documents, unread, registry, [*findings, *wrong])
+        return _sketch(self.folder, written_out(documents), unread, registry, [*findings, *wrong])
 
     def _documents(self, files: Files) -> tuple[dict[str, YamlDocument], tuple[str, ...], list[Finding]]:
         """The documents; one that cannot be read stands as it was when it could be."""
         found: dict[str, YamlDocument] = {}
         unread: list[str] = []
         findings: list[Finding] = []
-        for path in sorted({STATION, *(each for each in files if resource_of(each))}):
+        for path in sorted({STATION, *(each for each in files if resource_of(each) or type_of(each))}):
             text = files.get(path, NOTHING)
             known = self._read.get(path)
             if known is None or known[0] != text:
@@ -208,7 +204,7 @@ class DraftReader:
 
     def _messages(self, files: Files) -> tuple[MessageRegistry, list[Finding]]:
         """The message types; definitions that cannot be used are left out."""
-        definitions = {path: text for path, text in files.items() if path.startswith(MESSAGES)}
+        definitions = {path: text for path, text in files.items() if path.startswith(MESSAGES) or _OF_PACKAGE in path}
         if self._registry is None or self._definitions != definitions:
             self._definitions = definitions
             self._registry, self._wrong = self._defined(dict(definitions))
@@ -219,9 +215,11 @@ class DraftReader:
         folder = self.folder / MESSAGES
         while True:
             shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(self.folder / "packages", ignore_errors=True)
             write_files(definitions, self.folder)
+            folders = [each for each in (folder, *self.folder.glob(f"packages/*/{MESSAGES}")) if each.is_dir()]
             try:
-                return MessageRegistry.from_folder(folder if folder.is_dir() else None), findings
+                return MessageRegistry.from_folder(None, *folders), findings
             except MessageDefinitionError as error:
                 path = str(error.path).removeprefix(f"{self.folder}/")
                 findings.append(Finding(Place(path, error.line, error.column), error.text))
@@ -296,7 +294,7 @@ def _station(document: YamlDocument) -> StationDocument:
 
 def _cut_names(cut: Mapping[tuple[str, EntryPath], int]) -> list[str]:
     """Return what pipelines are called of which not all stages can be read."""
-    return [pipeline_name(resource_of(file), path) for file, path in cut]
+    return [pipeline_name(resource_of(file) or "", path) for file, path in cut]
 
 
 def pipeline_name(resource: str, path: EntryPath) -> str:

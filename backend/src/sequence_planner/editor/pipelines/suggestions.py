@@ -13,7 +13,7 @@ from sequence_planner.automaton.grounding import ground_variables
 from sequence_planner.editor.draft import AddEntry, SetEntry
 from sequence_planner.editor.pipelines.examples import pipeline_of
 from sequence_planner.editor.pipelines.graph import DraftPipelines
-from sequence_planner.editor.pipelines.reader import pipeline_name, resource_of
+from sequence_planner.editor.pipelines.reader import pipeline_name
 from sequence_planner.editor.pipelines.schemas import (
     DraftPipelineView,
     EntryEdit,
@@ -28,7 +28,7 @@ from sequence_planner.language.records.record import FieldType, RecordType
 from sequence_planner.language.types import Place, Type
 from sequence_planner.model.documents import FlowDocument, ResourceDocument, VariableDocument
 from sequence_planner.model.loader import Station
-from sequence_planner.model.paths import EditError
+from sequence_planner.model.paths import EditError, resource_of
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.python import FOLDER
 from sequence_planner.model.stages.registry import KINDS, StageDocument
@@ -122,7 +122,7 @@ class Trying:
     def _built(self, station: Station) -> tuple[Sequence[str], Mapping[str, Type]]:
         """Return what is wrong with a station, as the builder says it, and its variables with their types."""
         sketch = self._graph.sketch
-        cut = [pipeline_name(resource_of(file), path) for file, path in sketch.cut]
+        cut = [pipeline_name(resource_of(file) or "", path) for file, path in sketch.cut]
         inferred, found = variables_inferred(station, sketch.registry)
         document = inferred.resources[self._view.resource]
         lost = {str(path[1]) for _, path in sketch.lost if path[0] == "topics"}

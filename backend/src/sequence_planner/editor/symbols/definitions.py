@@ -162,7 +162,7 @@ def gather(
     """Return what is named in the files, and where. With `word`, only in expressions that hold it; with `file`, all
     that is in that one, and perhaps more.
     """
-    gathered = Gathered()
+    gathered = Gathered(content)
     declared = Declared(content, messages)
     naming = Naming(declared, gathered)
     walk = _Walk(naming, Expressions(naming, word))
@@ -171,6 +171,7 @@ def gather(
     for resource, at, found in content.resources():
         if file in (None, at):
             walk.resource(resource, at, found)
+            walk.changed_in_instance(resource, at, content.get(at), found)
     PipelineCollector(naming, content).read(file)
     if file in (None, OPERATIONS):
         walk.operations(content.get(OPERATIONS))
@@ -213,6 +214,22 @@ class _Walk:
         for name, ability in pairs(entry(content, "abilities")):
             self._ability(resource, name, ability, top.to("abilities", name))
         self._alarms(resource, content, top)
+
+    def changed_in_instance(self, resource: str, file: str, own: object, whole: object) -> None:
+        """The names of what an instance has of its type and says something of itself."""
+        kinds = {**dict.fromkeys(SECTIONS, "variable"), "abilities": "ability", "alarms": "alarm", "flows": "flow"}
+        for section, kind in kinds.items():
+            of_type = {str(name) for name, _ in pairs(entry(whole, section)) if name.place.file != file}
+            for name, document in pairs(entry(own, section)):
+                part = ModelPart(kind, resource, str(name))
+                where = Where(file, (section, str(name)), f"{kind} {part.full}", 2, TextContext(resource))
+                if name in of_type:
+                    self._add(part, where, name)
+                inherited = entry(whole, section, str(name), "effects")
+                others = {str(each) for each, _ in pairs(inherited) if each.place.file != file}
+                for effect, _ in pairs(entry(document, "effects")):
+                    if effect in others:
+                        self._add(ModelPart("effect", part.full, str(effect)), where.to("effects", effect), effect)
 
     def _variables(self, resource: str | None, section: object, where: Where) -> None:
         for name, document in pairs(section):

@@ -24,7 +24,7 @@ from sequence_planner.language.syntax import Span
 from sequence_planner.model.paths import EditError, shown_path
 from sequence_planner.model.sequences import KINDS as SEQUENCE_KINDS
 from sequence_planner.model.sequences import is_sequence
-from sequence_planner.model.source import SourceText
+from sequence_planner.model.source import ExpandedText, SourceText
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE, GoalState
 from sequence_planner.ros.types.messages import MessageRegistry
@@ -333,7 +333,8 @@ class Occurrence:
     """A part named at `span` of a text, within the name at `whole`. `fixed` says why it cannot be written otherwise,
     and `writes` holds where a variable is given a value.
 
-    The text of the declaration of a resource or of a type of message is the name of its file, so there is none.
+    The text of the declaration of a resource or of a type of message is the name of its file, so there is none. A text
+    that an instance has of its type stands at `home`.
     """
 
     part: ModelPart
@@ -344,6 +345,17 @@ class Occurrence:
     declares: bool = False
     fixed: str | None = None
     writes: bool = False
+    home: tuple[str, EntryPath] | None = None
+
+    @property
+    def home_file(self) -> str:
+        """The file in which the part is named."""
+        return self.where.file if self.home is None else self.home[0]
+
+    @property
+    def home_path(self) -> EntryPath:
+        """The entry of that file."""
+        return self.where.path if self.home is None else self.home[1]
 
 
 class Unwritten(NamedTuple):
@@ -375,6 +387,7 @@ class Gathered:
     without a text that names what is used. `unread` are texts that make no sense, so that names in them may be missed.
     """
 
+    content: ModelContent
     occurrences: list[Occurrence] = field(default_factory=list)
     links: set[frozenset[ModelPart]] = field(default_factory=set)
     ties: dict[ModelPart, str] = field(default_factory=dict)
@@ -397,7 +410,33 @@ class Gathered:
     ) -> None:
         """Note that `text` names a part at `span`, or as a whole."""
         span = Span(0, len(text)) if span is None else span
-        self.occurrences.append(Occurrence(part, where, text, span, whole or span, declares, fixed, writes))
+        whole = whole or span
+        while isinstance(text, ExpandedText):
+            if (argument := text.argument(span)) is not None:
+                text, span = argument, Span(0, len(argument))
+                whole = span
+                continue
+            if any(each.start < span.end and span.start < each.end for each in text.pieces):
+                self.tie(part, "its name is made of an argument of its type")
+            span, whole, text = text.in_template(span), text.in_template(whole), text.template
+        home = None if text.place.file == where.file else (text.place.file, self.content.path_of(text))
+        if text.place.instance:
+            text = SourceText(text, text.place._replace(instance=""), text.raw)
+        self.occurrences.append(Occurrence(part, where, text, span, whole, declares, fixed, writes, home))
+
+    def home_of(self, file: str, path: tuple[str, ...]) -> tuple[str, tuple[str, ...]]:
+        """Return where an entry of a resource stands that an instance may have of its type."""
+        content, home = self.content.whole.get(file), (file, path)
+        for depth, step in enumerate(path, start=1):
+            key = next((key for key, _ in pairs(content) if key == step), None)
+            if key is None:
+                break
+            source = key.template if isinstance(key, ExpandedText) else key
+            is_own = source.place.file == file
+            at = path[:depth] if is_own else tuple(map(str, self.content.path_of(source)))
+            home = (source.place.file, (*at, *path[depth:]))
+            content = entry(content, step)
+        return home
 
     def tie(self, part: ModelPart, why: str) -> None:
         """Note that the name of a part is not the model's alone."""

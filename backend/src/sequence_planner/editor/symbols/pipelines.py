@@ -75,7 +75,7 @@ def bind(stages: Stages, pipeline: Pipeline, marked: MarkedStages, file: str) ->
                 gathered.tie(part, why)
             else:
                 why = f"{part} would be the field `{name}` {where}"
-                binding = Binding(file, pipeline.path, pipeline.incoming, name, why)
+                binding = Binding(*gathered.home_of(file, pipeline.path), pipeline.incoming, name, why)
                 gathered.bindings.setdefault(part, []).append(binding)
             entry_of = Where(file, pipeline.path, f"{pipeline.kind} {pipeline.path[1]}", 2)
             gathered.unwritten.append(Unwritten(part, entry_of, pipeline.incoming, why))
@@ -315,7 +315,7 @@ class PipelineCollector:
             return self._ends.get(name, {})
         self._begun.add(name)
         resource, where, flow = self._flows[name]
-        key = next(key for key, _ in pairs(entry(self._content.get(where.file), "flows")) if key == where.path[1])
+        key = next(key for key, _ in pairs(entry(self._content.whole.get(where.file), "flows")) if key == where.path[1])
         self._naming.gathered.add(ModelPart("flow", resource, str(key)), where, key, declares=True)
         fields: Fields = {}
         written, at = entry(flow, "from"), where.to("from")

@@ -102,19 +102,21 @@ def dependants(files: Mapping[str, str], part: ModelPart, messages: MessageRegis
 
 
 def one_with(part: ModelPart, gathered: Gathered) -> frozenset[ModelPart]:
-    """The part, and for a value those that it is one with: by comparisons, and by texts that are values of both."""
+    """The part, and those that it is one with: by texts that name both, in a type of resources or as values of two
+    enumerations, and for a value by comparisons.
+    """
     together = {part}
-    links = gathered.links | shared(gathered) if part.kind == "value" else set()
+    links = gathered.links | shared(gathered) if part.kind == "value" else shared(gathered)
     while more := {other for link in links if link & together for other in link} - together:
         together |= more
     return frozenset(together)
 
 
 def shared(gathered: Gathered) -> set[frozenset[ModelPart]]:
-    """Values that one and the same text names, such as that of an anchor with its aliases."""
+    """Parts that one and the same text names: in a type of resources, or values by an anchor with its aliases."""
     found: dict[tuple[str, int, int, int], set[ModelPart]] = {}
     for each in gathered.occurrences:
-        if each.part.kind == "value" and each.text is not None:
+        if each.text is not None and (each.part.kind == "value" or each.home is not None):
             place = each.text.place
             found.setdefault((place.file, place.line, place.column, each.span.start), set()).add(each.part)
     return {frozenset(parts) for parts in found.values() if len(parts) > 1}
@@ -157,12 +159,20 @@ def usage_of(found: Occurrence) -> Usage:
     """A place as people see it."""
     where, span = found.where, found.span
     if found.text is None:
-        return Usage(found.part, where.file, (), 1, 1, 0, found.part.name, where.said, found.declares)
+        return Usage(found.part, found.home_file, (), 1, 1, 0, found.part.name, where.said, found.declares)
     place = found.text.at(span)
     written = found.text[span.start : span.end]
     length = span.end - span.start
     return Usage(
-        found.part, where.file, where.path, place.line, place.column, length, written, where.said, found.declares
+        found.part,
+        found.home_file,
+        found.home_path,
+        place.line,
+        place.column,
+        length,
+        written,
+        where.said,
+        found.declares,
     )
 
 
@@ -348,7 +358,7 @@ def by_file(changes: Iterable[tuple[Occurrence, str]]) -> dict[str, list[tuple[O
     found: dict[str, list[tuple[Occurrence, str]]] = defaultdict(list)
     for occurrence, name in changes:
         if occurrence.text is not None:
-            found[occurrence.where.file].append((occurrence, name))
+            found[occurrence.home_file].append((occurrence, name))
     return found
 
 
@@ -456,7 +466,7 @@ def _meaning(content: ModelContent, declared: Declared, gathered: Gathered, call
     for each in gathered.occurrences:
         if each.text is not None:
             part = called(each.part)
-            file = each.where.file
+            file = each.home_file
             place = each.text.place
             found.setdefault(file, {}).setdefault((place.line, place.column, each.span.start, part), each.declares)
     moved = {file_of(name): file_of(called(ModelPart("resource", None, name)).name) for name in declared.resources}

@@ -6,10 +6,12 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
+from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
 from sequence_planner.model.stages.registry import KINDS
-from sequence_planner.model.yaml.reader import EntryPath, read_text
+from sequence_planner.model.types.layers import written_out
+from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text
 
 STATION = "station.yaml"
 OPERATIONS = "operations.yaml"
@@ -23,22 +25,25 @@ _DEFINITION = re.compile(r"messages/(\w+/(msg|srv|action)/\w+)\.\2")
 class ModelContent(Mapping[str, object]):
     """The things that the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
 
-    `definitions` are those of types of messages, by their files.
+    `definitions` are those of types of messages, by their files. `whole` is what resources hold that are instances,
+    with all that they have of their types.
     """
 
     def __init__(self, files: Mapping[str, str]) -> None:
         self.texts = {file: text for file, text in files.items() if _is_read(file)}
         self.definitions = {file: text for file, text in files.items() if message_of(file) is not None}
         self.skipped: list[Finding] = []
-        self._read: dict[str, object] = {}
+        self._read: dict[str, YamlDocument] = {}
         for file, text in sorted(self.texts.items()):
-            content, findings = _content(file, text)
+            document, findings = _document(file, text)
             self.skipped += findings
-            if not findings:
-                self._read[file] = content
+            if document is not None:
+                self._read[file] = document
+        self.whole = {file: each.content for file, each in written_out(self._read).items()}
+        self._paths: dict[str, dict[tuple[int, int], EntryPath]] = {}
 
     def __getitem__(self, file: str) -> object:
-        return self._read[file]
+        return self._read[file].content
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._read)
@@ -48,15 +53,21 @@ class ModelContent(Mapping[str, object]):
 
     def resources(self) -> Iterator[tuple[str, str, object]]:
         """Each resource: its name, its file and the content of that."""
-        for file, content in self._read.items():
+        for file, content in self.whole.items():
             if (name := resource_of(file)) is not None:
                 yield name, file, content
 
-
-def resource_of(file: str) -> str | None:
-    """The name of the resource that a file describes, or nothing for other files."""
-    inside = file.startswith(_RESOURCES) and file.endswith(_YAML) and file.count("/") == 1
-    return file[len(_RESOURCES) : -len(_YAML)] if inside else None
+    def path_of(self, text: SourceText) -> EntryPath:
+        """Return where a text stands in its file: at the entry that it is the name or the value of."""
+        file = text.place.file
+        if file not in self._paths:
+            found = self._read[file]
+            self._paths[file] = {
+                (place.line, place.column): path
+                for each in (found.places, found.values)
+                for path, place in each.items()
+            }
+        return self._paths[file].get((text.place.line, text.place.column), ())
 
 
 def file_of(resource: str) -> str:
@@ -71,14 +82,16 @@ def message_of(file: str) -> str | None:
 
 
 def _is_read(file: str) -> bool:
-    return file in (STATION, OPERATIONS, SPECIFICATIONS, WORK_MASTERS) or resource_of(file) is not None
+    return (
+        file in (STATION, OPERATIONS, SPECIFICATIONS, WORK_MASTERS) or (resource_of(file) or type_of(file)) is not None
+    )
 
 
 # While a draft is edited, all of its files but one are as they were.
 @lru_cache(2048)
-def _content(file: str, text: str) -> tuple[object, tuple[Finding, ...]]:
+def _document(file: str, text: str) -> tuple[YamlDocument | None, tuple[Finding, ...]]:
     try:
-        return read_text(text, file).content, ()
+        return read_text(text, file), ()
     except ModelError as error:
         return None, tuple(error.findings)
 

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from sequence_planner.editor.language.completion import NO_MATCH, complete, likeness
 from sequence_planner.editor.language.schemas import NameKind
-from sequence_planner.editor.symbols.texts import message_of, resource_of
+from sequence_planner.editor.symbols.texts import message_of
 from sequence_planner.language_server.documents.cursor import Cursor, typed_at
 from sequence_planner.language_server.documents.schemas import DocumentSchemas
 from sequence_planner.language_server.snapshot import StationSnapshot
 from sequence_planner.model.documents import ResourceDocument
+from sequence_planner.model.paths import resource_of
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from sequence_planner.analysis.report import GuardDocument
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.core.numerals import counted
-from sequence_planner.editor.symbols.texts import ModelContent, entry, pairs, resource_of
+from sequence_planner.editor.symbols.texts import ModelContent, entry, pairs
+from sequence_planner.model.paths import resource_of
 from sequence_planner.model.source import SourceText
 
 _LONGEST = 120  # characters of a guard in a line; all of it is in what is shown with it

@@ -6,13 +6,14 @@ from typing import get_args, get_origin
 
 from sequence_planner.model.documents import (
     OperationDocument,
-    ResourceDocument,
     SpecificationDocument,
     StationDocument,
     WorkMasterDocument,
 )
 from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.paths import type_of
 from sequence_planner.model.sequences import SequenceDocument
+from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
 from sequence_planner.model.yaml.reader import EntryPath
 
 _FILES: dict[str, object] = {
@@ -27,7 +28,7 @@ def declared_order(file: str, path: EntryPath) -> tuple[str, ...]:
     """The keys that the mapping at `path` of a file of a model may have, in their order; none where it is no part of a
     document, or one whose names are free.
     """
-    kind = ResourceDocument if file.startswith("resources/") else _FILES.get(file)
+    kind = InstanceDocument if file.startswith("resources/") else TypeDocument if type_of(file) else _FILES.get(file)
     return () if kind is None else _order(kind, path)
 
 

@@ -222,6 +222,25 @@ class YamlDocument:
         return self.values.get(path, self.place(path))
 
 
+@dataclass(frozen=True)
+class MadePlaces:
+    """The places of a document that is made of others: of its entries, and of what stands behind their names."""
+
+    names: dict[EntryPath, Place]
+    values: dict[EntryPath, Place]
+
+    def overlay(self, names: dict[EntryPath, Place], values: dict[EntryPath, Place]) -> None:
+        """Have what stands at the same path in another document."""
+        self.names.update(names)
+        self.values.update(values)
+
+    def copy_from(self, document: YamlDocument, path: EntryPath, to: EntryPath, instance: str) -> None:
+        """Have what stands at `path` in another document, for an instance of a type."""
+        for made, found in ((self.names, document.places), (self.values, document.values)):
+            if (place := found.get(path)) is not None:
+                made[to] = place._replace(instance=instance)
+
+
 def read_yaml(path: Path, name: str) -> YamlDocument:
     """Read one YAML file; `name` is how it is called in messages. Raises `ModelError`."""
     return read_text(text_of(path, name), name)

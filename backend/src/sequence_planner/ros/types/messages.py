@@ -253,15 +253,16 @@ class MessageRegistry:
         self._add(standard_interfaces())
 
     @classmethod
-    def from_folder(cls, messages_dir: Path | None) -> MessageRegistry:
-        """Return the standard types and those of `messages_dir`.
+    def from_folder(cls, messages_dir: Path | None, *others: Path) -> MessageRegistry:
+        """Return the standard types and those of `messages_dir` and of the `others`.
 
-        It holds `<package>/msg/<Name>.msg`, and `srv` and `action` likewise. Raises MessageDefinitionError for a
+        Each holds `<package>/msg/<Name>.msg`, and `srv` and `action` likewise. Raises MessageDefinitionError for a
         definition that cannot be used, with its file, line and column.
         """
         registry = cls()
-        if messages_dir is not None:
-            registry._add(tuple(read_interfaces(messages_dir)))
+        folders = others if messages_dir is None else (messages_dir, *others)
+        if folders:
+            registry._add(tuple(each for folder in folders for each in read_interfaces(folder)))
         return registry
 
     def type_names(self) -> list[str]:

@@ -1,0 +1,247 @@
+"""What is made of a document with parameters for the arguments of one instance: a document without any.
+
+Where a parameter may stand follows from what the parts of documents declare: by its name in conditions and actions, and
+where a value, a type or a number stands; in braces in all other texts. Each text keeps its place in the type.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from decimal import Decimal
+from enum import IntEnum
+from functools import cache
+from types import UnionType
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from sequence_planner.language.syntax import Span
+from sequence_planner.model.documents import ResourceDocument
+from sequence_planner.model.fields import TextUse
+from sequence_planner.model.source import ExpandedText, Piece, SourceText, with_given_at
+from sequence_planner.model.stages.marks import FormulaMark, ValueMark
+from sequence_planner.model.yaml.reader import EntryPath, MadePlaces, YamlDocument
+
+# What stands where in a document, as far as parameters are concerned.
+
+
+class _InText(IntEnum):
+    """Where a parameter stands in a text; the later ones go first where a text may be several."""
+
+    NAMES = 0  # in braces
+    TYPE = 1  # the same, or a type by its name alone
+    VALUE = 2  # the same, or a value by its name alone
+    EXPRESSION = 3  # by its name
+
+
+@dataclass(frozen=True)
+class DocumentShape:
+    """What may stand at an entry: how its text is read, whether it can be a number, and what is within it."""
+
+    text: _InText = _InText.NAMES
+    is_number: bool = False
+    keys: _InText = _InText.NAMES
+    fields: Mapping[str, DocumentShape] = field(default_factory=dict)
+    entries: DocumentShape | None = None
+
+    def step_into(self, step: str | int) -> DocumentShape:
+        """Return what may stand at a step within it."""
+        return self.fields.get(str(step)) or self.entries or ANYTHING
+
+    def with_either(self, other: DocumentShape) -> DocumentShape:
+        """Return what may stand where one of both does."""
+        return DocumentShape(
+            max(self.text, other.text),
+            self.is_number or other.is_number,
+            max(self.keys, other.keys),
+            {**self.fields, **other.fields},
+            self.entries or other.entries,
+        )
+
+
+ANYTHING = DocumentShape()
+_MARKED = {TextUse.TYPE: _InText.TYPE, TextUse.CONDITION: _InText.EXPRESSION, TextUse.ACTION: _InText.EXPRESSION}
+
+
+@cache
+def resource_shape() -> DocumentShape:
+    """The shape of a resource."""
+    return _shape_of(ResourceDocument)
+
+
+def _shape_of(annotation: object) -> DocumentShape:
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _marked(_shape_of(arguments[0]), arguments[1:])
+    if origin in (Union, UnionType):
+        shapes = [_shape_of(each) for each in arguments]
+        made = shapes[0]
+        for each in shapes[1:]:
+            made = made.with_either(each)
+        # A text beside numbers is a value, unless it is marked as something else.
+        is_value = made.is_number and SourceText in map(_plain, arguments)
+        return replace(made, text=max(made.text, _InText.VALUE)) if is_value else made
+    if origin in (dict, Mapping):
+        return DocumentShape(keys=_shape_of(arguments[0]).text, entries=_shape_of(arguments[1]))
+    if origin in (list, tuple):
+        entries = _shape_of(arguments[0])
+        return DocumentShape(is_number=origin is tuple and entries.is_number, entries=entries)
+    if annotation in (int, float):
+        return DocumentShape(is_number=True)
+    if annotation is Any:
+        return DocumentShape(_InText.VALUE, True, entries=DocumentShape(_InText.VALUE, True))
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        fields = annotation.model_fields.items()
+        return DocumentShape(
+            fields={
+                info.alias or name: _marked(_shape_of(info.annotation), tuple(info.metadata)) for name, info in fields
+            }
+        )
+    return ANYTHING
+
+
+def _plain(annotation: object) -> object:
+    return get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
+
+
+def _marked(shape: DocumentShape, marks: tuple[object, ...]) -> DocumentShape:
+    for mark in marks:
+        if isinstance(mark, FormulaMark):
+            return replace(shape, text=_InText.EXPRESSION)
+        if isinstance(mark, ValueMark):
+            return replace(shape, text=_InText.VALUE)
+        if isinstance(mark, TextUse):
+            return replace(shape, text=_MARKED[mark])
+    return shape
+
+
+# Documents with something else in the place of parameters.
+
+
+class GivenArgument(NamedTuple):
+    """What a parameter is for an instance. `text` is that as it is written in a text, `source` where it was given."""
+
+    kind: str
+    content: SourceText | int | float
+    source: SourceText | None
+    text: str
+
+
+def given_argument(kind: str, content: SourceText | int | float) -> GivenArgument:
+    """An argument as it was read."""
+    text = format(Decimal(repr(content)), "f") if isinstance(content, float) else str(content)
+    return GivenArgument(kind, content, content if isinstance(content, SourceText) else None, text)
+
+
+_IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
+_WORDS = re.compile(r"'[^']*'|[A-Za-z_][A-Za-z0-9_]*")
+# What each kind of parameter can stand for by its name.
+_VALUES = frozenset({"value", "number", "text"})
+
+
+class Expansion:
+    """A document of a type, instance by instance. `duplicates` are names that became the same, and `unknown` what
+    stands in braces and is no parameter. With `places` it is noted where what is made of the `document` stands.
+    """
+
+    def __init__(
+        self,
+        instance: str,
+        arguments: Mapping[str, GivenArgument],
+        document: YamlDocument | None = None,
+        places: MadePlaces | None = None,
+    ) -> None:
+        self._instance = instance
+        self._arguments = arguments
+        self._words = re.compile(rf"(?<!\w)(?:{'|'.join(map(re.escape, arguments))})(?!\w)") if arguments else None
+        self._document = document
+        self._places = places
+        self.duplicates: list[SourceText] = []
+        self.unknown: list[SourceText] = []
+
+    def expanded(self, content: object, shape: DocumentShape, path: EntryPath = (), made_at: EntryPath = ()) -> object:
+        """The content of the type for this instance. What stands at `path` stands at `made_at` then."""
+        if self._places is not None and self._document is not None:
+            self._places.copy_from(self._document, path, made_at, self._instance)
+        if isinstance(content, SourceText):
+            return self._scalar(content, shape)
+        if isinstance(content, dict):
+            made: dict[SourceText, object] = {}
+            for key, value in content.items():
+                name = self._text(key, shape.keys)
+                if name in made:
+                    self.duplicates.append(name)
+                within = shape.step_into(key)
+                made[name] = self.expanded(value, within, (*path, str(key)), (*made_at, str(name)))
+            return made
+        if isinstance(content, list):
+            entries = shape.entries or ANYTHING
+            return [
+                self.expanded(each, entries, (*path, index), (*made_at, index)) for index, each in enumerate(content)
+            ]
+        return content
+
+    def with_arguments(self, text: SourceText) -> SourceText:
+        """A text that is given to another type."""
+        return self._text(text, _InText.VALUE)
+
+    def _scalar(self, text: SourceText, shape: DocumentShape) -> object:
+        if shape.is_number and (found := self._arguments.get(text)) is not None and found.kind == "number":
+            return found.content
+        return self._text(text, shape.text)
+
+    def _text(self, text: SourceText, use: _InText) -> SourceText:
+        pieces: tuple[Piece, ...] = ()
+        if use == _InText.EXPRESSION:
+            if self._words is not None and self._words.search(text):
+                pieces = tuple(self._named(text))
+        elif self._stands_for(text, use):
+            pieces = (Piece(0, len(self._arguments[text].text), 0, len(text), self._arguments[text].source),)
+        elif "{" in text:
+            pieces = tuple(self._braced(text))
+        if not pieces:
+            return SourceText(text, text.place._replace(instance=self._instance), text.raw)
+        made, end = "", 0
+        for piece in pieces:
+            name = text[piece.begin : piece.stop].strip("{}")
+            made += text[end : piece.begin] + self._arguments[name].text
+            end = piece.stop
+        whole = pieces[0].argument if len(pieces) == 1 and pieces[0].stop - pieces[0].begin == len(text) else None
+        instance = self._instance if whole is None else with_given_at(self._instance, whole.place)
+        place = text.place._replace(instance=instance)
+        return ExpandedText(text, made + text[end:], pieces, place)
+
+    def _stands_for(self, text: SourceText, use: _InText) -> bool:
+        """Return whether a text that stands alone is the name of a parameter."""
+        found = self._arguments.get(text)
+        if found is None or use == _InText.NAMES:
+            return False
+        return found.kind in _VALUES if use == _InText.VALUE else found.kind == "enumeration"
+
+    def _named(self, text: SourceText) -> Iterator[Piece]:
+        """Parameters by their names: no parts of longer ones, and nothing that is called."""
+        shift = 0
+        for word in _WORDS.finditer(text):
+            found = self._arguments.get(word[0])
+            if found is None or found.kind == "text" or text[: word.start()].rstrip().endswith("."):
+                continue
+            following = text[word.end() :].lstrip()[:1]
+            if following in ("(", "[") or (following == "." and found.kind != "resource"):
+                continue
+            yield (made := self._piece(word.start(), word.end(), shift, found))
+            shift = made.end - made.stop
+
+    def _braced(self, text: SourceText) -> Iterator[Piece]:
+        shift = 0
+        for braces in _IN_BRACES.finditer(text):
+            found = self._arguments.get(braces[1])
+            if found is None:
+                self.unknown.append(SourceText(braces[1], text.at(Span(*braces.span(1))), braces[1]))
+                continue
+            yield (made := self._piece(*braces.span(), shift, found))
+            shift = made.end - made.stop
+
+    def _piece(self, begin: int, stop: int, shift: int, found: GivenArgument) -> Piece:
+        return Piece(begin + shift, begin + shift + len(found.text), begin, stop, found.source)

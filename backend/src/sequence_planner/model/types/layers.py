@@ -1,0 +1,237 @@
+"""Instances and types as they are written, and the document that each instance has with its types."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.model.documents import ResourceDocument
+from sequence_planner.model.paths import EditError, missing, parse_path, resource_of, type_of
+from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.model.types.documents import InstanceHead, ParameterDocument, TypeHead
+from sequence_planner.model.types.expansion import Expansion, GivenArgument, given_argument, resource_shape
+from sequence_planner.model.validation import findings_of, shown
+from sequence_planner.model.yaml.reader import MadePlaces, YamlDocument
+
+SECTIONS = ("measured", "output", "estimated")
+OF_INSTANCES = frozenset(InstanceHead.model_fields)  # keys that no other resource has
+
+
+@dataclass(frozen=True, eq=False)
+class WrittenInstance:
+    """A resource that is an instance, or a type, as written. A type may belong to a `package`."""
+
+    document: YamlDocument
+    head: InstanceHead
+    package: str = ""
+
+    @cached_property
+    def own(self) -> dict[SourceText, object]:
+        """Return what it says itself of the resource."""
+        content: Any = self.document.content
+        return {key: value for key, value in content.items() if key not in TypeHead.model_fields}
+
+    @cached_property
+    def parameters(self) -> Mapping[SourceText, ParameterDocument]:
+        """The parameters of a type; an instance has none."""
+        return self.head.parameters if isinstance(self.head, TypeHead) else {}
+
+    @cached_property
+    def meanings(self) -> Mapping[str, str]:
+        """The names that mean something in its conditions, each with what it is called."""
+        found: dict[str, str] = {}
+        for section in SECTIONS:
+            for name, variable in _entries(self.own.get(section)):  # type: ignore[call-overload]
+                found[str(name)] = "variable"
+                found |= dict.fromkeys((str(each) for each, _ in _entries(_at(variable, "for"))), "parameter")
+        for section, what in (("abilities", "ability"), ("predicates", "predicate")):
+            for name, part in _entries(_at(self.own, section)):
+                found[str(name)] = what
+                found |= dict.fromkeys((str(each) for each, _ in _entries(_at(part, "parameters"))), "parameter")
+        return found
+
+
+def _at(content: object, name: str) -> object:
+    return content.get(name) if isinstance(content, dict) else None
+
+
+def _entries(content: object) -> Iterator[tuple[SourceText, object]]:
+    return iter(content.items() if isinstance(content, dict) else ())
+
+
+def read_instance(document: YamlDocument) -> tuple[object, list[Finding]]:
+    """An instance, from the file of a resource that names a type."""
+    return _read(document, InstanceHead, "")
+
+
+def read_type(document: YamlDocument, package: str) -> tuple[object, list[Finding]]:
+    """A type, from its file."""
+    return _read(document, TypeHead, package)
+
+
+def _read(document: YamlDocument, kind: type[InstanceHead], package: str) -> tuple[object, list[Finding]]:
+    content = document.content
+    if not isinstance(content, dict):
+        message = f"expected names with their definitions, found {shown(content)}"
+        return None, [Finding(document.place(()), message)]
+    known = [*kind.model_fields, *ResourceDocument.model_fields]
+    wrong = [
+        Finding(document.place((key,)), f"`{key}` is not known here{suggestion(key, known)}")
+        for key in content
+        if key not in known
+    ]
+    try:
+        head = kind.model_validate({key: value for key, value in content.items() if key in kind.model_fields})
+    except ValidationError as error:
+        return None, [*findings_of(error, document, (), kind), *wrong]
+    if head.type is None and kind is InstanceHead:
+        message = "`type` is missing here: `arguments` and `remove` are those of an instance of a type"
+        wrong.append(Finding(document.place(()), message))
+    return None if wrong else WrittenInstance(document, head, package), wrong
+
+
+class Layer(NamedTuple):
+    """The instance itself, or a type that it has a part of, with the arguments for the parameters of that."""
+
+    name: str
+    written: WrittenInstance
+    arguments: Mapping[str, GivenArgument]
+
+
+def layers_of(
+    instance: str, written: WrittenInstance, types: Mapping[str, WrittenInstance | None]
+) -> tuple[list[Layer], Finding | None, bool]:
+    """The instance and its types; what is wrong where a name is that of none; and whether these are all.
+
+    Arguments are as they are given: of those that are missing and have no default there are none.
+    """
+    layers = [Layer("", written, {})]
+    while (named := layers[-1].written.head.type) is not None:
+        package = layers[-1].written.package
+        full = str(named) if "." in named or not package else f"{package}.{named}"
+        chain = [each.name for each in layers[1:]]
+        if full in chain:
+            circle = " → ".join([*chain[chain.index(full) :], full])
+            return layers, Finding(named.place, f"`{full}` is a type of itself: {circle}"), False
+        type_ = types.get(full)
+        if type_ is None:
+            what = "a type is a file types/<name>.yaml, or package.name"
+            said = Finding(named.place, f"unknown type `{named}`: {what}{suggestion(named, types)}")
+            is_told = full in types or f"{full.partition('.')[0]}.*" in types  # or its whole package is unusable
+            return layers, None if is_told else said, False
+        layers.append(Layer(full, type_, _arguments(instance, type_, layers[-1], len(layers) > 1)))
+    return layers, None, True
+
+
+def _arguments(instance: str, type_: WrittenInstance, by: Layer, by_type: bool) -> dict[str, GivenArgument]:
+    """The arguments that a layer gives to a type."""
+    placing = Expansion(instance, by.arguments)
+    made: dict[str, GivenArgument] = {}
+    for name, parameter in type_.parameters.items():
+        given = next((each for key, each in by.written.head.arguments.items() if key == name), None)
+        content = parameter.default if given is None else given
+        if content is None:
+            continue
+        if isinstance(content, SourceText) and (by_type or given is None):
+            if (outer := by.arguments.get(content)) is not None:
+                made[str(name)] = outer
+                continue
+            content = placing.with_arguments(content)
+        made[str(name)] = given_argument(parameter.kind, content)
+    return made
+
+
+def content_of(
+    instance: str, layers: list[Layer], found: list[Finding], places: MadePlaces | None = None
+) -> dict[SourceText, object]:
+    """What an instance has of itself and its types; what cannot be brought together is noted in `found`. With `places`
+    it is noted there what stands where.
+    """
+    content: Any = {}
+    for layer in reversed(layers):
+        is_instance = layer is layers[0]
+        for text in layer.written.head.remove:
+            if (said := _without(content, text)) is not None:
+                found.append(Finding(text.place if is_instance else text.place._replace(instance=instance), said))
+        own: Any = layer.written.own
+        document = layer.written.document
+        if is_instance:
+            if places is not None:
+                places.overlay(document.places, document.values)
+        else:
+            expansion = Expansion(instance, layer.arguments, document, places)
+            own = expansion.expanded(own, resource_shape())
+            for name in expansion.duplicates:
+                found.append(Finding(name.place, f"duplicate name `{name}`: other arguments make another one"))
+            for name in expansion.unknown:
+                if str(name) not in layer.written.meanings:
+                    near = suggestion(name, layer.written.parameters)
+                    found.append(Finding(name.place._replace(instance=instance), f"unknown parameter `{name}`{near}"))
+        content = _merged(content, own)
+    made: dict[SourceText, object] = content
+    return made
+
+
+def _merged(base: object, own: object) -> Any:  # noqa: ANN401 (content of any form)
+    """`base` with what `own` changes and adds: entries by their names, all else as a whole.
+
+    What is added stands behind the entry that is above it in `own`, or else before the one that is below it there.
+    """
+    if not isinstance(base, dict) or not isinstance(own, dict):
+        return own
+    order, above = list(base), None
+    for key in own:
+        if key not in base:
+            below = None if above is not None else next((each for each in own if each in base), None)
+            at = len(order) if above is below is None else order.index(above or below) + (above is not None)
+            order.insert(at, key)
+        above = key
+    return {
+        key: _merged(base[key], own[key]) if key in base and key in own else base[key] if key in base else own[key]
+        for key in order
+    }
+
+
+def _without(content: Any, text: SourceText) -> str | None:  # noqa: ANN401
+    """Take an entry out, or return why that cannot be."""
+    try:
+        path = parse_path(text)
+    except EditError as error:
+        return str(error)
+    for depth, step in enumerate(path):
+        if not isinstance(content, dict) or step not in content:
+            return f"the type has nothing to remove here: {missing(path, depth, content)}"
+        if depth < len(path) - 1:
+            content = content[step]
+    del content[path[-1]]
+    return None
+
+
+def document_of(instance: str, layers: list[Layer]) -> YamlDocument:
+    """The resource as if it stood in a file, with the places of what stands in several."""
+    places = MadePlaces({}, {})
+    content = content_of(instance, layers, [], places)
+    return YamlDocument(layers[0].written.document.file, content, places.names, places.values)
+
+
+def written_out(documents: Mapping[str, YamlDocument]) -> dict[str, YamlDocument]:
+    """The files of a station with its instances written out, as far as that can be done."""
+    read = {
+        name: read_type(each, name.rpartition(".")[0])[0] for file, each in documents.items() if (name := type_of(file))
+    }
+    types = {name: each if isinstance(each, WrittenInstance) else None for name, each in read.items()}
+    made = dict(documents)
+    for file, document in documents.items():
+        if (name := resource_of(file)) is None or not isinstance(document.content, dict):
+            continue
+        if not OF_INSTANCES.isdisjoint(document.content):
+            written, _ = read_instance(document)
+            if isinstance(written, WrittenInstance) and written.head.type is not None:
+                instance = f"{name} ({written.head.type.place})"
+                made[file] = document_of(instance, layers_of(instance, written, types)[0])
+    return made

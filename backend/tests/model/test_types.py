@@ -1,0 +1,409 @@
+"""Types of resources: what is made of instances, and what is said where something is wrong with them."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.execution.record.recorder import model_digest
+from sequence_planner.model.loader import ReadBefore, load_station
+from sequence_planner.model.source import ModelError
+from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.reader import read_yaml
+from sequence_planner.station import read_station
+from support.places import MODELS, STATIONS
+
+from .breaking import copy_of_cell, findings, replace, write
+
+ROBOTS = MODELS / "robots_with_buffer"
+TYPE, ONE, TWO = "types/robot.yaml", "resources/robot_1.yaml", "resources/robot_2.yaml"
+BOTH = "in robot_1 (‹:2:7) and robot_2: "
+TYPES_ARE = "a type is a file types/<name>.yaml, or package.name"
+NEEDS, INTO = "`robot` needs the argument", ": write it into `arguments`"
+PATHS_ARE = (
+    "write names with dots between, [0] for the first entry of a list, and quotes around a name with dots or brackets, "
+    'as in topics."/a.b".type'
+)
+NOTHING = "the type has nothing to remove here:"
+WRITTEN_OUT = [station for folder in (MODELS, STATIONS) for station in sorted(folder.glob("*/")) if station != ROBOTS]
+
+
+def automaton(station: Path) -> Automaton:
+    return read_station(station).automaton
+
+
+@pytest.fixture
+def robots(tmp_path: Path) -> Path:
+    """A copy of the station of two robots of one type."""
+    return Path(shutil.copytree(ROBOTS, tmp_path / "robots"))
+
+
+# What is made of instances.
+
+
+def test_the_robots_are_what_they_were_when_they_were_written_out(robots: Path) -> None:
+    """So a journal of before is replayed, and a station goes on from it."""
+    for written in (Path(__file__).parent / "written_out").glob("*.yaml"):
+        shutil.copy(written, robots / "resources")
+    shutil.rmtree(robots / "types")
+    assert automaton(robots) == automaton(ROBOTS)
+    assert model_digest(automaton(robots)) == model_digest(automaton(ROBOTS))
+
+
+class _Folded:
+    """A resource as a type with as many parameters as can be, and an instance with the arguments that it had."""
+
+    def __init__(self, content: dict[str, Any], enumerations: dict[str, list[str]]) -> None:
+        self.parameters: dict[str, Any] = {"scope": "text"}
+        self.arguments: dict[str, Any] = {"scope": "of_it"}
+        self._enumerations = enumerations
+        self.type = dict(content)
+        for section in ("measured", "output", "estimated"):
+            self.type[section] = {name: self._variable(each) for name, each in content.get(section, {}).items()}
+        self.type["abilities"] = {name: self._ability(each) for name, each in content.get("abilities", {}).items()}
+        # A topic is called as it was: its name from the second letter on is given.
+        for section in ("topics", "services", "actions"):
+            self.type[section] = {
+                f"{name[:1]}{{{self._given('text', name[1:])}}}": each
+                for name, each in content.get(section, {}).items()
+            }
+        for flow in self.type.get("flows", {}).values():
+            if isinstance(flow["from"], str) and flow["from"].startswith("/"):
+                flow["from"] = f"/{{{self._given('text', flow['from'][1:])}}}"
+
+    def _given(self, kind: object, argument: object) -> str:
+        name = f"given_{len(self.parameters)}"
+        self.parameters[name] = kind
+        self.arguments[name] = argument
+        return name
+
+    def _variable(self, written: dict[str, Any]) -> dict[str, Any]:
+        made = dict(written)
+        if written.get("type") in self._enumerations:
+            made["type"] = self._given("enumeration", written["type"])
+            if written.get("initial") in self._enumerations[written["type"]]:
+                made["initial"] = self._given({"kind": "value", "of": made["type"]}, written["initial"])
+        elif str(written.get("type")).startswith("0.."):
+            made["type"] = f"0..{{{self._given('number', int(written['type'][3:]))}}}"
+        return made
+
+    def _ability(self, written: dict[str, Any]) -> dict[str, Any]:
+        made = dict(written)
+        if "parameters" in written:
+            made["parameters"] = {name: self._given("enumeration", of) for name, of in written["parameters"].items()}
+        if "effects" in written:
+            made["effects"] = {name: self._effect(each) for name, each in written["effects"].items()}
+        return made
+
+    def _effect(self, written: dict[str, Any]) -> dict[str, Any]:
+        takes = written.get("takes", 0.5)
+        made = (
+            [self._given("number", each) for each in takes] if isinstance(takes, list) else self._given("number", takes)
+        )
+        return {**written, "takes": made}
+
+
+@pytest.mark.parametrize("station", WRITTEN_OUT, ids=lambda each: each.name)
+def test_a_resource_is_the_same_as_an_instance_of_a_type_made_of_it(tmp_path: Path, station: Path) -> None:
+    folded = Path(shutil.copytree(station, tmp_path / "station"))
+    enumerations = plain(read_yaml(folded / "station.yaml", "it").content).get("enumerations", {})
+    (folded / "types").mkdir()
+    for file in (folded / "resources").glob("*.yaml"):
+        made = _Folded(plain(read_yaml(file, "it").content), enumerations)
+        (folded / "types" / file.name).write_text(json.dumps({"parameters": made.parameters, **made.type}))
+        file.write_text(json.dumps({"type": file.stem, "arguments": made.arguments}))
+    assert model_digest(automaton(folded)) == model_digest(automaton(station))
+
+
+def test_parameters_stand_in_conditions_by_their_names_and_nowhere_else(tmp_path: Path) -> None:
+    """Neither as a part of a name nor in a longer word, and `{…}` in a condition is a set of values."""
+    station = copy_of_cell(tmp_path)
+    write(
+        station,
+        "types/lamp.yaml",
+        "parameters: {of: resource, at: {kind: value, of: pose}, most: number, pose_type: enumeration, text: text}\n"
+        "title: Lamp at {at}, {text}, {unit}\n"
+        "estimated:\n"
+        "  lit: {type: bool}\n"
+        "  seen: {type: pose_type, initial: at}\n"
+        "  count: {type: '0..{most}'}\n"
+        "abilities:\n"
+        "  light:\n"
+        "    title: Light {where} at {at}\n"
+        "    parameters: {where: pose_type}\n"
+        "    enabled: not lit and of.pose == at and not of.move(out).executing and seen in {at, out}\n"
+        "    start: {when: count < most, do: [lit := true, seen := at, count := count + 1 if count < most]}\n"
+        "measured: {}\n",
+    )
+    write(
+        station,
+        "resources/lamp.yaml",
+        "type: lamp\narguments: {of: arm, at: home, most: 3, pose_type: pose, text: 'a {at}', unit: 1}\n",
+    )
+    assert findings(station) == [f"{station}/resources/lamp.yaml:2:74: `lamp` has no parameter `unit`"]
+    replace(station, "resources/lamp.yaml", ", unit: 1", "")
+    assert findings(station) == [
+        f"{station}/types/lamp.yaml:2:31: in lamp ({station}/resources/lamp.yaml:1:7): unknown parameter `unit`"
+    ]
+    replace(station, "types/lamp.yaml", ", {unit}", "")
+    found = automaton(station)
+    assert found.resources["lamp"] == "Lamp at home, a {at}"
+    light = found.abilities["lamp.light(out)"]
+    assert light.title == "Light out at home"
+    written = load_station(station).resources["lamp"].abilities
+    enabled = next(iter(written.values())).enabled
+    assert enabled == "not lit and arm.pose == home and not arm.move(out).executing and seen in {home, out}"
+    assert pickle.loads(pickle.dumps(enabled)).at.__self__ == enabled
+
+
+def test_an_instance_changes_adds_and_removes(robots: Path) -> None:
+    write(
+        robots,
+        TWO,
+        "type: robot\n"
+        "arguments: {namespace: robot_2, stops: outfeed_side, conveyor: outfeed}\n"
+        "remove: [abilities.open_gripper, abilities.move_to.timeouts.react]\n"
+        "estimated: {parts: {type: 0..1}}\n"
+        "abilities:\n"
+        "  before: {enabled: false}\n"
+        "  move_to:\n"
+        "    duration: 7\n"
+        "    effects: {arrives: {takes: 3}}\n"
+        "  behind: {enabled: false}\n",
+    )
+    (robots / "operations.yaml").unlink()
+    (robots / "specifications.yaml").unlink()
+    replace(robots, "station.yaml", "  and robot_2.at == outfeed", "  and robot_2.target == outfeed")
+    found = automaton(robots)
+    names = [name for name in found.abilities if name.startswith("robot_2.")]
+    assert names == [f"robot_2.{each}" for each in ("before", "move_to(buffer)", "move_to(outfeed)", "behind")]
+    moving = found.abilities["robot_2.move_to(buffer)"]
+    assert (moving.duration, moving.timeouts.react, moving.timeouts.finish) == ((7, 7), None, 15)
+    takes = {effect.name: (effect.shortest, effect.longest) for effect in found.effects if effect.resource == "robot_2"}
+    assert takes == {"robot_2.move_to(buffer).leaves": (0.2, 0.4), "robot_2.move_to(buffer).arrives": (3, 3)}
+
+
+def test_a_type_of_a_type(robots: Path) -> None:
+    write(
+        robots,
+        "types/feeder.yaml",
+        "type: robot\n"
+        "parameters: {name: text, side: enumeration, home: {kind: value, of: side}}\n"
+        "arguments: {namespace: '{name}', stops: side, conveyor: home}\n",
+    )
+    replace(
+        robots,
+        ONE,
+        "type: robot\narguments: {namespace: robot_1, stops: infeed_side, conveyor: infeed}",
+        "type: feeder\narguments: {name: robot_1, side: infeed_side, home: infeed}",
+    )
+    assert automaton(robots) == automaton(ROBOTS)
+
+
+# What is said where something is wrong.
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("type: robot", "type: ‹robt", f"unknown type `robt`: {TYPES_ARE}; did you mean `robot`?"),
+        ("type: robot", "type: ‹7", "expected a text, found `7`"),
+        ("type: robot", "type: robot\n‹abilites: {}", "`abilites` is not known here; did you mean `abilities`?"),
+        (
+            "robot\narguments: {namespace: robot_1, stops: infeed_side, conveyor: infeed}",
+            "‹robot",
+            f"{NEEDS} `namespace`, a text{INTO}",
+        ),
+        (
+            "type: robot\narguments: {namespace: robot_1, ",
+            "type: ‹robot\narguments: {",
+            f"{NEEDS} `namespace`, a text{INTO}",
+        ),
+        ("namespace: robot_1", "namespace: ‹1", "expected a text for `namespace`, found `1`: put it into quotes"),
+        ("namespace: robot_1", "namespace: ‹[a]", "expected a text or an integer or a number, found a list"),
+        ("stops: infeed_side", "stops: ‹infeed_sid", "unknown enumeration `infeed_sid`; did you mean `infeed_side`?"),
+        ("stops: infeed_side", "stops: ‹2", "expected an enumeration for `stops`, found `2`"),
+        (
+            "conveyor: infeed",
+            "conveyor: ‹infed",
+            "`infed` is no value of `infeed_side`, and `conveyor` is one; did you mean `infeed`?",
+        ),
+        ("conveyor: infeed", "conveyor: ‹1.5", "expected a value of `stops` for `conveyor`, found `1.5`"),
+        ("arguments: {", "arguments: {‹stop: infeed, ", "`robot` has no parameter `stop`; did you mean `stops`?"),
+        (
+            "title: Robot 1",
+            "remove: [‹abilities.opn_gripper]",
+            f"{NOTHING} `abilities` has no entry `opn_gripper`; did you mean `open_gripper`?",
+        ),
+        ("title: Robot 1", "remove: [‹title.en]", f"{NOTHING} the document has no entry `title`"),
+        ("title: Robot 1", "remove: [‹abilities..x]", f"`abilities..x` is no path, from `..x` on: {PATHS_ARE}"),
+    ],
+)
+def test_what_is_wrong_in_an_instance(robots: Path, old: str, new: str, message: str) -> None:
+    [place] = replace(robots, ONE, old, new)
+    lines = findings(robots)
+    assert f"{place}: {message}" in lines
+    assert all(line.startswith(f"{place}: ") for line in lines)
+
+
+PARAMETERS = "parameters:\n"
+PLACES = "{between, infeed, buffer, outfeed}"
+STARTS_WRITE = "a start writes output or estimated variables"
+HIDES = "rename one of them"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "namespace: text",
+            "namespace: ‹txt",
+            "expected `text`, `number`, `enumeration`, `value` or `resource`, found `txt`",
+        ),
+        (
+            "{kind: value, of: stops}",
+            "‹{kind: value}",
+            "`of` belongs to `kind: value`, and says which enumeration the value is of",
+        ),
+        ("of: stops", "of: ‹stps", "unknown enumeration `stps`; did you mean `stops`?"),
+        ("of: stops", "of: ‹namespace", "`namespace` is a text, and no enumeration"),
+        (PARAMETERS, f"{PARAMETERS}  ‹at: text\n", f"the parameter `at` hides the variable `at`: {HIDES}"),
+        (PARAMETERS, f"{PARAMETERS}  ‹stop: text\n", f"the parameter `stop` hides the parameter `stop`: {HIDES}"),
+        (
+            PARAMETERS,
+            f"{PARAMETERS}  ‹move_to: text\n",
+            f"the parameter `move_to` hides the ability `move_to`: {HIDES}",
+        ),
+        (
+            PARAMETERS,
+            f"{PARAMETERS}  ‹parts_on_buffer: text\n",
+            f"the parameter `parts_on_buffer` hides the variable `parts_on_buffer`: {HIDES}",
+        ),
+        (
+            PARAMETERS,
+            f"{PARAMETERS}  ‹buffer: text\n",
+            f"the parameter `buffer` hides the value `buffer` of `place`: {HIDES}",
+        ),
+        (
+            PARAMETERS,
+            f"{PARAMETERS}  ‹enabled: text\n",
+            "`enabled` is a flag of every ability: give the parameter another name",
+        ),
+        (
+            PARAMETERS,
+            f"{PARAMETERS}  ‹in: text\n",
+            "`in` is no name: use letters, digits and `_`, and none of the words of the language",
+        ),
+        (PARAMETERS, "‹paramters:\n", "`paramters` is not known here; did you mean `parameters`?"),
+        (PARAMETERS, f"type: ‹robot\n{PARAMETERS}", "`robot` is a type of itself: robot → robot"),
+        # what is wrong for all instances is told once
+        ("    title: Move", "    ‹titel: Move", f"{BOTH}`titel` is not known here; did you mean `title`?"),
+        ("takes: [0.2, 0.4]", "takes: [0.2, ‹soon]", f"{BOTH}expected a number, found `soon`"),
+        ("kind: starting", "kind: ‹begin", f"{BOTH}expected `starting`, `executing` or `finishing`, found `begin`"),
+        (
+            "  /{namespace}/state",
+            "  /{‹namspace}/state",
+            f"{BOTH}unknown parameter `namspace`; did you mean `namespace`?",
+        ),
+        (
+            "initial: conveyor}\n\nout",
+            "initial: ‹covneyor}\n\nout",
+            f"{BOTH}`covneyor` is no initial value of `robot_1.at`, which ranges over {PLACES}",
+        ),
+        (
+            "executing and at == stop",
+            "executing and ‹ta == stop",
+            f"{BOTH}unknown variable or value `ta`; did you mean `target`?",
+        ),
+        (
+            "do: [close_gripper := false]",
+            "do: [‹part_in_gripper := false]",
+            f"{BOTH}{STARTS_WRITE}, and `part_in_gripper` is a measured variable",
+        ),
+        # and what is wrong for one of them names that one
+        (
+            "target == stop and at != stop",
+            "target == ‹infeed and at != stop",
+            "in robot_2 (¤:2:7): unknown variable or value `infeed`; did you mean `outfeed`?",
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_type(robots: Path, old: str, new: str, message: str) -> None:
+    [place] = replace(robots, TYPE, old, new)
+    said = message.replace("‹", str(robots / ONE)).replace("¤", str(robots / TWO))
+    assert findings(robots) == [f"{place}: {said}"]
+
+
+def test_what_is_wrong_with_an_argument_in_a_text_names_the_argument(robots: Path) -> None:
+    [place] = replace(robots, TYPE, "executing and at == stop", "executing and parts_on_buffer == ‹conveyor")
+    one, two = findings(robots)
+    assert one.startswith(f"{place}: in robot_1 ({robots / ONE}:3:63): unknown variable `infeed`")
+    assert two.startswith(f"{place}: in robot_2 ({robots / TWO}:3:64): unknown variable `outfeed`")
+
+
+def test_an_argument_that_a_name_of_the_resource_hides(robots: Path) -> None:
+    replace(robots, ONE, "measured:\n", "measured:\n  infeed: {type: bool}\n")
+    message = f"the variable `infeed` of the resource hides what is meant here: {HIDES}"
+    assert f"{robots / ONE}:3:63: {message}" in findings(robots)
+
+
+def test_arguments_without_a_type(robots: Path) -> None:
+    replace(robots, ONE, "type: robot\n", "")
+    message = "`type` is missing here: `arguments` and `remove` are those of an instance of a type"
+    assert findings(robots) == [f"{robots / ONE}:2:1: {message}"]
+
+
+def test_one_name_for_two_topics_of_one_type(robots: Path) -> None:
+    replace(robots, TYPE, "  namespace: text", "  namespace: text\n  topic: {kind: text, default: state}")
+    [place] = replace(robots, TYPE, "  /{namespace}/command", "  ‹/{namespace}/{topic}")
+    both = BOTH.replace("‹", str(robots / ONE))
+    assert findings(robots) == [f"{place}: {both}duplicate name `/robot_1/state`: other arguments make another one"]
+
+
+def test_a_file_of_types_that_is_not_read_is_named(robots: Path) -> None:
+    shutil.copy(robots / TYPE, robots / "types" / "arm.yml")
+    (robots / "types" / "notes.txt").write_text("…")
+    assert findings(robots) == [
+        f"{robots / 'types/arm.yml'}:1:1: rename it to arm.yaml: this is not read",
+        f"{robots / 'types/notes.txt'}:1:1: this is not read: each type is a file <name>.yaml in this folder",
+    ]
+
+
+# Read again and again while somebody edits it.
+
+
+def test_what_has_not_changed_is_the_same_object(robots: Path) -> None:
+    before = ReadBefore()
+    first = load_station(robots, before).resources
+    replace(robots, ONE, "title: Robot 1", "title: The first robot")
+    second = load_station(robots, before).resources
+    assert second["robot_2"] is first["robot_2"]
+    assert second["robot_1"].title == "The first robot"
+    replace(robots, TYPE, "title: Move to", "title: Go to")
+    third = load_station(robots, before).resources
+    assert {
+        str(each.abilities[name].title) for each in third.values() for name in each.abilities if name == "move_to"
+    } == {"Go to the {stop}"}
+
+
+def test_an_enumeration_that_is_gone_is_noticed_though_the_instance_is_the_same(robots: Path) -> None:
+    before = ReadBefore()
+    load_station(robots, before)
+    replace(robots, "station.yaml", "  infeed_side: [", "  feed_side: [")
+    with pytest.raises(ModelError) as caught:
+        load_station(robots, before)
+    assert [finding.message for finding in caught.value.findings] == [
+        "unknown enumeration `infeed_side`; did you mean `feed_side`?"
+    ]
+
+
+def test_what_an_instance_has_of_its_type_is_found_in_the_type(robots: Path) -> None:
+    places = automaton(robots).places
+    assert places["robot_1.move_to(buffer)"].file == places["robot_2.move_to(buffer)"].file == str(robots / TYPE)
+    assert places["robot_1.pick"].file == str(robots / ONE)
