@@ -10,6 +10,7 @@ import pytest
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.queries import AskCorrection
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, UndoCorrection
 from sequence_planner.controller.views.details import CorrectionPreview
 from sequence_planner.core.immutable import replace
@@ -25,7 +26,7 @@ BOLT = "bolts[bolt_pair_2]"
 
 
 def preview(station: Station, then: str = "placed") -> CorrectionPreview:
-    return asyncio.run(station.corrections.preview({BOLT: then}))
+    return asyncio.run(station.corrections.preview(AskCorrection(values={BOLT: then})))
 
 
 def in_restart(station: Station) -> Station:
@@ -207,7 +208,7 @@ def test_what_cannot_be_corrected(values: dict[str, Value], slug: str) -> None:
     station = in_restart(Station())
     before = station.execution.state
     assert refusal(lambda: station.correct(values)) == slug
-    assert refusal(lambda: asyncio.run(station.corrections.preview(values))) == slug
+    assert refusal(lambda: asyncio.run(station.corrections.preview(AskCorrection(values=values)))) == slug
     assert station.execution.state == before
 
 

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 
-from sequence_planner.automaton.automaton import Automaton, Flag, reads, target
+from sequence_planner.automaton.automaton import Automaton, Effect, Flag, reads, target
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.language.syntax import Assignment, Constant, Expression, Variable, variables
 from sequence_planner.language.types import Value
@@ -127,3 +127,9 @@ def ordered_flags(flags: Sequence[Flag]) -> tuple[tuple[Flag, ...], tuple[str, .
     except CycleError as error:
         return tuple(flags), tuple(error.args[1])
     return tuple(by_name[name] for name in order), ()
+
+
+def reactions(automaton: Automaton, ability: str) -> list[Effect]:
+    """The effects that are written with an ability."""
+    effects = {effect.name: effect for effect in automaton.effects}
+    return [effects[name] for name in automaton.reactions.get(ability, ())]

@@ -8,18 +8,17 @@ from functools import partial
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.alarms.sources import AlarmSources, build_alarms
-from sequence_planner.controller.commands.bus import CommandBus
-from sequence_planner.controller.commands.query_handler import Definitions, QueryHandler, work_masters_view
-from sequence_planner.controller.commands.registry import COMMANDS
+from sequence_planner.controller.commands.bus import CommandBus, QueryBus
+from sequence_planner.controller.commands.registry import COMMANDS, QUERIES
 from sequence_planner.controller.controller import Controller, Parts
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.controller.features.modes import Modes
+from sequence_planner.controller.features.pipelines import PipelineTraffic
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.controller.io.devices import Devices
-from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.io.ticks import Ticker
 from sequence_planner.controller.metrics import Figures
 from sequence_planner.controller.planner_client import AdvisorClient, PlannerQuestions
@@ -50,10 +49,10 @@ def build_controller(
 ) -> Controller:
     """Build what runs `station` and writes into the journal of `database`; `known` is what came back from there.
 
-    Raises `ValueError` when nobody handles one of the commands.
+    Raises `ValueError` when nobody handles one of the commands or queries.
     """
     automaton, known = station.automaton, known or RestoredState()
-    wake, failures, figures = asyncio.Event(), Failures(), Figures()
+    wake, failures = asyncio.Event(), Failures()
     execution = Executor(automaton, supervisor, known.beginning)
     devices = Devices(station, transport, wake.set)
     # Whoever listens to the execution hears of each event in this order: it is written down first.
@@ -67,14 +66,14 @@ def build_controller(
     alarms = build_alarms(execution, outside, devices, records, failures.known, known, adviser.expect)
     by_hand = ByHand(execution, station.pipelines, records.add_note)
     consistency = ConsistencyMonitor(execution)
-    ticker = Ticker(execution, devices, tasks, records, failures, figures.ticks, wake.set)
+    ticker = Ticker(execution, devices, tasks, records, failures, wake.set)
 
     def take_news(news: Callable[[], None]) -> None:
         """Take note of what the planner says."""
         failures.attempt("hearing the planner", news)
         ticker.again()
 
-    planner = PlannerQuestions(execution, outside, take_news, figures.answers)
+    planner = PlannerQuestions(execution, outside, take_news)
     sources = AlarmSources(alarms, records, ticker, tasks, consistency, by_hand, lambda: planner.trouble)
     in_control = ControlLock(known.control)
     viewing = ViewBuilder(identity, execution, outside, devices, beliefs, tasks, records, sources, in_control)
@@ -102,8 +101,17 @@ def build_controller(
         recovery.approvals,
         in_control,
         alarms,
+        PipelineTraffic(station.pipelines, devices),
         devices.overrides,
         consistency,
+        recovery.why_not,
+        Figures(
+            records.writer,
+            lambda: records.trouble is not None,
+            ticker.took,
+            planner.answers,
+            lambda: {"planner": planner.replaced, "adviser": adviser.replaced},
+        ),
     )
     viewing.show(features)
     bus = CommandBus(
@@ -112,22 +120,6 @@ def build_controller(
         in_control=in_control,
         require_one=recovery.approvals.require_one,
         real_devices=devices.real_devices,
-    )
-
-    queries = QueryHandler(
-        pipelines=partial(pipelines_view, station.pipelines),
-        flows=devices.flows,
-        record=devices.record,
-        work_masters=partial(work_masters_view, automaton),
-        figures=lambda: figures.view(
-            records.writer,
-            records.trouble is not None,
-            {"planner": planner.replaced, "adviser": adviser.replaced},
-        ),
-        corrections=recovery.corrections,
-        offers=recovery.offers,
-        why_not=recovery.why_not,
-        definitions=Definitions(execution, around, recovery.trials),
     )
     works = (
         ("sending commands", records.repeat),
@@ -147,7 +139,7 @@ def build_controller(
             consistency=consistency,
             viewing=viewing,
             commands=bus,
-            queries=queries,
+            queries=QueryBus(features, QUERIES.values()),
             works=works,
             close=(devices.close, planner.close, consistency.close, adviser.close),
             wake=wake,

@@ -17,9 +17,8 @@ from functools import partial
 import structlog
 
 from sequence_planner.controller.alarms.manager import AlarmManager
-from sequence_planner.controller.commands.bus import CommandBus
+from sequence_planner.controller.commands.bus import CommandBus, QueryBus
 from sequence_planner.controller.commands.command import Command
-from sequence_planner.controller.commands.query_handler import QueryHandler
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.io.devices import Devices
@@ -52,7 +51,7 @@ class Parts:
     consistency: ConsistencyMonitor
     viewing: ViewBuilder
     commands: CommandBus
-    queries: QueryHandler
+    queries: QueryBus
     works: Sequence[Work]
     close: Sequence[Callable[[], None]]
     wake: asyncio.Event

@@ -25,7 +25,7 @@ from sequence_planner.controller.commands.alarms import (
     SuppressAlarm,
     UnshelveAlarm,
 )
-from sequence_planner.controller.commands.bus import handles
+from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs

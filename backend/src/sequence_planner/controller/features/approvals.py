@@ -17,8 +17,7 @@ from sequence_planner.controller.commands.approvals import (
     DeclineRequest,
     RequestApproval,
 )
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.command import Command, CommandRefused, handles
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.views.station import ApprovalState, ApprovalView
 from sequence_planner.core.actor import Actor, ActorKind

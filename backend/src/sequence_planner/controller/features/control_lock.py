@@ -6,8 +6,7 @@ has it, since when, and from whom it was taken.
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
 from sequence_planner.controller.views.part import ControlView
 from sequence_planner.core.actor import Actor

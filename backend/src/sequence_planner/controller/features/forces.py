@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from sequence_planner.automaton.automaton import Kind, State
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.views.execution import force_views
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor

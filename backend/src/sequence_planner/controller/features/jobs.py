@@ -1,4 +1,4 @@
-"""Handler of job commands, and the record of ended jobs until their durable acknowledgement."""
+"""Jobs: their commands, what they consist of, and the record of ended ones until their durable acknowledgement."""
 
 from __future__ import annotations
 
@@ -6,14 +6,22 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from graphlib import CycleError, TopologicalSorter
 
-from sequence_planner.automaton.automaton import Automaton, WorkMaster, target
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.automaton.automaton import Ability, Automaton, WorkMaster, target
+from sequence_planner.automaton.dependencies import reactions, read_variables
+from sequence_planner.controller.commands.command import CommandRefused, answers, handles
 from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
+from sequence_planner.controller.commands.queries import AboutWorkMasters
+from sequence_planner.controller.views.details import (
+    WorkAbilityView,
+    WorkMastersView,
+    WorkMasterView,
+    WorkOperationView,
+)
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job, JobAct, Jobs, Step, Waits
+from sequence_planner.language.printer import print_assignment
 from sequence_planner.language.resolver import suggestion
 
 # Jobs, as they are ordered: what is asked for is done if the station allows it now, or refused with the reason.
@@ -122,6 +130,15 @@ class JobHandler:
             raise CommandRefused("jobs-under-way", "Jobs are under way", detail)
         self._execution.set_by_order(command.on, command.actor.name, command.reason, moment)
 
+    @answers(AboutWorkMasters)
+    def work_masters(self, query: AboutWorkMasters) -> WorkMastersView:
+        """All work masters of the station, and what its abilities write."""
+        automaton = self._automaton
+        return WorkMastersView(
+            work_masters={name: _master(automaton, master) for name, master in automaton.work_masters.items()},
+            abilities={name: _ability(automaton, ability) for name, ability in automaton.abilities.items()},
+        )
+
     def _known(self, name: str) -> Job:
         job = self._jobs.get(name)
         if job is None:
@@ -145,6 +162,29 @@ def _listed(names: list[str]) -> str:
     """As many of them as can be read."""
     some = ", ".join(f"`{name}`" for name in names[:3])
     return some if len(names) <= 3 else f"{some} and {len(names) - 3} more"
+
+
+def _master(automaton: Automaton, master: WorkMaster) -> WorkMasterView:
+    return WorkMasterView(
+        title=master.title,
+        brings=[print_assignment(action) for action in master.brings],
+        brought=sorted({target(action) for action in master.brings}),
+        operations={name: _operation(automaton, name, after) for name, after in master.operations.items()},
+    )
+
+
+def _operation(automaton: Automaton, name: str, after: frozenset[str]) -> WorkOperationView:
+    operation = automaton.operations[name]
+    read = read_variables(automaton, (operation.goal,))
+    return WorkOperationView(title=operation.title, after=sorted(after), goal_reads=sorted(read))
+
+
+def _ability(automaton: Automaton, ability: Ability) -> WorkAbilityView:
+    actions = [*ability.start_actions, *ability.finish_actions, *ability.cancel_actions]
+    for effect in reactions(automaton, ability.name):
+        actions += effect.actions
+    written = sorted({target(action) for action in actions})
+    return WorkAbilityView(title=ability.title, writes=written, instant=ability.finish_guard is None)
 
 
 # The jobs as far as they are durable: whoever ordered one puts it away once it is told that it has ended.

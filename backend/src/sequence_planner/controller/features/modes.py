@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.execution import (
     Deploy,
     EnterRestart,

@@ -13,8 +13,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, State
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
     AcknowledgeTask,
     ProblemKind,

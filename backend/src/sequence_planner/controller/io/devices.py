@@ -8,14 +8,11 @@ from collections.abc import Callable, Container, Iterator, Sequence
 import structlog
 
 from sequence_planner.automaton.automaton import State
-from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inbox, Inputs
-from sequence_planner.controller.io.monitor import Observing, record_view
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.io.overrides import Overrides
-from sequence_planner.controller.views.pipelines import FlowsView, RecordView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.pipelines.graph import PipelineView
 from sequence_planner.ros.qos import QualityEvent
@@ -41,7 +38,6 @@ class Devices:
         self.clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
         self.commander = Outputs(pipelines.outgoing, registry, transport)
         self.overrides = Overrides(pipelines, self.feeds, self.commander, self.clients)
-        self._observing = Observing()
         self._next_graph = 0.0
         self._awaited = frozenset(self.feeds.expected)
         transport.watch(self._hear_quality)
@@ -118,26 +114,8 @@ class Devices:
         owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
-    def flows(self, among: Container[str] | None = None) -> FlowsView:
+    def traffic(self, among: Container[str] | None) -> dict[str, PipelineView]:
         """Return what has passed the pipelines, or those `among` these."""
-        return self._observing.view(self._observed(among), Timestamp.now())
-
-    def record(self, pipeline: str) -> RecordView:
-        """The last record of a pipeline. Raises `CommandRefused` where there is none that can be told."""
-        found = self._observed({pipeline}).get(pipeline)
-        if found is None:
-            raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
-        try:
-            record = record_view(found, Timestamp.now())
-        except ValueError as error:
-            detail = f"The last record of `{pipeline}` is too large to be told: {error}."
-            raise CommandRefused("record-too-large", "The record is too large", detail, 422) from None
-        if record is None:
-            detail = f"Nothing has passed `{pipeline}` since the controller began. Try again when something has."
-            raise CommandRefused("no-record", "There is no record", detail, 409)
-        return record
-
-    def _observed(self, among: Container[str] | None) -> dict[str, PipelineView]:
         outgoing = self.commander.observed(among) | self.clients.observed(among)
         return self.feeds.observed(among) | outgoing
 

@@ -8,8 +8,8 @@ from typing import Protocol
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.tick import record_activity, supervised_start, update_operations
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused, GivenValue
+from sequence_planner.controller.commands.command import CommandRefused, GivenValue, answers, handles
+from sequence_planner.controller.commands.queries import AskCorrection
 from sequence_planner.controller.commands.recovery import (
     ConfirmEstimates,
     CorrectEstimates,
@@ -198,10 +198,12 @@ class Corrections:
         """Its part of the view."""
         return {"last_correction": self.last}
 
-    async def preview(self, values: Mapping[str, GivenValue]) -> CorrectionPreview:
+    @answers(AskCorrection)
+    async def preview(self, query: AskCorrection) -> CorrectionPreview:
         """Return what the correction would bring about. Raises `CommandRefused`."""
-        obstacle = correcting_refused(self._execution)
-        return await self._previewing.preview(self._estimates(values), None if obstacle is None else obstacle.detail)
+        refusal = correcting_refused(self._execution)
+        obstacle = None if refusal is None else refusal.detail
+        return await self._previewing.preview(self._estimates(query.values), obstacle)
 
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, answers, handles
+from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
 from sequence_planner.controller.commands.recovery import CorrectEstimates, ExecuteOperatorPlan
 from sequence_planner.controller.io.inputs import LastKnown
 from sequence_planner.controller.planner_client import AIMED_WITHIN, WAITING, AdvisorClient, aim
@@ -95,7 +95,8 @@ class Offers:
         self._asked: _Asked | None = None
         self._advised: tuple[int, AdviceRequest, AdviceView] | None = None
 
-    async def advice(self) -> AdviceView:
+    @answers(AskAdvice)
+    async def advice(self, query: AskAdvice) -> AdviceView:
         """Ways on from the present state. Raises `CommandRefused`."""
         self._require_no_operator_plan()
         execution, revision = self._execution, self._execution.revision
@@ -140,21 +141,23 @@ class Offers:
         self._advised = revision, request, view
         return view
 
-    async def goal(self, predicate: str) -> OfferView:
+    @answers(AskGoal)
+    async def goal(self, query: AskGoal) -> OfferView:
         """A plan to whatever an engineer wants to hold. Raises `CommandRefused`."""
-        target = read_predicate(self._execution.automaton, predicate)
+        target = read_predicate(self._execution.automaton, query.predicate)
         if holds(target, self._execution.state):
             detail = "It holds already: nothing has to be done for it."
             raise CommandRefused("goal-holds", "The goal holds already", detail)
         return await self._offered(target, None)
 
-    async def reset(self, operation: str) -> OfferView:
+    @answers(AskReset)
+    async def reset(self, query: AskReset) -> OfferView:
         """A plan to the precondition of an operation. Raises `CommandRefused`."""
-        found = self._execution.automaton.operations.get(operation)
+        found = self._execution.automaton.operations.get(query.operation)
         if found is None:
-            detail = f"The station has no operation `{operation}`. Look at those it has."
+            detail = f"The station has no operation `{query.operation}`. Look at those it has."
             raise CommandRefused("unknown-operation", "There is no such operation", detail, 404)
-        return await self._offered(found.precondition, operation)
+        return await self._offered(found.precondition, query.operation)
 
     async def _offered(self, target: Expression, operation: str | None) -> OfferView:
         self._require_no_operator_plan()

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.automaton import Operation
-from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.queries import AskWhyNot
+from sequence_planner.controller.commands.command import CommandRefused, answers
+from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.planner_client import AIMED_WITHIN, AdvisorClient, aim
 from sequence_planner.controller.recovery.explain import (
     BlockingCondition,
@@ -44,18 +44,10 @@ class WhyNot:
         self._adviser = adviser
         self._involving = Involving(execution, surroundings)
 
-    async def answer(self, ask: AskWhyNot) -> WhyNotView:
-        """Return what is in the way. Raises `CommandRefused` for what the station does not have."""
-        match ask.of:
-            case "ability":
-                return self._ability(ask.name)
-            case "operation":
-                return self._operation(ask.name)
-            case "goal":
-                return await self._goal(ask.name)
-
-    def _ability(self, name: str) -> WhyNotView:
-        execution = self._execution
+    @answers(AskAbilityBlockers)
+    def ability(self, query: AskAbilityBlockers) -> WhyNotView:
+        """Return what is in the way of an ability. Raises `CommandRefused` for one that the station does not have."""
+        execution, name = self._execution, query.name
         ability = execution.automaton.abilities.get(name)
         if ability is None:
             raise _unknown("ability", name)
@@ -87,8 +79,10 @@ class WhyNot:
         elif not self._execution.may_go_on(name):
             yield BlockingCondition(HindranceKind.PLAN, right_moment(self._execution))
 
-    def _operation(self, name: str) -> WhyNotView:
-        execution = self._execution
+    @answers(AskOperationBlockers)
+    def operation(self, query: AskOperationBlockers) -> WhyNotView:
+        """Return what is in the way of an operation. Raises `CommandRefused` for one that the station does not have."""
+        execution, name = self._execution, query.name
         operation = execution.automaton.operations.get(name)
         if operation is None:
             raise _unknown("operation", name)
@@ -141,8 +135,10 @@ class WhyNot:
         answers = self._execution.conduct.answers
         return None if diagnosis is None else diagnosis_view(diagnosis, self._unused, answers)
 
-    async def _goal(self, text: str) -> WhyNotView:
-        execution = self._execution
+    @answers(AskGoalBlockers)
+    async def goal(self, query: AskGoalBlockers) -> WhyNotView:
+        """Return what is in the way of a predicate. Raises `CommandRefused` for one that cannot be read."""
+        execution, text = self._execution, query.predicate
         goal = read_predicate(execution.automaton, text)
         lacking = list(self._lacking(goal))
         if not lacking:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State, target
+from sequence_planner.automaton.dependencies import reactions
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import start, writes
-from sequence_planner.controller.recovery.trials import reactions
 from sequence_planner.controller.views.details import (
     AbilityActionView,
     AutomatonView,
