@@ -13,9 +13,10 @@ from sequence_planner.automaton.automaton import Operation
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue
 from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery import proposals
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.controller.recovery.proposals import Offers
 from sequence_planner.controller.recovery.stalls import StallDetector

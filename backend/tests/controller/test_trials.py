@@ -12,7 +12,7 @@ from sequence_planner.automaton.automaton import Operation, Timeouts
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskDefinition
 from sequence_planner.controller.commands.recovery import TryAbility
-from sequence_planner.controller.recovery.consistency import Beliefs
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.trials import Trials
 from sequence_planner.controller.views.details import AbilityDefinitionView, TrialView

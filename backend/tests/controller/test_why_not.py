@@ -12,8 +12,8 @@ import pytest
 from controller.test_offers import Desk, made
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
-from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext, HindranceKind, of_ability
 from sequence_planner.controller.recovery.why_not import WhyNot
 from sequence_planner.controller.views.details import ConditionView, WhyNotView

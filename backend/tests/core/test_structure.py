@@ -70,6 +70,7 @@ MOST_ALIKE = 9  # public classes that share their name with another one
 MOST_IMPORTS = 15  # modules of the program that a module imports
 MOST_NAMESAKES = 4  # modules that define a public function of the same name, unless it is one of these
 PROTOCOL_VERBS = {
+    "causes",
     "close",
     "handle",
     "on_event",

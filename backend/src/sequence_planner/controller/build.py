@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.alarms.sources import AlarmSources, build_alarms
+from sequence_planner.controller.alarms.build import build_alarms
 from sequence_planner.controller.commands.bus import CommandBus, QueryBus
 from sequence_planner.controller.commands.registry import COMMANDS, QUERIES
 from sequence_planner.controller.controller import Controller, Parts
@@ -15,19 +15,19 @@ from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.jobs import JobHandler
 from sequence_planner.controller.features.modes import Modes
-from sequence_planner.controller.features.pipelines import PipelineTraffic
+from sequence_planner.controller.features.plan import LivePlan
 from sequence_planner.controller.features.records import Records
-from sequence_planner.controller.features.tasks import TaskHandler
+from sequence_planner.controller.features.tasks import TaskHandler, TaskProblems
+from sequence_planner.controller.features.variables import KIND as BELIEFS
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.ticks import Ticker
+from sequence_planner.controller.io.traffic import PipelineTraffic
 from sequence_planner.controller.metrics import Figures
 from sequence_planner.controller.planner_client import AdvisorClient, PlannerQuestions
 from sequence_planner.controller.recovery.build import build_recovery
-from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
-from sequence_planner.controller.recovery.explain import ConditionContext
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.manual import ByHand
-from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.builder import ViewBuilder
 from sequence_planner.controller.views.station import StationIdentity
@@ -58,14 +58,12 @@ def build_controller(
     # Whoever listens to the execution hears of each event in this order: it is written down first.
     records = Records(execution, known.beginning, devices, database, fence, failures, wake.set)
     tasks = TaskHandler(automaton, station.pipelines.feeds)
-    outside = SafeStateMonitor(execution)
     adviser = AdvisorClient(automaton, supervisor)
-
     beliefs = Beliefs(execution, known.beginning, known.beliefs, partial(records.add_note, BELIEFS, lasts=True))
     records.recorder.know(BELIEFS, beliefs.document())
-    alarms = build_alarms(execution, outside, devices, records, failures.known, known, adviser.expect)
-    by_hand = ByHand(execution, station.pipelines, records.add_note)
-    consistency = ConsistencyMonitor(execution)
+    watching = build_alarms(execution, devices, records, known, adviser.expect)
+    alarms, links, outside = watching.alarms, watching.links, watching.outside
+    consistency = ConsistencyMonitor(execution, untold=lambda: links.untold)
     ticker = Ticker(execution, devices, tasks, records, failures, wake.set)
 
     def take_news(news: Callable[[], None]) -> None:
@@ -74,37 +72,48 @@ def build_controller(
         ticker.again()
 
     planner = PlannerQuestions(execution, outside, take_news)
-    sources = AlarmSources(alarms, records, ticker, tasks, consistency, by_hand, lambda: planner.trouble)
     in_control = ControlLock(known.control)
-    viewing = ViewBuilder(identity, execution, outside, devices, beliefs, tasks, records, sources, in_control)
-    ticker.listeners += [lambda outcome, moment: alarms.note(outcome), viewing.note]
-    around = ConditionContext(devices.feeds.heard_on, viewing.since, beliefs, lambda: viewing.guards)
+    viewing = ViewBuilder(identity, execution, outside, devices, beliefs, tasks, records, alarms, in_control)
+    ticker.listeners += [watching.abilities.note, viewing.note]
     recovery = build_recovery(
         execution,
         adviser,
         beliefs,
         consistency,
-        alarms.still,
+        watching.still,
         in_control,
-        around,
+        viewing.around,
         devices.real_devices,
         lambda command, moment: bus.perform(command, moment),  # noqa: PLW0108
     )
-    features = (
-        Modes(execution, outside, devices, consistency),
+    features = (  # in this order their alarms are looked at
+        links,
+        watching.who_can,
+        watching.abilities,
+        watching.operator_plans,
+        LivePlan(execution, watching.consequences, lambda: planner.trouble, lambda: links.untold),
+        failures,
+        ticker,
+        records,
+        outside,
+        watching.beginning,
+        consistency,
+        recovery.forces,
         tasks,
+        TaskProblems(execution, tasks, watching.consequences),
+        ByHand(execution, station.pipelines, records.add_note),
+        watching.of_model,
+        alarms,
+        Modes(execution, outside, devices, consistency),
         JobHandler(execution),
         recovery.corrections,
         recovery.offers,
         recovery.trials,
-        recovery.forces,
         recovery.approvals,
+        recovery.why_not,
         in_control,
-        alarms,
         PipelineTraffic(station.pipelines, devices),
         devices.overrides,
-        consistency,
-        recovery.why_not,
         Figures(
             records.writer,
             lambda: records.trouble is not None,
@@ -113,6 +122,7 @@ def build_controller(
             lambda: {"planner": planner.replaced, "adviser": adviser.replaced},
         ),
     )
+    alarms.look_at(features)
     viewing.show(features)
     bus = CommandBus(
         features,
@@ -124,7 +134,7 @@ def build_controller(
     works = (
         ("sending commands", records.repeat),
         ("looking for contradictions", lambda moment: consistency.look()),
-        ("looking after alarms", sources.update),
+        ("looking after alarms", alarms.look),
         ("noting how it stands", viewing.note_standing),
         ("asking the planner", lambda moment: planner.ask(moment.monotonic)),
     )
@@ -135,7 +145,7 @@ def build_controller(
             records=records,
             ticker=ticker,
             failures=failures,
-            alarms=alarms,
+            beginning=watching.beginning,
             consistency=consistency,
             viewing=viewing,
             commands=bus,

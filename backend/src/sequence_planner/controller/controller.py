@@ -16,7 +16,7 @@ from functools import partial
 
 import structlog
 
-from sequence_planner.controller.alarms.manager import AlarmManager
+from sequence_planner.controller.alarms.beginning import Beginning
 from sequence_planner.controller.commands.bus import CommandBus, QueryBus
 from sequence_planner.controller.commands.command import Command
 from sequence_planner.controller.features.failures import Failures
@@ -47,7 +47,7 @@ class Parts:
     records: Records
     ticker: Ticker
     failures: Failures
-    alarms: AlarmManager
+    beginning: Beginning
     consistency: ConsistencyMonitor
     viewing: ViewBuilder
     commands: CommandBus
@@ -67,7 +67,7 @@ class Controller:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self.execution, self.devices, self.records = parts.execution, parts.devices, parts.records
-        self.alarms, self.viewing, self.answer = parts.alarms, parts.viewing, parts.queries.answer
+        self.beginning, self.viewing, self.answer = parts.beginning, parts.viewing, parts.queries.answer
         self.changed = asyncio.Event()
         """Set whenever there was a tick, or something was recorded."""
         self._progress = 0, 0  # numbers of ticks, and of what was recorded, when it was set last

@@ -13,7 +13,6 @@ from sequence_planner.controller.commands.execution import (
     StartProduction,
     TakeStep,
 )
-from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
@@ -87,12 +86,6 @@ class Modes:
         self._execution.set_service(
             command.of, command.name, command.in_service, command.actor.name, command.reason, moment
         )
-
-    @handles(StopOperatorPlan)
-    def stop_operator_plan(self, command: StopOperatorPlan, moment: Timestamp) -> None:
-        """End what is carried out, if anything is."""
-        if self._execution.operator_plan is not None:
-            self._execution.stop_operator_plan(command.actor.name, moment)
 
     @handles(StartProduction)
     def start_production(self, command: StartProduction, moment: Timestamp) -> None:

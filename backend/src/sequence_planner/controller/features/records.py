@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 from pydantic import JsonValue
 
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.kinds import KEPT_BESIDE, UNJOURNALLED, UNRECORDED, Cause
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.jobs import KeptJobs
 from sequence_planner.controller.io.devices import Devices
@@ -53,6 +55,9 @@ class Records:
         self._jobs = KeptJobs(execution, lambda: self.recorder.last)
         self._kept = 0, ""  # what was asked for and is beside the journal, up to that record
         self._was_behind = False
+        self._consequences = Consequences(execution)
+        self.unrecorded: str | None = None
+        """Why commands cannot be recorded."""
 
     @property
     def newest(self) -> int:
@@ -89,6 +94,10 @@ class Records:
         number, what = self._kept
         return what if number > self.writer.durable else None
 
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        yield from unwritten(self._consequences, self.trouble, self.unrecorded, self.beside)
+
     def note_kept(self, number: int, what: str) -> None:
         """Note that what was asked for is kept beside the journal until that has the record of this number."""
         self._kept = number, what
@@ -116,3 +125,15 @@ class Records:
         self._failures.attempt("sending commands", partial(self.gate.durable, self.writer.durable))
         if (self.trouble is not None) != self._was_behind:
             self._wake()
+
+
+def unwritten(
+    consequences: Consequences, unjournalled: str | None, unrecorded: str | None, beside: str | None
+) -> Iterator[Cause]:
+    """The causes of alarms of what cannot be written: what happens, commands, and what is only `beside` the journal."""
+    if unjournalled is not None:
+        yield UNJOURNALLED.cause("", {"why": unjournalled, "waiting": consequences.standstill()})
+    if unrecorded is not None:
+        yield UNRECORDED.cause("", {"why": unrecorded}, follows=(UNJOURNALLED.key(),))
+    if beside is not None:
+        yield KEPT_BESIDE.cause("", {"what": beside})

@@ -9,10 +9,13 @@ but that people are told of it, until the task is over or somebody says that it 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.kinds import PROBLEM, Cause
+from sequence_planner.controller.alarms.message import Argument, message
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
     AcknowledgeTask,
@@ -22,6 +25,7 @@ from sequence_planner.controller.commands.tasks import (
     TaskCommand,
 )
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 
 
@@ -121,3 +125,29 @@ class TaskHandler:
                 f"Task {id_} is at revision {task.revision}, and revision {revision} was seen. Read it again.",
             )
         return task
+
+
+class TaskProblems:
+    """The alarms of `tasks` of `execution` that somebody cannot do."""
+
+    def __init__(self, execution: Executor, tasks: TaskHandler, consequences: Consequences) -> None:
+        self._execution, self._tasks = execution, tasks
+        self._consequences = consequences
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """One cause of an alarm for each."""
+        for task, problem in self._tasks.problems.items():
+            ability = self._execution.automaton.abilities[self._tasks.open[task].ability]
+            what = None if problem.what is None else message(f"problem.{problem.what}")
+            said: Argument = message("problem-both", what=what, why=problem.why) if what and problem.why else ""
+            said = said or what or problem.why
+            yield PROBLEM.cause(
+                task,
+                {
+                    "by": problem.by,
+                    "ability": message("quoted", title=ability.title),
+                    "what": message("problem-said", said=said) if said else "",
+                    "waiting": self._consequences.waiting(self._consequences.held_up({ability.resource})),
+                },
+                resources=[ability.resource],
+            )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 import structlog
 
+from sequence_planner.controller.alarms.kinds import RESTLESS, Cause
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.features.tasks import TaskHandler
@@ -72,6 +73,11 @@ class Ticker:
             # What a message says counts from when it was received, however late its turn comes.
             self._attempt(part, moment, part[-1].received)
         self._attempt((), moment, moment.monotonic)
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        if self.restless:
+            yield RESTLESS.cause("", {"abilities": ", ".join(self.restless)})
 
     def _attempt(self, samples: Sequence[Sample], moment: Timestamp, monotonic: float) -> None:
         self._failures.attempt("a tick", lambda: self._tick(samples, moment, monotonic))

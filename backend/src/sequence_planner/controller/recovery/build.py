@@ -6,19 +6,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
-from sequence_planner.controller.commands.command import Command
+from sequence_planner.controller.commands.bus import Handler
 from sequence_planner.controller.features.approvals import Approvals
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.forces import Forces
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.proposals import Offers
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.trials import Trials
 from sequence_planner.controller.recovery.why_not import WhyNot
-from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 
 
@@ -43,7 +43,7 @@ def build_recovery(
     in_control: ControlLock,
     around: ConditionContext,
     real_devices: Callable[[], Sequence[str]],
-    perform: Callable[[Command, Timestamp], None],
+    perform: Handler,
 ) -> Recovery:
     """Build them. `perform` carries out what two people have agreed on."""
     forces = Forces(execution)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Protocol
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
-from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.dependencies import looked_at, read_variables
 from sequence_planner.automaton.tick import record_activity, supervised_start, update_operations
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue, answers, handles
 from sequence_planner.controller.commands.queries import AskCorrection
@@ -16,7 +16,8 @@ from sequence_planner.controller.commands.recovery import (
     DecideOutputs,
     UndoCorrection,
 )
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.features.variables import Beliefs
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.details import CorrectedView, CorrectionPreview
 from sequence_planner.controller.views.station import LastCorrectionView, SpecificationView
@@ -28,7 +29,6 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import suggestion
-from sequence_planner.language.syntax import Expression
 from sequence_planner.language.types import Value, contains
 from sequence_planner.planning.problem import Contract, Goal, PlanAnswer, PlanRequest, Verdict, goal_of
 from sequence_planner.planning.recovery_path import violated
@@ -136,25 +136,11 @@ class Previewing:
     def _related(self, name: str) -> Iterator[str]:
         """Yield what is measured that abilities look at before they write the estimate."""
         automaton, state = self._execution.automaton, self._execution.state
-        guards = [guard for ability in automaton.abilities.values() for guard in _guards(ability, name)]
+        guards = [guard for ability in automaton.abilities.values() for guard in looked_at(ability, name)]
         read = read_variables(automaton, guards)
         for measured in [each for each in automaton.names(Kind.MEASURED) if each in read][:MOST_RELATED]:
             value = state[measured]
             yield f"{measured} is unknown" if value is None else value_text(automaton, measured, value)
-
-
-def _guards(ability: Ability, name: str) -> Iterator[Expression]:
-    """Yield what the ability looks at when it writes the variable."""
-    starts = [action for action in ability.start_actions if target(action) == name]
-    finishes = [action for action in ability.finish_actions if target(action) == name]
-    if starts:
-        yield from (ability.enabled, ability.start_guard)
-    if finishes and ability.finish_guard is not None:
-        yield ability.finish_guard
-    for action in (*starts, *finishes):
-        yield action.value
-        if action.condition is not None:
-            yield action.condition
 
 
 def _specification(automaton: Automaton, name: str) -> SpecificationView:

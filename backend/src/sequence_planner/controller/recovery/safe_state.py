@@ -5,12 +5,15 @@ Pure, as `executor` is. Nothing is started because of it: it only says what ther
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.kinds import UNSAFE_STATE, Cause
 from sequence_planner.controller.alarms.message import Argument, Item, Message, message
+from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.syntax import Comparison, Constant, Expression, Not, Variable, variables
@@ -63,6 +66,7 @@ class SafeStateMonitor:
 
     def __init__(self, execution: Executor) -> None:
         self._execution = execution
+        self._consequences = Consequences(execution)
         self._deciding = deciding(execution.automaton, execution.supervisor.safe)
         self._seen: tuple[tuple[tuple[Value | None, ...], frozenset[str]], SafetyStatus | None] | None = None
         self._asked: tuple[tuple[Value | None, ...], Circumstances] | None = None
@@ -150,6 +154,21 @@ class SafeStateMonitor:
         if answer.way is None:
             return self._no_way(answer.searched)
         return message("way.choose") if answer.way.starts else self._by_itself(answer.way)
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        situation = self.situation
+        # What is only possible with values that are unknown has an alarm of its own: the topic is silent.
+        if situation is not None and situation.certain:
+            yield UNSAFE_STATE.cause(
+                "",
+                {
+                    "what": self.describe(situation),
+                    "what_past": self.past(situation),
+                    "waiting": self._consequences.standstill(),
+                    "way": self.way(),
+                },
+            )
 
     def _no_way(self, searched: int) -> Message:
         unknown = self.situation.awaited if self.situation is not None else ()

@@ -8,15 +8,15 @@ from typing import Any, Final, Protocol, runtime_checkable
 
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.alarms.alarm import Consequences
-from sequence_planner.controller.alarms.sources import AlarmSources
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.audit import StandingNotes
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.features.tasks import TaskHandler, TaskProblem
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.io.devices import Devices
-from sequence_planner.controller.recovery.consistency import Beliefs
-from sequence_planner.controller.recovery.explain import waits_for
+from sequence_planner.controller.recovery.explain import ConditionContext, waits_for
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.views.execution import (
     failing,
@@ -120,7 +120,7 @@ class ViewBuilder:
         beliefs: Beliefs,
         tasks: TaskHandler,
         records: Records,
-        alarms: AlarmSources,
+        alarms: AlarmManager,
         in_control: ControlLock,
     ) -> None:
         self._identity = identity
@@ -142,6 +142,7 @@ class ViewBuilder:
         self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
         self.analysis: AnalysisDocument | None = None
+        self.around = ConditionContext(self._feeding, self.since, beliefs, lambda: self.guards)
         self.guards: Mapping[str, SupervisorGuard] = {}  # that the supervisor adds, as far as they are known
 
     def note(self, outcome: TickOutcome, moment: Timestamp) -> None:

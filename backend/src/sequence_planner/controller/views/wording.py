@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
 from sequence_planner.controller.planner_client import GOAL, GoalPlan
-from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.views.proposals import (
     EffortView,
     OfferView,

@@ -1,11 +1,11 @@
-"""Alarms of what is outside: devices that are not heard, not reached, or not understood."""
+"""The links to devices: which are heard, reached and understood, and the alarms of those that are not."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterator, Mapping
 
-from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import (
     COMMAND,
     MANY_SILENT,
@@ -31,14 +31,21 @@ STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile:
 _MOST = 3  # so many devices, and half of all, fall silent at once only for one reason; or both of two
 
 
-class DeviceAlarms:
+class DeviceLinks:
     """Looks at the links between `execution` and its devices."""
 
     def __init__(
-        self, execution: Executor, feeds: Inputs, network: NetworkWatch, commander: Outputs, who_can: WhoCan
+        self,
+        execution: Executor,
+        feeds: Inputs,
+        network: NetworkWatch,
+        commander: Outputs,
+        who_can: WhoCan,
+        consequences: Consequences,
     ) -> None:
         self._execution = execution
-        self._consequences = Consequences(execution, who_can)
+        self._who_can = who_can
+        self._consequences = consequences
         self._feeds = feeds
         self._network = network
         self._commander = commander
@@ -48,6 +55,7 @@ class DeviceAlarms:
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """All that there are now. That a resource is silent which is out of service is nothing to be told."""
+        self._who_can.look(self.untold, moment.monotonic)
         unused = self._execution.conduct.out_of(ServiceKind.RESOURCE)
         self._began = moment.monotonic if self._began is None else self._began
         yield from self._silences(moment.monotonic, unused)
