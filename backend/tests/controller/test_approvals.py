@@ -94,7 +94,7 @@ def controller(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Controller]
 
 
 def feature(controller: Controller, kind: type[Kept]) -> Kept:
-    return next(each for each in controller.viewing._shown if isinstance(each, kind))
+    return next(each for each in controller.viewing._features if isinstance(each, kind))
 
 
 @dataclass

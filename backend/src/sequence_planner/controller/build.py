@@ -13,13 +13,13 @@ from sequence_planner.controller.commands.registry import COMMANDS, QUERIES
 from sequence_planner.controller.controller import Controller, Parts
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.failures import Failures
-from sequence_planner.controller.features.jobs import JobHandler
+from sequence_planner.controller.features.jobs import JobHandler, JobViews
 from sequence_planner.controller.features.modes import Modes
-from sequence_planner.controller.features.plan import LivePlan
+from sequence_planner.controller.features.plan import LivePlan, Operations
 from sequence_planner.controller.features.records import Records
-from sequence_planner.controller.features.tasks import TaskHandler, TaskProblems
+from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
 from sequence_planner.controller.features.variables import KIND as BELIEFS
-from sequence_planner.controller.features.variables import Beliefs
+from sequence_planner.controller.features.variables import Beliefs, Variables
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.ticks import Ticker
 from sequence_planner.controller.io.traffic import PipelineTraffic
@@ -57,12 +57,12 @@ def build_controller(
     devices = Devices(station, transport, wake.set)
     # Whoever listens to the execution hears of each event in this order: it is written down first.
     records = Records(execution, known.beginning, devices, database, fence, failures, wake.set)
-    tasks = TaskHandler(automaton, station.pipelines.feeds)
+    tasks, in_control = TaskHandler(automaton, station.pipelines.feeds), ControlLock(known.control)
     adviser = AdvisorClient(automaton, supervisor)
     beliefs = Beliefs(execution, known.beginning, known.beliefs, partial(records.add_note, BELIEFS, lasts=True))
     records.recorder.know(BELIEFS, beliefs.document())
     watching = build_alarms(execution, devices, records, known, adviser.expect)
-    alarms, links, outside = watching.alarms, watching.links, watching.outside
+    alarms, links, outside, consequences = watching.alarms, watching.links, watching.outside, watching.consequences
     consistency = ConsistencyMonitor(execution, untold=lambda: links.untold)
     ticker = Ticker(execution, devices, tasks, records, failures, wake.set)
 
@@ -72,9 +72,8 @@ def build_controller(
         ticker.again()
 
     planner = PlannerQuestions(execution, outside, take_news)
-    in_control = ControlLock(known.control)
-    viewing = ViewBuilder(identity, execution, outside, devices, beliefs, tasks, records, alarms, in_control)
-    ticker.listeners += [watching.abilities.note, viewing.note]
+    viewing = ViewBuilder(identity, execution)
+    variables = Variables(execution, devices.feeds.heard_on, beliefs)
     recovery = build_recovery(
         execution,
         adviser,
@@ -82,16 +81,31 @@ def build_controller(
         consistency,
         watching.still,
         in_control,
-        viewing.around,
+        devices.feeds.heard_on,
+        variables.since,
+        lambda: viewing.guards,
         devices.real_devices,
         lambda command, moment: bus.perform(command, moment),  # noqa: PLW0108
     )
-    features = (  # in this order their alarms are looked at
+    plan = LivePlan(execution, consequences, recovery.around, lambda: planner.trouble, lambda: links.untold)
+    operations = Operations(execution)
+    jobs = JobViews(
+        execution,
+        lambda: records.jobs,
+        tasks,
+        alarms,
+        lambda: in_control.is_held,
+        consequences.held_up,
+        recovery.around,
+    )
+    modes = Modes(execution, outside, devices, links, consistency, alarms, jobs.waits, records.add_note)
+    ticker.listeners += [each.after_tick for each in (variables, watching.abilities, operations, plan)]
+    features = (  # in this order their alarms are looked at, and then shown
         links,
         watching.who_can,
         watching.abilities,
         watching.operator_plans,
-        LivePlan(execution, watching.consequences, lambda: planner.trouble, lambda: links.untold),
+        plan,
         failures,
         ticker,
         records,
@@ -99,12 +113,15 @@ def build_controller(
         watching.beginning,
         consistency,
         recovery.forces,
-        tasks,
-        TaskProblems(execution, tasks, watching.consequences),
+        OpenTasks(execution, tasks, outside, consequences),
         ByHand(execution, station.pipelines, records.add_note),
         watching.of_model,
         alarms,
-        Modes(execution, outside, devices, consistency),
+        modes,
+        jobs,
+        variables,
+        operations,
+        tasks,
         JobHandler(execution),
         recovery.corrections,
         recovery.offers,
@@ -135,7 +152,7 @@ def build_controller(
         ("sending commands", records.repeat),
         ("looking for contradictions", lambda moment: consistency.look()),
         ("looking after alarms", alarms.look),
-        ("noting how it stands", viewing.note_standing),
+        ("noting how it stands", modes.note_standing),
         ("asking the planner", lambda moment: planner.ask(moment.monotonic)),
     )
     return Controller(

@@ -25,12 +25,14 @@ from sequence_planner.controller.features.abilities import Abilities
 from sequence_planner.controller.features.forces import Forces
 from sequence_planner.controller.features.plan import LivePlan
 from sequence_planner.controller.features.records import unwritten
-from sequence_planner.controller.features.tasks import TaskHandler, TaskProblems
+from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.links import DeviceLinks
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
+from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.manual import ByHand
 from sequence_planner.controller.recovery.operator_plans import OperatorPlans
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
@@ -103,19 +105,20 @@ class Scene:
         self.abilities = Abilities(execution, feeds, StallDetector(execution, lambda: outside.certain), consequences)
         self.consistency = ConsistencyMonitor(execution, untold=lambda: self.links.untold)
         self.by_hand = ByHand(execution, station.pipelines, lambda kind, content: None)
+        around = ConditionContext(feeds.heard_on, lambda name: None, Beliefs(execution), dict)
         self.alarms = AlarmManager(execution, outside, told or Told(), known)
         self.alarms.look_at(
             (
                 self.links,
                 self.abilities,
                 OperatorPlans(execution, feeds.heard_on),
-                LivePlan(execution, consequences, lambda: self.trouble, lambda: self.links.untold),
+                LivePlan(execution, consequences, around, lambda: self.trouble, lambda: self.links.untold),
                 self,
                 outside,
                 Beginning(execution, known),
                 self.consistency,
                 Forces(execution),
-                TaskProblems(execution, tasks, consequences),
+                OpenTasks(execution, tasks, outside, consequences),
                 self.by_hand,
                 ModelAlarms(execution),
             )
@@ -127,7 +130,7 @@ class Scene:
 
     def note(self, outcome: TickOutcome) -> None:
         """After a tick."""
-        self.abilities.note(outcome, Timestamp(0.0, 0.0))
+        self.abilities.after_tick(outcome, Timestamp(0.0, 0.0))
 
     def current(self, moment: Timestamp) -> dict[str, AlarmView]:
         """All alarms now."""

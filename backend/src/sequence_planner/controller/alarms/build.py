@@ -47,7 +47,7 @@ def build_alarms(
     expect: Callable[[], None],
 ) -> Watching:
     """Build them; `expect` is called when somebody may soon ask for advice."""
-    outside, who_can = SafeStateMonitor(execution), WhoCan(execution, in_thread)
+    outside, who_can = SafeStateMonitor(execution, devices.feeds.heard_on), WhoCan(execution, in_thread)
     consequences = Consequences(execution, who_can)
     still = StallDetector(execution, lambda: outside.certain)
     records.recorder.know(ASIDE, aside_again(known.aside))

@@ -70,6 +70,8 @@ class AlarmManager:
         self._following = ConsequenceGraph(execution.automaton, self._touched)
         self._folding = Folding()
         self._lives = AlarmRegistry(self._told)
+        self.shown: Mapping[str, AlarmView] = {}
+        """The alarms as they were shown last."""
         self._tell = tell
         self._expect = expect
         self._kept: dict[str, Suppression] = {}
@@ -91,7 +93,12 @@ class AlarmManager:
     def current(self, moment: Timestamp) -> dict[str, AlarmView]:
         """All alarms now."""
         self.look(moment)
-        return self._lives.view()
+        self.shown = self._lives.view()
+        return self.shown
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"alarms": self.current(moment)}
 
     @handles(AcknowledgeAlarm)
     def acknowledge(self, command: AcknowledgeAlarm, moment: Timestamp) -> None:

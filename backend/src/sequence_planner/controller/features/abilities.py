@@ -1,4 +1,4 @@
-"""Abilities: what each does now, and the alarms of those that are late, given up, or in conflict with one another."""
+"""Abilities: what each does now, and the alarms of those that are late, given up, or in conflict."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from sequence_planner.controller.alarms.kinds import (
 from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.stalls import StallDetector
+from sequence_planner.controller.views.station import AbilityView
 from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import OutOfService
 from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.syntax import variables
@@ -44,10 +44,32 @@ class Abilities:
         }
         self._conflicts: set[tuple[str, str, str]] = set()
 
-    def note(self, outcome: TickOutcome, moment: Timestamp) -> None:
+    def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
         gone_on = {*outcome.finished, *outcome.started}
         self._conflicts = {c for c in self._conflicts if gone_on.isdisjoint(c[:2])} | set(outcome.conflicts)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        running = {
+            step.ability: None if step.started is None else step.started.epoch
+            for step in self._execution.plan.order.running
+        }
+        state = self._execution.state
+        views = {
+            ability.name: AbilityView(
+                resource=ability.resource,
+                title=ability.title,
+                human=ability.human is not None,
+                restart=ability.restart,
+                enabled=_truth(state[ability.flag("enabled")]),
+                executing=_truth(state[ability.flag("executing")]),
+                finished=_truth(state[ability.flag("finished")]),
+                running_since=running.get(ability.name),
+            )
+            for ability in self._execution.automaton.abilities.values()
+        }
+        return {"abilities": views}
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
@@ -143,12 +165,10 @@ class Abilities:
 
     def _given_up(self) -> Iterator[Cause]:
         """Of each resource one: what it could not do, and is not asked for any more."""
-        given_up: dict[str, list[OutOfService]] = {}
-        for (of, name), each in self._execution.conduct.service.items():
-            if of is ServiceKind.ABILITY and each.by is None:
-                given_up.setdefault(self._execution.automaton.abilities[name].resource, []).append(each)
-        for resource, gone in given_up.items():
-            abilities = self._execution.automaton.abilities
+        abilities, service = self._execution.automaton.abilities, self._execution.conduct.service
+        given_up = [each for (of, _), each in service.items() if of is ServiceKind.ABILITY and each.by is None]
+        for resource in dict.fromkeys(abilities[each.name].resource for each in given_up):
+            gone = [each for each in given_up if abilities[each.name].resource == resource]
             titles = [abilities[each.name].title for each in gone]
             texts = [
                 message("given-up.failure", ability=title, why=each.why)
@@ -218,3 +238,7 @@ def _deciding(ability: Ability) -> set[str]:
     """The variables that decide whether the ability is under way, and whether it has finished."""
     guard = ability.executing if ability.finish_guard is None else ability.finish_guard
     return {*variables(ability.executing), *variables(guard)}
+
+
+def _truth(value: object) -> bool | None:
+    return value if isinstance(value, bool) else None

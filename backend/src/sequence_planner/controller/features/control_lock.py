@@ -23,6 +23,11 @@ class ControlLock:
         """Return who is in control; None for nobody."""
         return self._holder
 
+    @property
+    def is_held(self) -> bool:
+        """True if somebody is in control."""
+        return self._holder is not None
+
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
         return {"control": self._holder}

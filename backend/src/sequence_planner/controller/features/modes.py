@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
+from sequence_planner.controller.alarms.manager import AlarmManager
+from sequence_planner.controller.commands.audit import StandingNotes, Tell
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.execution import (
     Deploy,
@@ -14,8 +18,11 @@ from sequence_planner.controller.commands.execution import (
     TakeStep,
 )
 from sequence_planner.controller.io.devices import Devices
+from sequence_planner.controller.io.links import DeviceLinks
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
+from sequence_planner.controller.views.execution import failing, packml, service_views, standing
+from sequence_planner.controller.views.station import PackML, StationStanding
 from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
@@ -23,15 +30,53 @@ from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
 
 
 class Modes:
-    """Takes commands about how `execution` executes."""
+    """Takes commands about how `execution` executes, and says how the station stands.
+
+    `alarms` say what fails, `waits` what jobs wait for. `tell` hears how it stands where that has changed for good.
+    """
 
     def __init__(
-        self, execution: Executor, outside: SafeStateMonitor, devices: Devices, doubting: ConsistencyMonitor
+        self,
+        execution: Executor,
+        outside: SafeStateMonitor,
+        devices: Devices,
+        links: DeviceLinks,
+        doubting: ConsistencyMonitor,
+        alarms: AlarmManager,
+        waits: Callable[[Timestamp], Mapping[str, list[str]]],
+        tell: Tell,
     ) -> None:
         self._execution = execution
         self._outside = outside
-        self._devices = devices
+        self._devices, self._links = devices, links
         self._doubting = doubting
+        self._alarms = alarms
+        self._waits = waits
+        self._notes = StandingNotes(tell)
+
+    @property
+    def packml(self) -> PackML:
+        """The state that PackML has for it now."""
+        return packml(self._execution) if self._devices.network.commands else PackML.RESETTING
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        execution, silent = self._execution, self._links.silent
+        commands, fail = self._devices.network.commands, failing(execution.automaton, self._alarms.shown)
+        return {
+            "mode": execution.mode,
+            "packml": self.packml,
+            "standing": standing(execution, self._outside, silent) if commands else StationStanding.PREPARING,
+            "failing": [title for title in fail if title not in silent],
+            "stepping": execution.conduct.stepping,
+            "production": execution.production if commands else Production.PREPARING,
+            "out_of_service": service_views(execution.automaton, execution.conduct),
+        }
+
+    def note_standing(self, moment: Timestamp) -> None:
+        """Write down how the station stands, where that has changed for good."""
+        if self._devices.network.commands and self._notes.due(moment):
+            self._notes.look(self.packml, self._waits(moment), moment)
 
     @handles(SetMode)
     def set_mode(self, command: SetMode, moment: Timestamp) -> None:

@@ -1,8 +1,8 @@
-"""The live plan: what is done, what runs, what comes next, and the alarms of what is not planned."""
+"""Operations and the live plan: what is done, runs and comes next, and the alarms of what is not planned."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import (
@@ -15,15 +15,29 @@ from sequence_planner.controller.alarms.kinds import (
     silences,
 )
 from sequence_planner.controller.alarms.message import Message, message
+from sequence_planner.controller.recovery.explain import ConditionContext, waits_for
+from sequence_planner.controller.views.station import (
+    DiagnosisView,
+    DroppedStepView,
+    OperationView,
+    PlanStepView,
+    PlanView,
+    ReplacementView,
+    StepStatus,
+)
+from sequence_planner.controller.views.wording import diagnosis_view
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.plan_tracker import formula_of, why_none
+from sequence_planner.execution.forecast import Expected, Forecast
+from sequence_planner.execution.plan_tracker import PlannedStart, Replacement, formula_of, why_none
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
-from sequence_planner.planning.problem import PlanAnswer, Verdict
+from sequence_planner.language.printer import print_expression
+from sequence_planner.planning.problem import Contract, Plan, PlanAnswer, Verdict
 
 
 class LivePlan:
-    """Looks at the plan of `execution`. `trouble` says what is wrong with the planner.
+    """Looks at the plan of `execution`. `trouble` says what is wrong with the planner, and `around` what is beside it.
 
     What comes of it that the `untold` are silent is told no sooner than that.
     """
@@ -32,6 +46,7 @@ class LivePlan:
         self,
         execution: Executor,
         consequences: Consequences,
+        around: ConditionContext,
         trouble: Callable[[], str | None],
         untold: Callable[[], Collection[str]],
     ) -> None:
@@ -39,6 +54,78 @@ class LivePlan:
         self._consequences = consequences
         self._trouble = trouble
         self._untold = untold
+        self._around = around
+        self._timetable = Forecast(execution)
+        self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
+
+    def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
+        """After a tick: remember what has changed."""
+        self._timetable.update(moment.epoch)
+        if self._execution.plan.replacement is not self._replaced[0]:
+            self._replaced = (self._execution.plan.replacement, moment.epoch)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        execution = self._execution
+        order, plan, answer = execution.plan.order, execution.plan.order.plan, execution.plan.answer
+        expected = self._timetable.expected(self._around.guards())
+        steps = [
+            self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING, expected) for step in order.past
+        ]
+        for index, step in enumerate(order.ahead):
+            steps.append(self._step(step, StepStatus.PLANNED if index else StepStatus.NEXT, expected))
+        view = PlanView(
+            status=execution.plan.status,
+            reason=execution.plan.reason,
+            steps=steps,
+            ticks=len(plan.ticks) if plan else 0,
+            minimal_ticks=plan is not None and plan.minimal_ticks,
+            minimal_starts=plan is not None and plan.minimal_starts,
+            replanned=execution.plan.replanned,
+            replacement=self._replacement(),
+            contract=_contract(plan),
+            engine=answer.engine if answer else "",
+            milliseconds=answer.seconds * 1000 if answer else None,
+            why=_why(execution),
+        )
+        return {"plan": view}
+
+    def _replacement(self) -> ReplacementView | None:
+        replacement, at = self._replaced
+        if replacement is None:
+            return None
+        abilities = [self._execution.automaton.abilities[name] for name in replacement.dropped]
+        return ReplacementView(
+            at=at,
+            why=replacement.why,
+            dropped=[
+                DroppedStepView(ability=each.name, title=each.title, resource=each.resource) for each in abilities
+            ],
+        )
+
+    def _step(self, step: PlannedStart, status: StepStatus, expected: Mapping[int, Expected]) -> PlanStepView:
+        ability = self._execution.automaton.abilities[step.ability]
+        due = expected.get(step.number)
+        replacement = self._replaced[0]
+        waiting = (
+            waits_for(self._execution, step.ability, self._around.feeds, self._around.guards().get(step.ability))
+            if status is StepStatus.NEXT
+            else []
+        )
+        return PlanStepView(
+            id=str(step.number),
+            ability=step.ability,
+            title=ability.title,
+            resource=ability.resource,
+            status=status,
+            tick=step.tick,
+            started=_epoch(step.started),
+            ended=_epoch(step.ended),
+            expected_start=due.start if due and step.started is None else None,
+            expected_end=due.end if due else None,
+            new=replacement is not None and step.number in replacement.new,
+            waits_for=waiting,
+        )
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
@@ -104,3 +191,67 @@ class LivePlan:
                 titles = ", ".join(operations[name].title for name in names)
                 waiting = self._consequences.waiting(names)
                 yield kind.cause("", {"operations": titles, "waiting": waiting}, follows=follows)
+
+
+def _why(execution: Executor) -> DiagnosisView | None:
+    diagnosis = execution.plan.diagnosis
+    if diagnosis is None or diagnosis.reason is None:
+        return None
+    conduct = execution.conduct
+    return diagnosis_view(diagnosis, conduct.out_of(ServiceKind.RESOURCE), conduct.answers)
+
+
+def _contract(plan: Plan | None) -> Contract | None:
+    """Return what the plan is: one that is proven to be the shortest, or one that was found soon."""
+    if plan is None:
+        return None
+    return Contract.MINIMAL if plan.minimal_ticks and plan.minimal_starts else Contract.FAST
+
+
+def _epoch(moment: Timestamp | None) -> float | None:
+    return None if moment is None else moment.epoch
+
+
+class Operations:
+    """The operations of `execution`: which are active, since when, and how often each was completed."""
+
+    def __init__(self, execution: Executor) -> None:
+        self._execution = execution
+        self._active_since: dict[str, float] = {}
+        operations = execution.automaton.operations
+        self._completed: dict[str, int] = dict.fromkeys(operations, 0)
+        self._conditions = {
+            name: (print_expression(each.goal), print_expression(each.precondition))
+            for name, each in operations.items()
+        }
+
+    def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
+        """After a tick: remember what has changed."""
+        for operation in outcome.completed:
+            self._completed[operation] += 1
+        now = moment.epoch
+        self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        execution = self._execution
+        answer, active = execution.plan.answer, execution.active
+        left_out = frozenset[str]() if answer is None else active.intersection(answer.left_out)
+        jobs, automaton = execution.conduct.jobs, execution.automaton
+        asking = {name: job.id for job in jobs.under_way for name in automaton.work_masters[job.work_master].operations}
+        views = {
+            operation.name: OperationView(
+                title=operation.title,
+                active=operation.name in active,
+                active_since=self._active_since.get(operation.name),
+                completed=self._completed[operation.name],
+                goal=self._conditions[operation.name][0],
+                precondition=self._conditions[operation.name][1],
+                left_out=operation.name in left_out,
+                repeat=operation.repeat,
+                for_jobs=operation.name in automaton.job_operations,
+                job=asking.get(operation.name),
+            )
+            for operation in automaton.operations.values()
+        }
+        return {"operations": views}

@@ -24,9 +24,14 @@ from sequence_planner.controller.commands.tasks import (
     SolveProblem,
     TaskCommand,
 )
+from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
+from sequence_planner.controller.views.execution import goes_on
+from sequence_planner.controller.views.station import TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
+
+_NEXT_MOVES = 2  # coming steps that a task names as what moves next
 
 
 @dataclass(frozen=True)
@@ -127,12 +132,36 @@ class TaskHandler:
         return task
 
 
-class TaskProblems:
-    """The alarms of `tasks` of `execution` that somebody cannot do."""
+class OpenTasks:
+    """Those of `tasks` that are open at `execution`, and the alarms of those that somebody cannot do."""
 
-    def __init__(self, execution: Executor, tasks: TaskHandler, consequences: Consequences) -> None:
-        self._execution, self._tasks = execution, tasks
+    def __init__(
+        self, execution: Executor, tasks: TaskHandler, outside: SafeStateMonitor, consequences: Consequences
+    ) -> None:
+        self._execution, self._tasks, self._outside = execution, tasks, outside
         self._consequences = consequences
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        if not self._tasks.open:
+            return {"tasks": {}}
+        abilities = self._execution.automaton.abilities
+        names = self._execution.plan.order.names if goes_on(self._execution, self._outside) else ()
+        moves = [abilities[name].title for name in names if abilities[name].human is None]
+        views = {
+            id_: TaskView(
+                revision=task.revision,
+                resource=abilities[task.ability].resource,
+                ability=task.ability,
+                title=task.title,
+                text=task.text,
+                created=task.created,
+                next_moves=moves[:_NEXT_MOVES],
+                problem=_problem(self._tasks.problems.get(id_)),
+            )
+            for id_, task in self._tasks.open.items()
+        }
+        return {"tasks": views}
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """One cause of an alarm for each."""
@@ -151,3 +180,7 @@ class TaskProblems:
                 },
                 resources=[ability.resource],
             )
+
+
+def _problem(problem: TaskProblem | None) -> TaskProblemView | None:
+    return None if problem is None else TaskProblemView.model_validate(problem, from_attributes=True)

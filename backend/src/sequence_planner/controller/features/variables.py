@@ -8,7 +8,7 @@ from pydantic import JsonValue, ValidationError
 
 from sequence_planner.automaton.automaton import Ability, Kind, reads, target
 from sequence_planner.automaton.dependencies import read_variables
-from sequence_planner.controller.views.station import BeliefView
+from sequence_planner.controller.views.station import BeliefView, VariableKind, VariableView
 from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import (
@@ -197,3 +197,51 @@ def beliefs_from(content: Mapping[str, JsonValue]) -> dict[str, BeliefView]:
         return {name: BeliefView.model_validate(written) for name, written in content.items()}
     except ValidationError:
         return {}
+
+
+# What each variable is, and since when.
+
+
+class Variables:
+    """Those of `execution`; `feeds` names the topic behind each measured one."""
+
+    def __init__(self, execution: Executor, feeds: Mapping[str, str], beliefs: Beliefs) -> None:
+        self._execution = execution
+        self._feeds, self._beliefs = feeds, beliefs
+        self._since: dict[str, tuple[Value | None, float]] = {}
+
+    def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
+        """After a tick: remember what has changed."""
+        now = moment.epoch
+        for name in self._execution.automaton.variables:
+            value = self._execution.state[name]
+            if name not in self._since or self._since[name][0] != value:
+                self._since[name] = (value, now)
+
+    def since(self, name: str) -> float | None:
+        """Return when a variable was first seen with the value that it has; None before the first tick."""
+        seen = self._since.get(name)
+        return None if seen is None else seen[1]
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"variables": self._views(), "unconfirmed": self._beliefs.unconfirmed}
+
+    def _views(self) -> dict[str, VariableView]:
+        views = {}
+        for name, variable in self._execution.automaton.variables.items():
+            if variable.kind is Kind.ACTIVITY:
+                continue  # operations have a part of their own
+            value = self._execution.state[name]
+            since = self._since.get(name)
+            views[name] = VariableView(
+                resource=variable.resource,
+                kind=VariableKind(variable.kind),
+                value=value,
+                domain=list(variable.type.domain),
+                dual_approval=variable.dual_approval,
+                since=since[1] if since else None,
+                awaits=self._feeds.get(name) if value is None else None,
+                belief=self._beliefs.of(name) if variable.kind is Kind.ESTIMATED else None,
+            )
+        return views

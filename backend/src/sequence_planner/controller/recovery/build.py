@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
@@ -10,22 +10,23 @@ from sequence_planner.controller.commands.bus import Handler
 from sequence_planner.controller.features.approvals import Approvals
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.forces import Forces
-from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
-from sequence_planner.controller.recovery.explain import ConditionContext
+from sequence_planner.controller.recovery.explain import ConditionContext, TellsBelief
 from sequence_planner.controller.recovery.proposals import Offers
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.trials import Trials
 from sequence_planner.controller.recovery.why_not import WhyNot
 from sequence_planner.execution.executor import Executor
+from sequence_planner.synthesis.guards import SupervisorGuard
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """The features, and who answers why something does not start."""
+    """The features, and what explanations draw on."""
 
+    around: ConditionContext
     corrections: Corrections
     offers: Offers
     trials: Trials
@@ -37,15 +38,18 @@ class Recovery:
 def build_recovery(
     execution: Executor,
     adviser: AdvisorClient,
-    beliefs: Beliefs,
+    beliefs: TellsBelief,
     consistency: ConsistencyMonitor,
     still: StallDetector,
     in_control: ControlLock,
-    around: ConditionContext,
+    feeds: Mapping[str, str],
+    since: Callable[[str], float | None],
+    guards: Callable[[], Mapping[str, SupervisorGuard]],
     real_devices: Callable[[], Sequence[str]],
     perform: Handler,
 ) -> Recovery:
     """Build them. `perform` carries out what two people have agreed on."""
+    around = ConditionContext(feeds, since, beliefs, guards)
     forces = Forces(execution)
 
     def require_feasible(command: ApprovedCommand) -> None:
@@ -57,6 +61,7 @@ def build_recovery(
     approvals = Approvals(execution, in_control, require_feasible, perform)
     corrections = Corrections(execution, adviser, beliefs, consistency, approvals.require_one)
     return Recovery(
+        around=around,
         corrections=corrections,
         offers=Offers(execution, adviser, corrections, consistency.impossible, still),
         trials=Trials(execution, around, real_devices),

@@ -16,8 +16,8 @@ from sequence_planner.controller.commands.recovery import (
     DecideOutputs,
     UndoCorrection,
 )
-from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
+from sequence_planner.controller.recovery.explain import TellsBelief
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.details import CorrectedView, CorrectionPreview
 from sequence_planner.controller.views.station import LastCorrectionView, SpecificationView
@@ -58,7 +58,7 @@ class Previewing:
     """Looks at what `execution` would be like."""
 
     def __init__(
-        self, execution: Executor, adviser: PlansOnRequest, beliefs: Beliefs, doubting: ConsistencyMonitor
+        self, execution: Executor, adviser: PlansOnRequest, beliefs: TellsBelief, doubting: ConsistencyMonitor
     ) -> None:
         self._execution = execution
         self._adviser = adviser
@@ -160,7 +160,7 @@ class Corrections:
         self,
         execution: Executor,
         adviser: PlansOnRequest,
-        beliefs: Beliefs,
+        beliefs: TellsBelief,
         doubting: ConsistencyMonitor,
         require_one: Callable[[Iterable[str]], None],
     ) -> None:

@@ -13,6 +13,7 @@ from sequence_planner.controller.alarms.message import Argument, message
 from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.recovery.explain import idle_since, waits_for
+from sequence_planner.controller.views.execution import last_operator_plan_view, operator_plan_view
 from sequence_planner.controller.views.wording import end_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
@@ -34,6 +35,12 @@ class OperatorPlans:
         """End what is carried out, if anything is."""
         if self._execution.operator_plan is not None:
             self._execution.stop_operator_plan(command.actor.name, moment)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        execution = self._execution
+        last = last_operator_plan_view(execution.conduct)
+        return {"errand": operator_plan_view(execution), "last_errand": last}
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
