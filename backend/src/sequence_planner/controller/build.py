@@ -113,7 +113,7 @@ def build_controller(
         watching.beginning,
         consistency,
         recovery.forces,
-        OpenTasks(execution, tasks, outside, consequences),
+        OpenTasks(execution, tasks, modes.goes_on, consequences.waiting_for),
         ByHand(execution, station.pipelines, records.add_note),
         watching.of_model,
         alarms,

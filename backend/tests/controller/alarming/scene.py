@@ -118,7 +118,7 @@ class Scene:
                 Beginning(execution, known),
                 self.consistency,
                 Forces(execution),
-                OpenTasks(execution, tasks, outside, consequences),
+                OpenTasks(execution, tasks, lambda: False, consequences.waiting_for),
                 self.by_hand,
                 ModelAlarms(execution),
             )

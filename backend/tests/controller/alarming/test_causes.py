@@ -8,8 +8,7 @@ import pytest
 
 from controller.alarming.scene import Scene, acknowledge, alarms
 from controller.carrying_out import carry_out
-from sequence_planner.controller.commands.tasks import ProblemKind
-from sequence_planner.controller.features.tasks import TaskProblem
+from sequence_planner.controller.commands.tasks import ProblemKind, TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import AlarmState, Priority, QuestionView

@@ -53,6 +53,10 @@ class Consequences:
             return message("wait.none")
         return message("wait.operations", operations=self._quoted(names), until=until)
 
+    def waiting_for(self, resource: str) -> Message:
+        """That those of the active operations wait which cannot be completed without a resource."""
+        return self.waiting(self.held_up({resource}))
+
     def without(self, resources: Collection[str]) -> Message:
         """Of resources that cannot be used: what the plan without them leaves out."""
         execution = self._execution

@@ -21,7 +21,7 @@ from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.links import DeviceLinks
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
-from sequence_planner.controller.views.execution import failing, packml, service_views, standing
+from sequence_planner.controller.views.execution import failing, goes_on, packml, service_views, standing
 from sequence_planner.controller.views.station import PackML, StationStanding
 from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
@@ -59,6 +59,10 @@ class Modes:
         """The state that PackML has for it now."""
         return packml(self._execution) if self._devices.network.commands else PackML.RESETTING
 
+    def goes_on(self) -> bool:
+        """Return whether anything starts by itself."""
+        return goes_on(self._execution, self._outside.certain)
+
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
         execution, silent = self._execution, self._links.silent
@@ -66,7 +70,7 @@ class Modes:
         return {
             "mode": execution.mode,
             "packml": self.packml,
-            "standing": standing(execution, self._outside, silent) if commands else StationStanding.PREPARING,
+            "standing": standing(execution, self._outside.certain, silent) if commands else StationStanding.PREPARING,
             "failing": [title for title in fail if title not in silent],
             "stepping": execution.conduct.stepping,
             "production": execution.production if commands else Production.PREPARING,

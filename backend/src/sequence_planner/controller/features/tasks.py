@@ -9,53 +9,26 @@ but that people are told of it, until the task is over or somebody says that it 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from sequence_planner.automaton.automaton import Automaton, State
-from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import PROBLEM, Cause
-from sequence_planner.controller.alarms.message import Argument, message
+from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
     AcknowledgeTask,
-    ProblemKind,
     ReportProblem,
     SolveProblem,
     TaskCommand,
+    TaskProblem,
+    WaitingTask,
 )
-from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
-from sequence_planner.controller.views.execution import goes_on
 from sequence_planner.controller.views.station import TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 
 _NEXT_MOVES = 2  # coming steps that a task names as what moves next
-
-
-@dataclass(frozen=True)
-class WaitingTask:
-    """A task that waits for a person; `created` in seconds since the epoch."""
-
-    id: str
-    revision: int
-    ability: str
-    title: str
-    text: str
-    created: float
-
-
-@dataclass(frozen=True)
-class TaskProblem:
-    """An obstacle that keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if
-    told.
-    """
-
-    by: str
-    since: float
-    why: str
-    what: ProblemKind | None = None
 
 
 class TaskHandler:
@@ -133,20 +106,27 @@ class TaskHandler:
 
 
 class OpenTasks:
-    """Those of `tasks` that are open at `execution`, and the alarms of those that somebody cannot do."""
+    """Those of `tasks` that are open at `execution`, and the alarms of those that somebody cannot do.
+
+    `goes_on` says whether anything starts by itself, and `waiting` what waits for a resource.
+    """
 
     def __init__(
-        self, execution: Executor, tasks: TaskHandler, outside: SafeStateMonitor, consequences: Consequences
+        self,
+        execution: Executor,
+        tasks: TaskHandler,
+        goes_on: Callable[[], bool],
+        waiting: Callable[[str], Message],
     ) -> None:
-        self._execution, self._tasks, self._outside = execution, tasks, outside
-        self._consequences = consequences
+        self._execution, self._tasks = execution, tasks
+        self._goes_on, self._waiting = goes_on, waiting
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
         if not self._tasks.open:
             return {"tasks": {}}
         abilities = self._execution.automaton.abilities
-        names = self._execution.plan.order.names if goes_on(self._execution, self._outside) else ()
+        names = self._execution.plan.order.names if self._goes_on() else ()
         moves = [abilities[name].title for name in names if abilities[name].human is None]
         views = {
             id_: TaskView(
@@ -176,7 +156,7 @@ class OpenTasks:
                     "by": problem.by,
                     "ability": message("quoted", title=ability.title),
                     "what": message("problem-said", said=said) if said else "",
-                    "waiting": self._consequences.waiting(self._consequences.held_up({ability.resource})),
+                    "waiting": self._waiting(ability.resource),
                 },
                 resources=[ability.resource],
             )

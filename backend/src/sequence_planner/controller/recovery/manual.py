@@ -29,7 +29,7 @@ from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.graph import GOAL_ON_ITS_WAY, StationPipelines
 
-KIND: Final = "by-hand"  # of the records
+KIND: Final = BY_HAND.name  # of the records
 LATENCY: Final = 2.0  # seconds for which a device may act on what it was told before, and that be on its way
 STAYS: Final = 120.0  # seconds for which a notice stays after the station has gone on
 LONGEST: Final = 900.0  # seconds for which it stays at most

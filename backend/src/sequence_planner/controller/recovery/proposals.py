@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import secrets
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -17,12 +17,11 @@ from sequence_planner.controller.commands.command import CommandRefused, answers
 from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
 from sequence_planner.controller.commands.recovery import CorrectEstimates, ExecuteOperatorPlan
 from sequence_planner.controller.io.inputs import LastKnown
-from sequence_planner.controller.planner_client import AIMED_WITHIN, WAITING, AdvisorClient, aim
+from sequence_planner.controller.planner_client import AIMED_WITHIN, GOAL, WAITING, AdvisorClient, GoalPlan, aim
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
 from sequence_planner.controller.views.wording import (
     diagnosis_view,
-    no_plan,
     offer_title,
     offer_view,
     plan_running,
@@ -174,7 +173,7 @@ class Offers:
         )
         aimed = await aim(self._adviser, request)
         if aimed.offer is None:
-            raise no_plan(aimed, self._unused)
+            raise _no_plan(aimed, self._unused)
         (view,) = self._keep((aimed.offer,), revision)
         return view
 
@@ -268,3 +267,16 @@ def _waiting_goals(execution: Executor) -> Goals:
 def violated_goals(execution: Executor) -> Goals:
     """The goals of active operations whose formulas were violated."""
     return execution.pursued.select(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)
+
+
+def _no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
+    """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
+    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
+    because = "; ".join(member for member in members if member != f"the goal {GOAL}")
+    if because:
+        detail = f"There is no plan as long as all of this is so: {because}."
+    elif aimed.proven:
+        detail = "There is no plan at all from the present state: that is proven."
+    else:
+        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
+    return CommandRefused("no-plan", "There is no plan", detail)

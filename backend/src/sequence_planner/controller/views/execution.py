@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.views.station import (
     AlarmView,
     ForceView,
@@ -66,14 +65,13 @@ def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
     return [title for name, title in automaton.resources.items() if name in found]
 
 
-def goes_on(execution: Executor, outside: SafeStateMonitor) -> bool:
-    """Return whether anything starts by itself."""
-    situation = outside.situation
+def goes_on(execution: Executor, outside: bool) -> bool:
+    """Return whether anything starts by itself; nothing does certainly `outside` the safe states."""
     may = execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC
-    return may and not execution.obstacles and not (situation is not None and situation.certain)
+    return may and not execution.obstacles and not outside
 
 
-def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[str]) -> StationStanding:
+def standing(execution: Executor, outside: bool, silent: Collection[str]) -> StationStanding:
     """Return how it stands, while these resources are `silent`."""
     if goes_on(execution, outside):
         return StationStanding.SILENT if silent else StationStanding.WORKING

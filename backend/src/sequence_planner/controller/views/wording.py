@@ -8,7 +8,6 @@ from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
-from sequence_planner.controller.planner_client import GOAL, GoalPlan
 from sequence_planner.controller.views.proposals import (
     EffortView,
     OfferView,
@@ -247,19 +246,6 @@ def plan_running(operator_plan: OperatorPlan) -> CommandRefused:
     """Nothing is offered beside an operator plan: the state moves with it."""
     detail = f"{operator_plan.title} is being carried out. Wait for its end, or stop it."
     return CommandRefused("plan-running", "Something else is being carried out", detail)
-
-
-def no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
-    """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
-    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
-    because = "; ".join(member for member in members if member != f"the goal {GOAL}")
-    if because:
-        detail = f"There is no plan as long as all of this is so: {because}."
-    elif aimed.proven:
-        detail = "There is no plan at all from the present state: that is proven."
-    else:
-        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
-    return CommandRefused("no-plan", "There is no plan", detail)
 
 
 # Predicates that come with a request, in the model's language.
