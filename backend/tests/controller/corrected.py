@@ -36,7 +36,7 @@ def corrections(
 ) -> Corrections:
     return Corrections(
         execution,
-        Planning(),
+        Planning().answer,
         Beliefs(execution) if beliefs is None else beliefs,
         ConsistencyMonitor(execution) if doubting is None else doubting,
         lambda names: None,

@@ -17,7 +17,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
-from sequence_planner.planning.problem import Plan, PlanRequest
+from sequence_planner.planning.problem import Plan, PlanAnswer, PlanRequest
 from support.people import ADAM, EVA
 
 from .corrected import WHY, Station, what_is_never_together
@@ -107,11 +107,10 @@ def test_a_contradiction_comes_and_goes_with_a_correction() -> None:
 def test_a_plan_that_nobody_can_make_now_leaves_the_rest() -> None:
     station = Station()
 
-    class Away:
-        async def answer(self, request: PlanRequest, deadline: float) -> object:
-            raise CommandRefused("advisor-unavailable", "There is no adviser", "It is started again.", 503)
+    async def is_away(request: PlanRequest, deadline: float) -> PlanAnswer:
+        raise CommandRefused("advisor-unavailable", "There is no adviser", "It is started again.", 503)
 
-    station.corrections._previewing._adviser = Away()  # type: ignore[assignment]
+    station.corrections._plan = is_away
     shown = preview(station)
     assert shown.plan is None
     assert "It is started again." in shown.reason

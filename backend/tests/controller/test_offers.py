@@ -70,8 +70,8 @@ class Desk:
     def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
         self.adviser, self.execution = adviser, execution
         doubting = ConsistencyMonitor(execution)
-        corrections = Corrections(execution, adviser, Beliefs(execution), doubting, lambda names: None)
-        self.offers = Offers(execution, adviser, corrections, doubting.impossible, StallDetector(execution))
+        corrections = Corrections(execution, adviser.answer, Beliefs(execution), doubting, lambda names: None)
+        self.offers = Offers(execution, adviser, corrections.correct, doubting.impossible, StallDetector(execution))
         self.seconds = 0.0
         self.at: Value = "home"
 

@@ -74,7 +74,7 @@ def build_controller(
     planner = PlannerQuestions(execution, outside, take_news)
     viewing = ViewBuilder(identity, execution)
     variables = Variables(execution, devices.feeds.heard_on, beliefs)
-    recovery = build_recovery(
+    around, forces, approvals, recovery = build_recovery(
         execution,
         adviser,
         beliefs,
@@ -87,16 +87,16 @@ def build_controller(
         devices.real_devices,
         lambda command, moment: bus.perform(command, moment),  # noqa: PLW0108
     )
-    plan = LivePlan(execution, consequences, recovery.around, lambda: planner.trouble, lambda: links.untold)
+    plan = LivePlan(execution, consequences, around, lambda: planner.trouble, lambda: links.untold)
     operations = Operations(execution)
     jobs = JobViews(
         execution,
         lambda: records.jobs,
         tasks,
         alarms,
-        lambda: in_control.is_held,
+        lambda: in_control.holder is not None,
         consequences.held_up,
-        recovery.around,
+        around,
     )
     modes = Modes(execution, outside, devices, links, consistency, alarms, jobs.waits, records.add_note)
     ticker.listeners += [each.after_tick for each in (variables, watching.abilities, operations, plan)]
@@ -112,7 +112,7 @@ def build_controller(
         outside,
         watching.beginning,
         consistency,
-        recovery.forces,
+        forces,
         OpenTasks(execution, tasks, modes.goes_on, consequences.waiting_for),
         ByHand(execution, station.pipelines, records.add_note),
         watching.of_model,
@@ -123,13 +123,11 @@ def build_controller(
         operations,
         tasks,
         JobHandler(execution),
-        recovery.corrections,
-        recovery.offers,
-        recovery.trials,
-        recovery.approvals,
-        recovery.why_not,
+        *recovery,
+        approvals,
         in_control,
         PipelineTraffic(station.pipelines, devices),
+        devices,
         devices.overrides,
         Figures(
             records.writer,
@@ -145,7 +143,7 @@ def build_controller(
         features,
         COMMANDS.values(),
         in_control=in_control,
-        require_one=recovery.approvals.require_one,
+        require_one=approvals.require_one,
         real_devices=devices.real_devices,
     )
     works = (
@@ -161,13 +159,12 @@ def build_controller(
             devices=devices,
             records=records,
             ticker=ticker,
-            failures=failures,
-            beginning=watching.beginning,
-            consistency=consistency,
+            attempt=failures.attempt,
             viewing=viewing,
             commands=bus,
             queries=QueryBus(features, QUERIES.values()),
             works=works,
+            begin=consistency.begin,
             close=(devices.close, planner.close, consistency.close, adviser.close),
             wake=wake,
         )

@@ -242,7 +242,7 @@ class _Life:
         await self._lasting.begin(controller, None if keeper is None else keeper.epoch)
         if running.emulated:
             unemulated = await asyncio.to_thread(emulation_findings, station)
-            controller.beginning.unemulated = tuple(map(str, unemulated))
+            controller.devices.unemulated = tuple(map(str, unemulated))
         self._living.create_task(self._take_command(station, controller, known, alone))
         async with _beside(self._show(controller)), _beside(show_network(controller.devices.network, self._link)):
             await controller.run()

@@ -7,11 +7,7 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel, ConfigDict, JsonValue, TypeAdapter, ValidationError
 
-from sequence_planner.controller.alarms.kinds import (
-    KINDS,
-    AlarmKind,
-    Cause,
-)
+from sequence_planner.controller.alarms.kinds import KINDS, AlarmKind, Cause
 from sequence_planner.controller.alarms.message import Message, as_it_was
 from sequence_planner.controller.views.station import AlarmGroup, AlarmMessages, AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp

@@ -1,16 +1,10 @@
-"""Alarms of how the controller has begun: at rest, not with all it knew, without emulated devices, not as deployed."""
+"""Alarms of how the controller has begun: at rest, not with all that it knew, not as it was deployed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from sequence_planner.controller.alarms.kinds import (
-    BEGINS_AT_REST,
-    DEPLOYMENT_UNDONE,
-    NOT_EMULATED,
-    NOT_RESTORED,
-    Cause,
-)
+from sequence_planner.controller.alarms.kinds import BEGINS_AT_REST, DEPLOYMENT_UNDONE, NOT_RESTORED, Cause
 from sequence_planner.controller.alarms.message import as_it_was, message
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.core.clock import Timestamp
@@ -26,7 +20,6 @@ class Beginning:
         self._left_out = known.left_out
         self._halted, self._begins = known.halted, execution.mode
         self._undone = known.deployment if known.deployment and known.deployment.why is not None else None
-        self.unemulated: Sequence[str] = ()  # why there are no emulated devices though there should be
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
@@ -42,6 +35,3 @@ class Beginning:
             yield NOT_RESTORED.cause("", {"first": first_lost, "more": more}, parts=parts, past_parts=parts)
         if self._undone is not None and not started:
             yield DEPLOYMENT_UNDONE.cause("", {"revision": self._undone.name, "why": self._undone.why or ""})
-        if self.unemulated:
-            parts = [*map(as_it_was, self.unemulated)]
-            yield NOT_EMULATED.cause("", {"why": self.unemulated[0]}, parts=parts, past_parts=parts)

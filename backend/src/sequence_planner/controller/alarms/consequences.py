@@ -6,13 +6,7 @@ from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.controller.alarms.kinds import (
-    LEFT_OUT,
-    NO_PLAN,
-    UNDECIDED,
-    UNSAFE_STATE,
-    Cause,
-)
+from sequence_planner.controller.alarms.kinds import LEFT_OUT, NO_PLAN, UNDECIDED, UNSAFE_STATE, Cause
 from sequence_planner.controller.alarms.message import Argument, Item, Message, message, quoted
 from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.execution.executor import Executor

@@ -7,12 +7,7 @@ from typing import Protocol, runtime_checkable
 
 from pydantic import JsonValue
 
-from sequence_planner.controller.alarms.alarm import (
-    KIND,
-    Alarm,
-    Suppression,
-    aside_to_keep,
-)
+from sequence_planner.controller.alarms.alarm import KIND, Alarm, Suppression, aside_to_keep
 from sequence_planner.controller.alarms.consequences import ConsequenceGraph
 from sequence_planner.controller.alarms.kinds import Cause
 from sequence_planner.controller.alarms.registry import AlarmRegistry, Folding

@@ -7,14 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool
 
-from sequence_planner.controller.commands.command import (
-    Command,
-    GivenValue,
-    GivenValues,
-    Revision,
-    Route,
-    Why,
-)
+from sequence_planner.controller.commands.command import Command, GivenValue, GivenValues, Revision, Route, Why
 
 MOST_STARTS = 150  # of a plan that a person confirms start by start; a body holds no more
 _REFUSALS = (404, 409, 422, 504)

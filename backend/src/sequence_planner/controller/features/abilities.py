@@ -7,15 +7,7 @@ from collections.abc import Collection, Iterator
 from sequence_planner.automaton.automaton import Ability
 from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.controller.alarms.consequences import Consequences
-from sequence_planner.controller.alarms.kinds import (
-    CONFLICT,
-    GIVEN_UP,
-    OVERDUE,
-    STILL,
-    TRIED,
-    Cause,
-    silences,
-)
+from sequence_planner.controller.alarms.kinds import CONFLICT, GIVEN_UP, OVERDUE, STILL, TRIED, Cause, silences
 from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.stalls import StallDetector

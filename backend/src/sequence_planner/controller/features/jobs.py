@@ -14,9 +14,7 @@ from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.explain import waits_for as start_waits_for
 from sequence_planner.controller.views.automaton_diagram import work_masters_view
-from sequence_planner.controller.views.details import (
-    WorkMastersView,
-)
+from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.controller.views.jobs import Around, job_views, waits_for
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor

@@ -5,15 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 
 from sequence_planner.controller.alarms.consequences import Consequences
-from sequence_planner.controller.alarms.kinds import (
-    LEFT_OUT,
-    LOCAL,
-    NO_PLAN,
-    PLANNER,
-    UNDECIDED,
-    Cause,
-    silences,
-)
+from sequence_planner.controller.alarms.kinds import LEFT_OUT, LOCAL, NO_PLAN, PLANNER, UNDECIDED, Cause, silences
 from sequence_planner.controller.alarms.message import Message, message
 from sequence_planner.controller.recovery.explain import ConditionContext, waits_for
 from sequence_planner.controller.views.station import (

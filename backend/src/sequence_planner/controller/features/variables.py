@@ -11,15 +11,7 @@ from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.controller.views.station import BeliefView, VariableKind, VariableView
 from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.execution.events import (
-    CalledOff,
-    Confirmed,
-    Corrected,
-    Heard,
-    ModeChanged,
-    Ticked,
-    TickOutcome,
-)
+from sequence_planner.execution.events import CalledOff, Confirmed, Corrected, Heard, ModeChanged, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job
 from sequence_planner.execution.state import InitialState

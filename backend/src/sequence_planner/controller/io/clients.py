@@ -26,14 +26,7 @@ from sequence_planner.pipelines.graph import (
     ServiceUse,
     StationPipelines,
 )
-from sequence_planner.ros.actions import (
-    AcceptedGoal,
-    ActionClient,
-    ActionNames,
-    GoalRejectedError,
-    GoalStatus,
-    Values,
-)
+from sequence_planner.ros.actions import AcceptedGoal, ActionClient, ActionNames, GoalRejectedError, GoalStatus, Values
 from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport, TransportError
 from sequence_planner.ros.types.errors import MalformedMessageError, MessageValueError
 from sequence_planner.ros.types.messages import MessageRegistry

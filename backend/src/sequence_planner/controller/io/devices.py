@@ -8,6 +8,8 @@ from collections.abc import Callable, Container, Iterator, Sequence
 import structlog
 
 from sequence_planner.automaton.automaton import State
+from sequence_planner.controller.alarms.kinds import NOT_EMULATED, Cause
+from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inbox, Inputs
 from sequence_planner.controller.io.network import NetworkWatch
@@ -38,6 +40,8 @@ class Devices:
         self.clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
         self.commander = Outputs(pipelines.outgoing, registry, transport)
         self.overrides = Overrides(pipelines, self.feeds, self.commander, self.clients)
+        self.unemulated: Sequence[str] = ()
+        """Why there are no emulated devices though there should be."""
         self._next_graph = 0.0
         self._awaited = frozenset(self.feeds.expected)
         transport.watch(self._hear_quality)
@@ -113,6 +117,12 @@ class Devices:
         """Return what keeps every ability from starting."""
         owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        if self.unemulated:
+            parts = [*map(as_it_was, self.unemulated)]
+            yield NOT_EMULATED.cause("", {"why": self.unemulated[0]}, parts=parts, past_parts=parts)
 
     def traffic(self, among: Container[str] | None) -> dict[str, PipelineView]:
         """Return what has passed the pipelines, or those `among` these."""

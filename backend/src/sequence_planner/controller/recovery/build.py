@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
 from sequence_planner.controller.commands.bus import Handler
@@ -22,19 +21,6 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.synthesis.guards import SupervisorGuard
 
 
-@dataclass(frozen=True)
-class Recovery:
-    """The features, and what explanations draw on."""
-
-    around: ConditionContext
-    corrections: Corrections
-    offers: Offers
-    trials: Trials
-    forces: Forces
-    approvals: Approvals
-    why_not: WhyNot
-
-
 def build_recovery(
     execution: Executor,
     adviser: AdvisorClient,
@@ -47,8 +33,11 @@ def build_recovery(
     guards: Callable[[], Mapping[str, SupervisorGuard]],
     real_devices: Callable[[], Sequence[str]],
     perform: Handler,
-) -> Recovery:
-    """Build them. `perform` carries out what two people have agreed on."""
+) -> tuple[ConditionContext, Forces, Approvals, tuple[object, ...]]:
+    """Build what explanations draw on, the features that build.py names, and all others.
+
+    `perform` carries out what two people have agreed on.
+    """
     around = ConditionContext(feeds, since, beliefs, guards)
     forces = Forces(execution)
 
@@ -59,13 +48,7 @@ def build_recovery(
             corrections.check(command)
 
     approvals = Approvals(execution, in_control, require_feasible, perform)
-    corrections = Corrections(execution, adviser, beliefs, consistency, approvals.require_one)
-    return Recovery(
-        around=around,
-        corrections=corrections,
-        offers=Offers(execution, adviser, corrections, consistency.impossible, still),
-        trials=Trials(execution, around, real_devices),
-        forces=forces,
-        approvals=approvals,
-        why_not=WhyNot(execution, around, adviser),
-    )
+    corrections = Corrections(execution, adviser.answer, beliefs, consistency, approvals.require_one)
+    offers = Offers(execution, adviser, corrections.correct, consistency.impossible, still)
+    others = (corrections, offers, Trials(execution, around, real_devices), WhyNot(execution, around, adviser))
+    return around, forces, approvals, others

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Protocol
+from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.dependencies import looked_at, read_variables
@@ -46,27 +45,54 @@ _WHY_NONE = {
 }
 
 
-class PlansOnRequest(Protocol):
-    """The planner of what people ask for, whoever that is."""
-
-    async def answer(self, request: PlanRequest, deadline: float) -> PlanAnswer:
-        """Return what is found within so many seconds. Raises `CommandRefused`."""
-        ...
+def _specification(automaton: Automaton, name: str) -> SpecificationView:
+    return SpecificationView(name=name, title=automaton.specifications[name].title)
 
 
-class Previewing:
-    """Looks at what `execution` would be like."""
+# Corrections of what is believed, and what a person decides about outputs that came back.
+#
+# A correction writes estimates and nothing else. It is shown with all that follows before it is made, is refused when
+# the state has moved since, and can be taken back in one step.
+
+
+class Corrections:
+    """Takes corrections of the estimates of `execution`; `require_one` refuses what a second person has to approve."""
 
     def __init__(
-        self, execution: Executor, adviser: PlansOnRequest, beliefs: TellsBelief, doubting: ConsistencyMonitor
+        self,
+        execution: Executor,
+        plan: Callable[[PlanRequest, float], Awaitable[PlanAnswer]],
+        beliefs: TellsBelief,
+        doubting: ConsistencyMonitor,
+        require_one: Callable[[Iterable[str]], None],
     ) -> None:
         self._execution = execution
-        self._adviser = adviser
-        self._beliefs = beliefs
+        self._require_one = require_one
         self._doubting = doubting
+        self._plan, self._beliefs = plan, beliefs
+        self._last: LastCorrectionView | None = None
+        self._stayed = False  # what was corrected is so ever since
+        self._answered_before = frozenset[str]()  # what somebody had said of these before the last correction
+        execution.listeners.append(self._hear)
 
-    async def preview(self, values: Mapping[str, Value], obstacle: str | None) -> CorrectionPreview:
-        """All of it. Without a planner it says why there is no plan, and the rest all the same."""
+    @property
+    def last(self) -> LastCorrectionView | None:
+        """The last correction; None if there was none, or it was taken back."""
+        if self._last is None:
+            return None
+        return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"last_correction": self.last}
+
+    @answers(AskCorrection)
+    async def preview(self, query: AskCorrection) -> CorrectionPreview:
+        """Return what the correction would bring about. Raises `CommandRefused`.
+
+        Without a planner it says why there is no plan, and the rest all the same.
+        """
+        refusal, values = correcting_refused(self._execution), self._estimates(query.values)
         execution, automaton, revision = self._execution, self._execution.automaton, self._execution.revision
         now, then = execution.state, execution.corrected(values)
         active = update_operations(automaton, then, execution.active) - execution.conduct.idle_operations(automaton)
@@ -89,7 +115,7 @@ class Previewing:
             goals=[],
             left_out=[],
             reason="",
-            obstacle=obstacle,
+            obstacle=None if refusal is None else refusal.detail,
         )
         goals = self._goals(active)
         if not goals:
@@ -103,7 +129,7 @@ class Previewing:
             state, goals, deadline=PLANNED_WITHIN, contract=Contract.FAST, circumstances=circumstances
         )
         try:
-            answer = await self._adviser.answer(request, PLANNED_WITHIN + WAITING)
+            answer = await self._plan(request, PLANNED_WITHIN + WAITING)
         except CommandRefused as refused:
             return {"reason": f"{refused.title}: {refused.detail}"}
         if answer.plan is None:
@@ -141,55 +167,6 @@ class Previewing:
         for measured in [each for each in automaton.names(Kind.MEASURED) if each in read][:MOST_RELATED]:
             value = state[measured]
             yield f"{measured} is unknown" if value is None else value_text(automaton, measured, value)
-
-
-def _specification(automaton: Automaton, name: str) -> SpecificationView:
-    return SpecificationView(name=name, title=automaton.specifications[name].title)
-
-
-# Corrections of what is believed, and what a person decides about outputs that came back.
-#
-# A correction writes estimates and nothing else. It is shown with all that follows before it is made, is refused when
-# the state has moved since, and can be taken back in one step.
-
-
-class Corrections:
-    """Takes corrections of the estimates of `execution`; `require_one` refuses what a second person has to approve."""
-
-    def __init__(
-        self,
-        execution: Executor,
-        adviser: PlansOnRequest,
-        beliefs: TellsBelief,
-        doubting: ConsistencyMonitor,
-        require_one: Callable[[Iterable[str]], None],
-    ) -> None:
-        self._execution = execution
-        self._require_one = require_one
-        self._doubting = doubting
-        self._previewing = Previewing(execution, adviser, beliefs, doubting)
-        self._last: LastCorrectionView | None = None
-        self._stayed = False  # what was corrected is so ever since
-        self._answered_before = frozenset[str]()  # what somebody had said of these before the last correction
-        execution.listeners.append(self._hear)
-
-    @property
-    def last(self) -> LastCorrectionView | None:
-        """The last correction; None if there was none, or it was taken back."""
-        if self._last is None:
-            return None
-        return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
-
-    def view_part(self, moment: Timestamp) -> dict[str, object]:
-        """Its part of the view."""
-        return {"last_correction": self.last}
-
-    @answers(AskCorrection)
-    async def preview(self, query: AskCorrection) -> CorrectionPreview:
-        """Return what the correction would bring about. Raises `CommandRefused`."""
-        refusal = correcting_refused(self._execution)
-        obstacle = None if refusal is None else refusal.detail
-        return await self._previewing.preview(self._estimates(query.values), obstacle)
 
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""

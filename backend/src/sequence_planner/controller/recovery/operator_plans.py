@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from sequence_planner.controller.alarms.kinds import (
-    ERRAND,
-    ERRAND_WAITS,
-    Cause,
-)
+from sequence_planner.controller.alarms.kinds import ERRAND, ERRAND_WAITS, Cause
 from sequence_planner.controller.alarms.message import Argument, message
 from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.commands.recovery import StopOperatorPlan

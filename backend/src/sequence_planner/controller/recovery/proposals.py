@@ -11,7 +11,6 @@ import itertools
 import secrets
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
-from typing import Protocol
 
 from sequence_planner.controller.commands.command import CommandRefused, answers, handles
 from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
@@ -47,14 +46,6 @@ LONGER = 5.0  # seconds for advice where in less nothing was found but what a pe
 MOST_KEPT = 64  # offers; older ones are gone
 
 
-class CorrectionDesk(Protocol):
-    """The one who makes corrections, whoever that is."""
-
-    def correct(self, command: CorrectEstimates, moment: Timestamp) -> None:
-        """Make it. Raises `CommandRefused`; nothing has changed then."""
-        ...
-
-
 @dataclass(frozen=True)
 class _Kept:
     offer: RecoveryProposal
@@ -68,7 +59,7 @@ class _Asked:
 
 
 class Offers:
-    """Asks for offers about `execution`, and carries out those that are taken.
+    """Asks for offers about `execution`, and carries out those that are taken; `correct` makes their corrections.
 
     `impossible` says which values of estimates cannot go together with which of other variables, and `still` which
     devices do nothing: what alarms tell, nobody counts on.
@@ -78,13 +69,13 @@ class Offers:
         self,
         execution: Executor,
         adviser: AdvisorClient,
-        corrections: CorrectionDesk,
+        correct: Callable[[CorrectEstimates, Timestamp], None],
         impossible: Callable[[], frozenset[Pairing]],
         still: StallDetector,
     ) -> None:
         self._execution = execution
         self._adviser = adviser
-        self._corrections = corrections
+        self._correct = correct
         self._impossible = impossible
         self._last_known = LastKnown(execution)
         self._still = still
@@ -195,7 +186,7 @@ class Offers:
             correcting = CorrectEstimates(
                 actor=command.actor, reason=command.reason, values=values, revision=kept.revision
             )
-            self._corrections.correct(correcting, moment)
+            self._correct(correcting, moment)
         if offer.errand is not None:
             execution.start_operator_plan(self._operator_plan(offer, command, moment), moment)
 

@@ -16,13 +16,7 @@ from functools import partial
 import structlog
 
 from sequence_planner.automaton.automaton import Automaton, State
-from sequence_planner.controller.views.station import (
-    AbsenceReason,
-    AbsenceView,
-    DoableView,
-    NobodyView,
-    WhoCanView,
-)
+from sequence_planner.controller.views.station import AbsenceReason, AbsenceView, DoableView, NobodyView, WhoCanView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind

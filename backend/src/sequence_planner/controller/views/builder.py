@@ -7,10 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, Protocol, runtime_checkable
 
 from sequence_planner.analysis.report import AnalysisDocument
-from sequence_planner.controller.views.station import (
-    StationIdentity,
-    StationView,
-)
+from sequence_planner.controller.views.station import StationIdentity, StationView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.synthesis.guards import SupervisorGuard
@@ -76,8 +73,9 @@ class ViewBuilder:
         """Take note of what synthesis has found beside the supervisor, to be shown."""
         self.analysis, self.guards = analysis, guards or {}
 
-    def view(self, moment: Timestamp) -> StationView:
-        """The whole document."""
+    def now(self) -> StationView:
+        """The whole document as it is now."""
+        moment = Timestamp.now()
         parts: dict[str, Any] = {}
         for feature in self._features:
             parts |= feature.view_part(moment)

@@ -22,15 +22,7 @@ from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.resolver import NameScope, resolve_predicate
-from sequence_planner.language.syntax import (
-    TRUE,
-    Comparison,
-    Constant,
-    Expression,
-    ExpressionError,
-    Not,
-    Variable,
-)
+from sequence_planner.language.syntax import TRUE, Comparison, Constant, Expression, ExpressionError, Not, Variable
 from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
