@@ -156,7 +156,7 @@ class Modes:
         """Let another model take over (which the process does, as this controller ends) where nothing is started."""
         execution = self._execution
         if execution.operator_plan is not None:
-            raise plan_running(execution.operator_plan)
+            raise plan_running(execution.operator_plan.title)
         if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
             detail = "Operations are executed automatically. Pause the station first."
             raise CommandRefused("in-automatic", "The station is at work", detail)
@@ -168,7 +168,7 @@ class Modes:
             detail = "Leave restart mode first; to go on is another decision."
             raise CommandRefused("in-restart", "The station is in restart mode", detail)
         if execution.operator_plan is not None:
-            raise plan_running(execution.operator_plan)
+            raise plan_running(execution.operator_plan.title)
         if situation is not None and situation.certain:
             detail = f"{self._outside.describe(situation)} Enter restart mode and see which ways lead back."
             raise CommandRefused("outside-safe-states", "The station is outside its safe states", detail)

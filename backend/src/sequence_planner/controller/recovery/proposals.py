@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import secrets
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.controller.commands.command import CommandRefused, answers, handles
@@ -26,7 +26,6 @@ from sequence_planner.controller.views.wording import (
     plan_running,
     read_predicate,
     refusal_of,
-    require_confirmation,
 )
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -180,7 +179,7 @@ class Offers:
             raise CommandRefused("stale-revision", "The state has moved", detail)
         if (refusal := refusal_of(offer, execution)) is not None:
             raise refusal
-        require_confirmation(offer, command)
+        _require_confirmation(offer, command)
         if offer.corrections:
             values = {change.name: change.new for change in offer.corrections}
             correcting = CorrectEstimates(
@@ -221,7 +220,7 @@ class Offers:
 
     def _require_no_operator_plan(self) -> None:
         if self._execution.operator_plan is not None:
-            raise plan_running(self._execution.operator_plan)
+            raise plan_running(self._execution.operator_plan.title)
 
     @property
     def _unused(self) -> frozenset[str]:
@@ -271,3 +270,17 @@ def _no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused
     else:
         detail = "No plan was found in the time there is; that there is none is not proven. Try again."
     return CommandRefused("no-plan", "There is no plan", detail)
+
+
+def _require_confirmation(offer: RecoveryProposal, command: ExecuteOperatorPlan) -> None:
+    """Raises `CommandRefused` unless the command repeats what the offer contains."""
+    starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
+    corrections = {change.name: change.new for change in offer.corrections}
+    if command.starts != starts or not _same(command.corrections, corrections):
+        detail = "What was confirmed is not what the offer contains. Look at the offer again, then confirm that."
+        raise CommandRefused("not-confirmed", "Something else was confirmed", detail)
+
+
+def _same(one: Mapping[str, object], other: Mapping[str, object]) -> bool:
+    """Return whether they are equal, where true is not 1."""
+    return one == other and all(type(one[name]) is type(other[name]) for name in one)

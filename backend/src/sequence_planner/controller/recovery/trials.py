@@ -161,7 +161,7 @@ class Trials:
         """Return why it cannot be tried now; None when it can."""
         execution = self._execution
         if execution.operator_plan is not None:
-            return plan_running(execution.operator_plan)
+            return plan_running(execution.operator_plan.title)
         if execution.production is not Production.STARTED:
             detail = "No command is sent before production is started. Pause, then start production, then try it."
             return CommandRefused("production-not-started", "Production waits", detail)

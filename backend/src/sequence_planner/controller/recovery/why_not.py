@@ -23,8 +23,6 @@ from sequence_planner.controller.recovery.explain import (
 )
 from sequence_planner.controller.views.details import WhyNotView
 from sequence_planner.controller.views.jobs import why_idle
-from sequence_planner.controller.views.proposals import PlanPreviewView
-from sequence_planner.controller.views.station import DiagnosisView
 from sequence_planner.controller.views.wording import diagnosis_view, plan_preview, read_predicate
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
@@ -88,7 +86,12 @@ class WhyNot:
             raise _unknown("operation", name)
         if name in execution.active:
             lacking = list(self._lacking(operation.goal))
-            return self._view("operation", name, operation.title, self._progress(operation), lacking, self._reasons())
+            view = self._view("operation", name, operation.title, self._progress(operation), lacking)
+            diagnosis = execution.plan.diagnosis
+            if diagnosis is None:
+                return view
+            reasons = diagnosis_view(diagnosis, self._unused, execution.conduct.answers)
+            return view.model_copy(update={"reasons": reasons})
         lacking = list(self._inactive(operation))
         undone = {each.expression for each in lacking}
         lacking += [each for each in self._lacking(operation.precondition) if each.expression not in undone]
@@ -130,11 +133,6 @@ class WhyNot:
         """The resources that are out of service."""
         return self._execution.conduct.out_of(ServiceKind.RESOURCE)
 
-    def _reasons(self) -> DiagnosisView | None:
-        diagnosis = self._execution.plan.diagnosis
-        answers = self._execution.conduct.answers
-        return None if diagnosis is None else diagnosis_view(diagnosis, self._unused, answers)
-
     @answers(AskGoalBlockers)
     async def goal(self, query: AskGoalBlockers) -> WhyNotView:
         """Return what is in the way of a predicate. Raises `CommandRefused` for one that cannot be read."""
@@ -160,8 +158,8 @@ class WhyNot:
             return _more(view, f"The station could reach it with {_count(len(plan.steps), 'start')}.", plan=plan)
         if aimed.proven:
             answers = execution.conduct.answers
-            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
-            return _more(view, "The station cannot reach it from here: that is proven.", reasons=reasons)
+            found = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
+            return _more(view, "The station cannot reach it from here: that is proven.", reasons=found)
         return _more(view, "No plan to it was found; that there is none is not proven.")
 
     def _lacking(self, condition: Expression) -> Iterable[BlockingCondition]:
@@ -179,7 +177,6 @@ class WhyNot:
         title: str,
         summary: str,
         found: Iterable[BlockingCondition],
-        reasons: DiagnosisView | None = None,
     ) -> WhyNotView:
         return WhyNotView(
             of=of,
@@ -189,7 +186,7 @@ class WhyNot:
             summary=summary,
             conditions=[self._involving.condition(each) for each in found],
             plan=None,
-            reasons=reasons,
+            reasons=None,
         )
 
 
@@ -197,10 +194,8 @@ def _summary(found: list[BlockingCondition]) -> str:
     return f"It waits for {found[0].text}." if len(found) == 1 else f"It waits for {len(found)} things."
 
 
-def _more(
-    view: WhyNotView, text: str, plan: PlanPreviewView | None = None, reasons: DiagnosisView | None = None
-) -> WhyNotView:
-    return view.model_copy(update={"summary": f"{view.summary} {text}", "plan": plan, "reasons": reasons})
+def _more(view: WhyNotView, text: str, **found: object) -> WhyNotView:
+    return view.model_copy(update={"summary": f"{view.summary} {text}", **found})
 
 
 def _count(number: int, what: str) -> str:
