@@ -31,6 +31,7 @@ from sequence_planner.process.parent_watch import DEPLOYED, OVERTAKEN
 from sequence_planner.startup import deployment
 from sequence_planner.startup.deployment import LONGEST_START, UnderWay
 from sequence_planner.startup.station_process import Executed, StationProcess
+from sequence_planner.texts.message import as_it_was
 from support.people import EVA
 from support.places import SINGLE_BOLT
 
@@ -247,7 +248,7 @@ def test_who_has_stood_by_for_another_begins_with_what_that_one_has_done(beside:
     last = LastDeployment(beside / "socket")
     last.tell_that_it_stands_by()
     assert DeploymentFolder(beside).runs
-    known = last.known(RestoredState(left_out=("an estimate",)))
+    known = last.known(RestoredState(left_out=(as_it_was("an estimate"),)))
     assert (known.left_out, known.control) == (("an estimate",), None)
 
 

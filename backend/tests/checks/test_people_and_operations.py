@@ -49,6 +49,24 @@ def test_a_local_specification_about_the_run(tmp_path: Path) -> None:
     assert found(device(tmp_path, operations=operations)) == []
 
 
+def test_an_alarm_that_is_always_or_never_there(tmp_path: Path) -> None:
+    alarms = """
+alarms:
+  on: {when: true}
+  part: {when: on or not on}
+  never: {when: command and not command}
+  good: {when: on}
+"""
+    assert found(station(tmp_path, {"device": DEVICE + alarms})) == [
+        "device.yaml:19:3: the alarm `device.on` is always there, since `true` always holds: write when it is to be "
+        "there [always-holds]",
+        "device.yaml:20:16: the alarm `device.part` is always there, since `device.on or not device.on` always holds: "
+        "write when it is to be there [always-holds]",
+        "device.yaml:21:17: the alarm `device.never` is never there, since `device.command and not device.command` "
+        "never holds: write when it is to be there [never-holds]",
+    ]
+
+
 def test_a_task_that_is_never_open(tmp_path: Path) -> None:
     assert found(station(tmp_path, {"person": PERSON % "false"}, station=SIDES)) == [
         f"person.yaml:5:3: the task of `person.put({side})` is never open: a task is open while its ability executes, "

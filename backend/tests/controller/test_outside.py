@@ -8,7 +8,6 @@ from functools import cache
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
-from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.recovery.safe_state import SafeStateDifference, SafeStateMonitor
 from sequence_planner.controller.views.station import AlarmState, DifferenceView, SpecificationView, WayBackView
 from sequence_planner.execution.executor import Executor
@@ -16,6 +15,7 @@ from sequence_planner.execution.vocabulary import PlanStatus
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.synthesis.supervisor import synthesise
+from sequence_planner.texts.message import message
 from support.automata import Does, automaton
 from support.cell import Arm, bench
 

@@ -10,10 +10,10 @@ from hypothesis import given
 from sequence_planner.planning.heuristic import relaxation
 from sequence_planner.planning.heuristic.relaxation import reachable, unreached
 from sequence_planner.planning.pdr.ic3 import Reachability
-from sequence_planner.planning.pdr.invariants import CertificateError, check
+from sequence_planner.planning.pdr.invariants import check
 from sequence_planner.planning.pdr.proof_clauses import asserted, is_met
 from sequence_planner.planning.portfolio.engine import PlanningTask
-from sequence_planner.planning.problem import Clause, Literal, Proof
+from sequence_planner.planning.problem import CertificateError, Clause, Literal, Proof
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
 from support.examples import examples

@@ -27,7 +27,7 @@ class Counted(BaseModel):
     [
         (3, "this has to be even, as 2 is"),
         (0, "this has to be something, as 2 is"),
-        ("x", "Input should be a valid integer, unable to parse string as an integer"),
+        ("x", "expected an integer"),
     ],
 )
 def test_what_a_validator_says_is_told_as_it_says_it(value: object, told: str) -> None:
@@ -48,4 +48,4 @@ def test_nothing_is_said_of_python() -> None:
     assert in_a_line(error.value).endswith("without half of a surrogate pair")
     with pytest.raises(ValidationError) as error:
         Named.model_validate("x", from_attributes=True)
-    assert in_a_line(error.value) == "it: Input should be an object with named members"
+    assert in_a_line(error.value) == "it: expected an object with named members"

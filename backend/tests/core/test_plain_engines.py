@@ -8,12 +8,14 @@ from typing import Any
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.planning.portfolio.engine import PlanningTask
-from sequence_planner.planning.problem import goals_of
+from sequence_planner.planning.problem import CertificateError, ConservedSum, goals_of
 from sequence_planner.planning.sat.single_bmc import SingleStarts
 from sequence_planner.planning.single.derived import without_flags
 from sequence_planner.planning.single.neighbourhood import Stepping, shortened
 from sequence_planner.planning.single.sums import Sums
+from sequence_planner.planning.validation.conservation import check_conserved
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
@@ -135,8 +137,37 @@ def test_what_sums_exclude_is_never_reached(written: dict[str, Any]) -> None:
         for each in goals:
             left = missing((each,), begin)
             task = PlanningTask(begin, left, longest=LONGEST)
-            if left and Sums(without_flags(automaton), supervisor).solve(task, Budget.seconds(60)).exhausted:
+            if left and Sums(without_flags(automaton), supervisor).solve(task, Budget.seconds(60)).proof is not None:
                 assert distance(explicit, key, left) is None
+
+
+def is_conserved(automaton: Automaton, task: PlanningTask, conserved: ConservedSum) -> bool:
+    """Whether the sum is accepted as a proof."""
+    try:
+        check_conserved(without_flags(automaton), task, conserved, lambda: None)
+    except CertificateError:
+        return False
+    return True
+
+
+@examples(300)
+@given(made_by(document_with_goals), made_by(lambda choices: [choices.number(-1, 2) for _ in range(60)]))
+def test_no_sum_is_accepted_where_a_goal_is_reached(written: dict[str, Any], drawn: list[int]) -> None:
+    """Whatever is said not to change."""
+    explicit, automaton = meant(written)
+    if automaton is None or not explicit.initial <= explicit.safe:
+        return
+    begin = explicit.valuation(key := min(explicit.initial, key=str))
+    kind, number, *rest = drawn
+    names, modulus = [*automaton.variables][: max(number, 1)], (0, 2, 3, 5)[kind + 1]
+    left = iter(rest)
+    weights = {name: {value: next(left, 0) for value in automaton.variables[name].type.domain} for name in names}
+    total = sum(weights[name][value] for name in names if (value := begin[name]) is not None)
+    for goal in goals_of(automaton, automaton.operations):
+        task = PlanningTask(begin, (goal,), longest=LONGEST)
+        if is_conserved(automaton, task, ConservedSum(weights, total, modulus)):
+            assert distance(explicit, key, (goal,)) is None
+        assert not is_conserved(automaton, task, ConservedSum(weights, total + 1, modulus))
 
 
 @pytest.mark.parametrize(
@@ -164,8 +195,16 @@ def test_sums_and_parities_that_nothing_changes(transitions: dict[str, str], nev
         }
     )
     engine = Sums(without_flags(automaton), synthesise(automaton))
-    found = [
-        engine.solve(PlanningTask(automaton.initial_valuation, (goal,)), Budget.seconds(60)).exhausted
-        for goal in goals_of(automaton, automaton.operations)
-    ]
-    assert found == [True, False]
+    tasks = [PlanningTask(automaton.initial_valuation, (goal,)) for goal in goals_of(automaton, automaton.operations)]
+    proof, none = (engine.solve(task, Budget.seconds(60)).proof for task in tasks)
+    assert none is None
+    assert proof is not None
+    assert proof.conserved is not None
+    assert is_conserved(automaton, tasks[0], proof.conserved)
+    assert not is_conserved(automaton, tasks[1], proof.conserved)
+    weights = proof.conserved.weights
+    for name, value in ((name, value) for name, each in weights.items() for value in each):
+        tampered = {**weights, name: {**weights[name], value: weights[name][value] + 1}}
+        there = proof.conserved.total + (tasks[0].state[name] == value)
+        other = ConservedSum(tampered, there, proof.conserved.modulus)
+        assert not is_conserved(automaton, tasks[0], other)

@@ -118,6 +118,16 @@ def test_an_order_of_conditions(tmp_path: Path) -> None:
             "a:\n  exclusive: [arm.move, ‹arm.move(hom)]\n",
             "there is no ability `arm.move(hom)`; did you mean `arm.move(home)`?",
         ),
+        (
+            "a:\n  order: [arm.moving, ‹arm.mov.executing]\n",
+            "unknown variable `arm.mov.executing`; did you mean `arm.move(…).executing`, as in "
+            "`arm.move(home).executing`?",
+        ),
+        (
+            "a:\n  order: [arm.moving, ‹arm.move(xyz).executing]\n",
+            "unknown variable `arm.move(xyz).executing`; did you mean `arm.move(…).executing`, as in "
+            "`arm.move(home).executing`?",
+        ),
         ("a:\n  exclusive: [arm.move, ‹not arm.move]\n", "expected the name of an ability, such as `robot.move`"),
         (
             "a:\n  exclusive: [arm.move, ‹arm.move(out)]\n",

@@ -83,7 +83,7 @@ NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the
             OPERATIONS,
             "    arm.pose == out and\n    parts[which]",
             "    arm.pose == out and\n    ‹parts[wich]",
-            "unknown variable `parts[wich]`; did you mean `parts[right]`?",
+            "unknown variable `parts[wich]`; did you mean `parts[…]`, as in `parts[left]`?",
         ),
         (
             SPECIFICATIONS,

@@ -57,6 +57,7 @@ from sequence_planner.controller.views.proposals import (
 )
 from sequence_planner.controller.views.station import BeliefView, SpecificationView
 from sequence_planner.core.distribution import Distribution
+from sequence_planner.texts.message import as_it_was
 
 WORK_MASTERS = WorkMastersView(
     work_masters={
@@ -76,6 +77,7 @@ OFFER = OfferView(
     revision=7,
     kind="combined",
     title="Correct bolts[bolt_pair_1] to placed, then start Move",
+    title_message=as_it_was("Correct bolts[bolt_pair_1] to placed, then start Move", "offer."),
     physical=[],
     online=[],
     in_service=[],
@@ -109,9 +111,18 @@ POSE = InvolvedView(
     since=999.5,
     topic="/robot/state",
     unconfirmed_since=None,
-    changers=[ChangerView(how="message", name="/robot/state", title="a message on /robot/state", running=False)],
+    changers=[
+        ChangerView(
+            how="message", name="/robot/state", title="a message on /robot/state", title_message=None, running=False
+        )
+    ],
 )
-CONDITION = ConditionView(kind="written", text="a message on /robot/state", involved=[POSE])
+CONDITION = ConditionView(
+    kind="written",
+    text="a message on /robot/state",
+    text_message=as_it_was("a message on /robot/state"),
+    involved=[POSE],
+)
 
 
 CORRECTION = CorrectionPreview(
@@ -134,10 +145,12 @@ CORRECTION = CorrectionPreview(
     completed=[],
     contradictions_gone=[],
     contradictions_new=[],
+    contradiction_messages=[],
     plan=PLAN,
     goals=["tighten"],
     left_out=[],
     reason="",
+    reason_message=None,
     obstacle="Enter restart mode first.",
 )
 
@@ -251,6 +264,7 @@ def _blockers(of: str, name: str) -> WhyNotView:
         title="Move",
         revision=7,
         summary="It waits for a message on /robot/state.",
+        summary_message=as_it_was("It waits for a message on /robot/state.", "blocked.", "waits."),
         conditions=[CONDITION],
         plan=PLAN if of == "goal" else None,
         reasons=None,

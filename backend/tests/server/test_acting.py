@@ -114,7 +114,7 @@ def test_a_revision_is_a_whole_number(client: httpx.Client, revision: object) ->
 
 def test_what_was_expected_is_named(client: httpx.Client) -> None:
     found = problem(client.put("/api/v1/mode", json={"mode": "fast"}), 422, "invalid-request")
-    assert "'automatic', 'paused' or 'hold'" in found["errors"][0]["expected"]
+    assert "`automatic`, `paused` or `hold`" in found["errors"][0]["expected"]
 
 
 @pytest.mark.parametrize("body", [b"", b"{", b"nonsense", b'{"mode": "paused"', b"[" * 20_000, b'{"mode": "\xff"}'])

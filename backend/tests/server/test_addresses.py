@@ -65,6 +65,26 @@ def test_no_route_fails_for_what_stands_in_its_address(tmp_path: Path) -> None:
                     problem(answer, 404, "not-found")
 
 
+def test_what_is_wrong_with_a_body_is_told_in_words_of_the_interface(tmp_path: Path) -> None:
+    with station(tmp_path, with_model=True) as (server, _), server.client(Role.ADMINISTRATOR) as client:
+        document, told = documented(server), dict[str, str]()
+        for path, verbs in document["paths"].items():
+            for verb, operation in verbs.items():
+                body = body_of(operation, document)
+                if not isinstance(body, dict) or not body:
+                    continue
+                address = re.sub(r"\{\w+\}", "x", path).replace("{of}", "resource")
+                first = next(iter(body))
+                for wrong in ({**body, f"{first}x": 1}, {**body, first: [[3]]}, {first: body[first]}, 7):
+                    answer = client.request(verb, address, json=wrong)
+                    if answer.status_code == 422 and answer.json()["type"] == "/problems/invalid-request":
+                        told |= {each["expected"]: f"{path} {each}" for each in answer.json()["errors"]}
+        assert {"this is missing", "expected a text", "expected an object with named members"} <= told.keys()
+        assert any(each.startswith("this is not known here; did you mean `") for each in told)
+        pydantic = ("Input should", "Extra inputs", "Field required", "valid", "permitted")
+        assert not [where for each, where in told.items() if any(word in each for word in pydantic)]
+
+
 def body_of(operation: dict[str, Any], document: dict[str, Any]) -> object:
     """A body that the operation takes, so that what is refused is refused for its address."""
     content = operation.get("requestBody", {}).get("content", {})
@@ -75,6 +95,8 @@ def smallest(schema: dict[str, Any], document: dict[str, Any]) -> Any:  # noqa: 
     """A value that fits a schema of the document, with little more than what has to be there."""
     if "$ref" in schema:
         return smallest(document["components"]["schemas"][schema["$ref"].rpartition("/")[2]], document)
+    if not schema:
+        return None  # anything does
     if "const" in schema:
         return schema["const"]
     if "enum" in schema:

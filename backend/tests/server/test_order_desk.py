@@ -69,6 +69,7 @@ def job(state: JobState) -> JobView:
         begun=1.0,
         ended=None,
         waits_for=[],
+        waits_for_messages=[],
         steps={},
     )
 

@@ -51,6 +51,7 @@ def job(title: str, state: JobStepState, started: float | None) -> JobView:
         begun=1.0,
         ended=None,
         waits_for=[],
+        waits_for_messages=[],
         steps={f"work {title}": step},
     )
 

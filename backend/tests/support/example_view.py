@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.commands.approvals import CorrectionAct
 from sequence_planner.controller.views.station import (
     AbilityView,
@@ -37,6 +36,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.planning.problem import Contract
+from sequence_planner.texts.message import as_it_was
 
 
 def ability(resource: str, title: str) -> AbilityView:
@@ -66,6 +66,7 @@ def step(name: str, resource: str, status: StepStatus, tick: int) -> PlanStepVie
         expected_end=None,
         new=False,
         waits_for=[],
+        waits_for_messages=[],
     )
 
 
@@ -92,7 +93,11 @@ def example_view(**changes: object) -> StationView:
         unconfirmed=False,
         undecided={
             "robot.target_pose": UndecidedOutputView(
-                value="home", reacts=["robot reacts: robot.moving"], quiet=["above"], unsafe=["at_bolt"]
+                value="home",
+                reacts=["robot reacts: robot.moving"],
+                reacts_messages=[as_it_was("robot reacts: robot.moving", "reacts.")],
+                quiet=["above"],
+                unsafe=["at_bolt"],
             )
         },
         resources={
@@ -150,12 +155,14 @@ def example_view(**changes: object) -> StationView:
                 begun=981.0,
                 ended=None,
                 waits_for=[],
+                waits_for_messages=[],
                 steps={"tighten": JobStepView(state=JobStepState.ACTIVE, waits_for=[], started=990.0, ended=None)},
             )
         },
         plan=PlanView(
             status=PlanStatus.FOLLOWED,
-            reason="tighten became active",
+            reason="planned for tighten",
+            reason_message=as_it_was("planned for tighten", "plan."),
             steps=[
                 step("place", "operator", StepStatus.RUNNING, 0),
                 step("move", "robot", StepStatus.NEXT, 2),
@@ -214,6 +221,7 @@ def example_view(**changes: object) -> StationView:
                 fresh=True,
                 peers=1,
                 trouble=None,
+                trouble_message=None,
             )
         },
         overrides={

@@ -161,6 +161,7 @@ class AlarmDeclaration(Immutable):
     consequence: Mapping[str, str]
     action: Mapping[str, str]
     delay: float
+    place: Place
 
 
 class Automaton(Immutable):

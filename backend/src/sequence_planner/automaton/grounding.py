@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from graphlib import CycleError, TopologicalSorter
@@ -27,6 +28,7 @@ from sequence_planner.automaton.automaton import (
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.dependencies import ordered_flags
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, without_arguments
+from sequence_planner.core.immutable import replace
 from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
@@ -208,6 +210,7 @@ def check_predicates(meaning: Meaning) -> None:
 
 # Ground abilities with their effects.
 
+_WORD = re.compile(r"\w+")
 _COMMANDS = (Kind.OUTPUT, Kind.ESTIMATED)
 START = Writing("a start", _COMMANDS)
 FINISH = Writing("a finish", _COMMANDS)
@@ -228,28 +231,73 @@ class GroundAbility(NamedTuple):
     activities: tuple[str, ...]
 
 
+class _Names(NamedTuple):
+    """What is declared: the types of all that can be read, variables, those that are wrong, and all else."""
+
+    types: Mapping[str, object]
+    variables: Mapping[str, object]
+    broken: frozenset[str]
+    others: object
+
+
 class GroundBefore:
     """The meaning that the abilities of one station had when they were ground before.
 
-    An ability means the same for as long as its document is the same object and what is declared is the same.
+    An ability means the same for as long as its document is the same object and what is declared is the same, but for
+    names that are not in it.
     """
 
     def __init__(self) -> None:
-        self._declared: object = None
+        self._declared: tuple[object, ...] | None = None
+        self._names: _Names | None = None
         self._known: dict[tuple[str, str], tuple[SourceText, AbilityDocument, list[GroundAbility]]] = {}
+        self._words: dict[tuple[str, str], tuple[AbilityDocument, frozenset[str]]] = {}
         self._used: set[tuple[str, str]] = set()
 
     def begin(self, declarations: Declarations) -> None:
         """The station is ground with these names now."""
         declared = declarations.all()
         if declared != self._declared:
-            self._known = {}
+            words = self._changed_words(declarations)
+            self._known = {key: known for key, known in self._known.items() if self._is_unaffected(key, known, words)}
         self._declared = declared
         self._used = set()
+
+    def _changed_words(self, declarations: Declarations) -> set[str] | None:
+        """The last words of the names of variables that are others than before; None where more is."""
+        before, self._names = self._names, _Names(
+            declarations.types,
+            dict(declarations.variables),
+            frozenset(declarations.broken),
+            (dict(declarations.enumerations), declarations.vocabulary.declared()),
+        )  # fmt: skip
+        now = self._names
+        if before is None or before.others != now.others:
+            return None
+        changed = before.broken ^ now.broken
+        for old, new in ((before.types, now.types), (before.variables, now.variables)):
+            changed |= {name for name in old.keys() | new.keys() if old.get(name) != new.get(name)}
+        words = {without_arguments(name).rpartition(".")[2] for name in changed}
+        return None if words & _words_in(declarations.vocabulary.predicates) else words
+
+    def _is_unaffected(
+        self,
+        key: tuple[str, str],
+        known: tuple[SourceText, AbilityDocument, list[GroundAbility]],
+        words: set[str] | None,
+    ) -> bool:
+        """Return whether nothing is wrong with an ability, which would name others, and none of these words in it."""
+        _, document, ground = known
+        if words is None or any(each.findings for each in ground):
+            return False
+        if (found := self._words.get(key)) is None or found[0] is not document:
+            found = self._words[key] = document, frozenset(_words_in(document))
+        return found[1].isdisjoint(words)
 
     def end(self) -> None:
         """All abilities were asked for."""
         self._known = {key: known for key, known in self._known.items() if key in self._used}
+        self._words = {key: words for key, words in self._words.items() if key in self._used}
 
     def ground(
         self, resource: str, name: SourceText, document: AbilityDocument, ground: Callable[[], list[GroundAbility]]
@@ -261,6 +309,11 @@ class GroundBefore:
         if known is None or known[0] is not name or known[1] is not document:
             known = self._known[key] = name, document, ground()
         return known[2]
+
+
+def _words_in(written: object) -> set[str]:
+    """All words in texts of a document, or of what was made of one."""
+    return set(_WORD.findall(repr(written)))
 
 
 def ground_abilities(
@@ -610,6 +663,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
                 _by_language(document.consequence),
                 _by_language(document.action),
                 document.delay,
+                document.when.place if isinstance(document.when, SourceText) else name.place,
             )
     return found
 
@@ -617,7 +671,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
 def alarm_condition(meaning: Meaning, text: Predicate, scope: NameScope) -> Expression:
     """The condition of an alarm. What it read of an operation would become a variable, and no alarm makes any."""
     apart = Meaning(meaning.declarations, meaning.findings)
-    when = apart.predicate(text, scope)
+    when = apart.predicate(text, replace(scope, unsuggested=f"{OPERATION}."))
     if isinstance(text, SourceText):
         for seen in occurrences(when):
             if seen.name in apart.activities:

@@ -28,6 +28,7 @@ from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Value, contains
+from sequence_planner.texts.message import Message, message
 
 # What is known of a station from before the controller was started.
 
@@ -45,7 +46,7 @@ class RestoredState:
     beginning: InitialState | None = None
     aside: Mapping[str, PutAside] = field(default_factory=dict)
     beliefs: Mapping[str, BeliefView] = field(default_factory=dict)
-    left_out: tuple[str, ...] = ()
+    left_out: tuple[Message, ...] = ()
     produced: bool = False
     control: ControlView | None = None
     deployment: DeploymentView | None = None
@@ -65,7 +66,7 @@ def restored_jobs(
     by_order: bool,
     documents: Mapping[str, JsonValue],
     waits: JsonValue,
-    left_out: list[str],
+    left_out: list[Message],
     now: Timestamp,
 ) -> Jobs:
     """The jobs of `documents`, by their ids in the order in which they were taken; `left_out` hears what does not fit.
@@ -78,10 +79,10 @@ def restored_jobs(
         try:
             job: Job = codec.decode(Job, document)
         except UnreadableError as error:
-            left_out.append(f"job {name} cannot be read: {error}")
+            left_out.append(message("restored.job-unread", job=name, error=str(error)))
             job = Job(name, name, "", now, JobState.ABORTED, ended=now)
         if job.under_way and (trouble := _trouble(automaton, jobs, job)):
-            left_out.append(f"job {name} was under way and is aborted: {trouble}")
+            left_out.append(message("restored.job-aborted", job=name, trouble=trouble))
             job = replace(job, state=JobState.ABORTED, ended=now)
         jobs = jobs.taking(_fitting(automaton, job, left_out) if job.under_way else job)
     return replace(jobs, waits=_waits(automaton, jobs, codec.decode(Waits, waits)))
@@ -91,18 +92,18 @@ def _trouble(automaton: Automaton, before: Jobs, job: Job) -> str:
     """Say why a job cannot go on; empty where it can."""
     master = automaton.work_masters.get(job.work_master)
     if master is None:
-        return f"its work master {job.work_master} is not there any more"
+        return message("restored.no-master", name=job.work_master)
     shared = sorted(name for name in master.operations if before.having(name, automaton) is not None)
-    return f"another job has {', '.join(shared)} too by now" if shared else ""
+    return message("restored.job-shared", operations=", ".join(shared)) if shared else ""
 
 
-def _fitting(automaton: Automaton, job: Job, left_out: list[str]) -> Job:
+def _fitting(automaton: Automaton, job: Job, left_out: list[Message]) -> Job:
     """The job, without the operations that its work master has no more."""
     known = automaton.work_masters[job.work_master].operations.keys()
     gone = (job.started.keys() | job.completed.keys() | (job.finishing or frozenset())) - known
     if not gone:
         return job
-    left_out.append(f"job {job.id} had {', '.join(sorted(gone))}, and its work master has not any more")
+    left_out.append(message("restored.job-operations", job=job.id, operations=", ".join(sorted(gone))))
     return replace(
         job,
         finishing=None if job.finishing is None else job.finishing - gone,
@@ -132,7 +133,7 @@ class Restored:
     """The beginning of an execution. `left_out` says what came back and does not fit the model any more."""
 
     beginning: InitialState
-    left_out: tuple[str, ...]
+    left_out: tuple[Message, ...]
 
 
 def beginning(connection: Connection, automaton: Automaton, now: Timestamp) -> Restored | None:
@@ -148,7 +149,7 @@ def beginning(connection: Connection, automaton: Automaton, now: Timestamp) -> R
         found = known.restored(automaton, now)
     if not changed:
         return found
-    text = f"record {changed[0]} of what happened is missing, or is not as it was written: verify the journal"
+    text = message("restored.record", number=changed[0])
     return replace_fields(found, left_out=(text, *found.left_out))
 
 
@@ -227,7 +228,7 @@ class _Known:
         return Mode(self._found["mode"])
 
     def restored(self, automaton: Automaton, now: Timestamp) -> Restored:
-        left_out: list[str] = []
+        left_out: list[Message] = []
         beginning = InitialState(
             self._values(automaton, left_out),
             self._found["unconfirmed_since"] if self._unconfirmed else self._last,
@@ -242,7 +243,7 @@ class _Known:
         )
         return Restored(beginning, tuple(left_out))
 
-    def _restored_jobs(self, automaton: Automaton, left_out: list[str], now: Timestamp) -> Jobs:
+    def _restored_jobs(self, automaton: Automaton, left_out: list[Message], now: Timestamp) -> Jobs:
         by_order, waits = bool(self._found.get("by_order", False)), self._found.get("waits", [])
         return restored_jobs(automaton, by_order, self._jobs, waits, left_out, now)
 
@@ -253,19 +254,20 @@ class _Known:
         fitting = {name: value for name, value in said.items() if contains(automaton.variables[name].type, value)}
         return {name: value for name, value in fitting.items() if values.get(name) == value}
 
-    def _values(self, automaton: Automaton, left_out: list[str]) -> dict[str, Value]:
+    def _values(self, automaton: Automaton, left_out: list[Message]) -> dict[str, Value]:
         fitting: dict[str, Value] = {}
         for name, value in self._found["values"].items():
             variable = automaton.variables.get(name)
             if variable is None or variable.kind not in (Kind.ESTIMATED, Kind.OUTPUT):
-                left_out.append(f"{name} was {print_value(value)}, and is no estimate and no output any more")
+                left_out.append(message("restored.no-variable", name=name, value=print_value(value)))
             elif not contains(variable.type, value):
-                left_out.append(f"{name} was {print_value(value)}, and ranges over {variable.type} now")
+                ranges = str(variable.type)
+                left_out.append(message("restored.range", name=name, value=print_value(value), range=ranges))
             else:
                 fitting[name] = value
         return fitting
 
-    def _service(self, automaton: Automaton, left_out: list[str]) -> tuple[OutOfService, ...]:
+    def _service(self, automaton: Automaton, left_out: list[Message]) -> tuple[OutOfService, ...]:
         parts = {
             ServiceKind.RESOURCE: automaton.resources,
             ServiceKind.ABILITY: automaton.abilities,
@@ -276,18 +278,16 @@ class _Known:
             try:
                 each: OutOfService = Codec(automaton).decode(OutOfService, document)
             except UnreadableError as error:
-                left_out.append(f"something was out of service, which cannot be read: {error}")
+                left_out.append(message("restored.service-unread", error=str(error)))
                 continue
             if each.name in parts[each.of]:
                 fitting.append(each)
             else:
-                left_out.append(f"{each.of} {each.name} was out of service, and is not there any more")
+                left_out.append(message(f"restored.no-{each.of}", name=each.name))
         return tuple(fitting)
 
-    def _done(self, automaton: Automaton, left_out: list[str]) -> frozenset[str]:
+    def _done(self, automaton: Automaton, left_out: list[Message]) -> frozenset[str]:
         done = frozenset(self._found["done"])
         once = {name for name, each in automaton.operations.items() if not each.repeat}
-        left_out += [
-            f"operation {name} was completed, and is none that does not repeat" for name in sorted(done - once)
-        ]
+        left_out += [message("restored.repeats", name=name) for name in sorted(done - once)]
         return done & once

@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any, Protocol, TypeVar
+from typing import Annotated, Protocol, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -21,6 +21,7 @@ from sequence_planner.editor.schemas.check import CheckState, CheckView, waiting
 from sequence_planner.model.files import Files
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
+from sequence_planner.model.validation import members
 from sequence_planner.process.memory_limit import memory_limit
 from sequence_planner.process.task import NO_ANSWER, BackgroundTask, WorkerError
 from sequence_planner.process.worker import FOLDER, Worker, WorkerLateError
@@ -33,17 +34,20 @@ Asked = TypeVar("Asked", bound=BaseModel)
 
 
 class BodyError(Exception):
-    """A body that is not as expected; `errors` are those of a `ValidationError`, with `body` before each place."""
+    """A body that is not as expected: the places where it is `wrong`, as in `body.change`, each with what is wrong
+    there; or else why it is `not_json`.
+    """
 
-    def __init__(self, errors: list[dict[str, Any]]) -> None:
-        super().__init__(errors)
-        self.errors = errors
+    def __init__(self, wrong: list[tuple[str, str]], not_json: str = "") -> None:
+        super().__init__(wrong, not_json)
+        self.wrong = wrong
+        self.not_json = not_json
 
 
 def read_body(model: type[Asked], body: bytes) -> Asked:
     """Return what a body asks for. Raises `BodyError`."""
     if not body:
-        raise BodyError([{"type": "missing", "loc": ("body",), "msg": "Field required"}])
+        raise BodyError([("body", "this is missing")])
     try:
         content = json.loads(body)
     except json.JSONDecodeError as error:
@@ -55,14 +59,12 @@ def read_body(model: type[Asked], body: bytes) -> Asked:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)
-        raise BodyError([{**each, "loc": ("body", *each["loc"])} for each in found]) from None
+        found = error.errors(include_url=False, include_input=False)
+        raise BodyError(members(({**each, "loc": ("body", *each["loc"])} for each in found), model)) from None
 
 
 def _not_json(why: str, position: int) -> BodyError:
-    return BodyError(
-        [{"type": "json_invalid", "loc": ("body", position), "msg": "JSON decode error", "ctx": {"error": why}}]
-    )
+    return BodyError([], f"{why} at character {position}")
 
 
 # What is found of whole models, each time by a process of its own.

@@ -62,6 +62,7 @@ from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis
 from sequence_planner.planning.problem import Circumstances, Contract, PlanAnswer, PlanRequest
 from sequence_planner.planning.validation.lookahead import Lookahead
+from sequence_planner.texts.message import message
 
 # A station's course from tick to tick: its state, how it is to execute, its plan, and the tick that leads on.
 #
@@ -199,7 +200,7 @@ class ExecutorBase:
         if brought := lacking(master, self.state):
             found = [*kept_back(self.conduct), *found]
             if not found and not self._is_safe_with(brought):
-                found = ["a state that stays safe with what the product brings"]
+                found = [message("waits.product-safe")]
         return tuple(found)
 
     def may_go_on(self, name: str) -> bool:
@@ -395,18 +396,18 @@ class ExecutorBase:
         elif self.operator_plan is not None and self.operator_plan.ability is not None:
             self._check_trial(self.operator_plan.ability, now)
         elif self.operator_plan is not None and not self.blind and not self.plan.still_leads(self._present):
-            self._end_operator_plan("the station departed from it, so that it no longer led to its goal", now)
+            self._end_operator_plan(message("ended.departed"), now)
 
     def _check_trial(self, ability: str, now: Timestamp) -> None:
         """A trial starts in the first tick after it was taken, and is over when its run is, or when that is overdue."""
         title, order = self.automaton.abilities[ability].title, self.plan.order
         if order.ahead:
-            self._end_operator_plan(f"{title} could not start any more", now)
+            self._end_operator_plan(message("ended.not-startable", ability=title), now)
         elif all(step.ability != ability for step in order.running):
             self._end_operator_plan("", now, done=True)
         elif (what := self._trial_overdue(now)) is not None:
             self._break_off(ability, now)
-            self._end_operator_plan(f"{title} {what}", now)
+            self._end_operator_plan(message("ended.late", ability=title, late=what.message()), now)
 
     def _trial_overdue(self, now: Timestamp) -> Late | None:
         """Say what has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
@@ -513,7 +514,7 @@ class ExecutorBase:
                 operator_plan=None,
                 last_operator_plan=LastOperatorPlan(operator_plan.title, done, why, now, by, operator_plan.ability),
             )
-            self.plan.drop("what was taken is done" if done else f"what was taken has ended: {why}")
+            self.plan.drop(message("plan.taken-done") if done else message("plan.taken-ended", why=why))
 
 
 # A running station: its course, and all that can happen to it.
@@ -568,19 +569,19 @@ class Executor(ExecutorBase):
     def change_mode(self, mode: Mode, by: str, now: Timestamp) -> None:
         """Another mode. An operator plan ends with it, and holding calls off what runs."""
         before = self.state
-        self._end_operator_plan(f"{by} chose {mode}", now, by=by)
+        self._end_operator_plan(message("ended.mode", by=by, mode=message(f"mode.{mode}")), now, by=by)
         if mode is Mode.HOLD:
             self._call_off(now)
         restarts = Mode.RESTART in (mode, self.mode)
         self._change(mode=mode, steps=0)  # a step is for what can be seen now
         if restarts:
-            self.plan.drop("operations wait in restart mode" if mode is Mode.RESTART else "restart mode was left")
+            self.plan.drop(message("plan.in-restart" if mode is Mode.RESTART else "plan.restart-left"))
         self._emit(ModeChanged(mode, by, now), before)
 
     def call_off(self, by: str, now: Timestamp) -> None:
         """Call off what runs, and the operator plan; the mode stays."""
         before = self.state
-        self._end_operator_plan(f"{by} chose to hold", now, by=by)
+        self._end_operator_plan(message("ended.hold", by=by), now, by=by)
         self._change(steps=0)
         self._call_off(now)
         self._emit(CalledOff(by, now), before)
@@ -651,7 +652,7 @@ class Executor(ExecutorBase):
 
     def start_operator_plan(self, operator_plan: OperatorPlan, now: Timestamp) -> None:
         """Carry out a plan that a person has taken."""
-        self._end_operator_plan("another was taken", now, by=operator_plan.by)
+        self._end_operator_plan(message("ended.another"), now, by=operator_plan.by)
         self._change(operator_plan=operator_plan)
         self.plan.follow(
             operator_plan.plan,
@@ -665,7 +666,7 @@ class Executor(ExecutorBase):
         before, operator_plan = self.state, self.operator_plan
         if operator_plan is not None and operator_plan.ability is not None:
             self._break_off(operator_plan.ability, now)
-        self._end_operator_plan(f"{by} stopped it", now, by=by)
+        self._end_operator_plan(message("ended.stopped", by=by), now, by=by)
         self._emit(OperatorPlanStopped(by, now), before)
 
     # Its jobs. They advance with the next tick.

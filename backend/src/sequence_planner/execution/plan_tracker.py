@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.compiled_tick import CompiledRun
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.core.numerals import counted
 from sequence_planner.execution.state import ActiveGoals
 from sequence_planner.execution.vocabulary import PlanStatus
 from sequence_planner.language.printer import print_expression
@@ -27,6 +26,7 @@ from sequence_planner.planning.problem import (
     Verdict,
 )
 from sequence_planner.planning.validation.lookahead import Lookahead
+from sequence_planner.texts.message import message
 
 # Why there is a plan, or none: sentences for the people at the station.
 
@@ -37,36 +37,34 @@ def why_new(
     """Say why a new plan is followed; `status` is that of the one before, which `requested` had been asked for."""
     new = wanted - requested
     if status is PlanStatus.BROKEN:
-        return "re-planned: the station departed from the plan, which no longer reached its goals"
+        return message("plan.departed")
     if replacing and new:
-        return f"re-planned: {_titles(automaton, new)} became active"
+        return message("plan.became-active", operations=_titles(automaton, new))
     if replacing:
-        return "re-planned: a better way was found"
-    return f"planned for {_titles(automaton, wanted)}"
+        return message("plan.better")
+    return message("plan.made", operations=_titles(automaton, wanted))
 
 
 def why_none(answer: PlanAnswer, blind: bool) -> str:
     """Say why there is no plan. `blind`: there were measured values that nobody knew."""
     if answer.verdict is Verdict.NONE_AT_ALL:
-        unknown = " while measured values are unknown" if blind else ""
-        return f"no plan at all{unknown}, proven: nothing the station can do from here reaches any of the goals"
+        return message("plan.none-at-all-blind" if blind else "plan.none-at-all")
     if blind:
-        return "no plan while measured values are unknown"
-    none = f"no plan of up to {counted(answer.searched, 'tick')}"
-    if answer.verdict is Verdict.LATE:
-        known = f"{none}, and longer ones" if answer.searched > 0 else "a plan"
-        return f"no answer in time: {known} may exist"
-    return f"{none}: there may be a longer one"
+        return message("plan.none-blind")
+    if answer.verdict is Verdict.LATE and answer.searched <= 0:
+        return message("plan.late-unknown")
+    late = answer.verdict is Verdict.LATE
+    return message("plan.late" if late else "plan.none-up-to", ticks=answer.searched)
 
 
 def why_violated(automaton: Automaton, names: Iterable[str]) -> str:
     """That none of the operations can be planned, since their formulas were violated."""
-    return f"no plan: {'; '.join(violation(automaton, name) for name in sorted(names))}"
+    return message("plan.violated", violations="; ".join(violation(automaton, name) for name in sorted(names)))
 
 
 def violation(automaton: Automaton, name: str) -> str:
     """That the formula of an operation was violated."""
-    return f"`{formula_of(automaton, name)}` of {automaton.operations[name].title} was violated"
+    return message("plan.violation", formula=formula_of(automaton, name), operation=automaton.operations[name].title)
 
 
 def formula_of(automaton: Automaton, name: str) -> str:
@@ -256,7 +254,7 @@ class PlanTracker:
         # That there was no plan stays so until an answer says otherwise, unless only knowledge was missing.
         if self.status is PlanStatus.IDLE or (self.status is PlanStatus.NONE and self._none_while_blind):
             self.status = PlanStatus.PLANNING
-            self.reason = "a plan is being looked for"
+            self.reason = message("plan.looking")
         return _request(present, wanted, deadline, Contract.FAST)
 
     def better(self, present: ExecutionSnapshot, deadline: float) -> PlanRequest | None:
@@ -281,7 +279,7 @@ class PlanTracker:
             self._asked = self._asked_better = None
         if self.status is PlanStatus.PLANNING:
             self.status = PlanStatus.NONE
-            self.reason = f"no plan: {why}"
+            self.reason = message("plan.unanswered", why=why)
             self._none_while_blind = False
             self._undecided = True
 
@@ -444,11 +442,11 @@ class PlanTracker:
     def update(self, present: ExecutionSnapshot, active: frozenset[str]) -> None:
         """Notice that the plan is done with, or that the state has departed from it."""
         if not active:
-            self.status, self.reason = PlanStatus.IDLE, "no operation is active"
+            self.status, self.reason = PlanStatus.IDLE, message("plan.none-active")
             self._none = self.diagnosis = None
             self.order.adopt(None, (), ())
         elif not present.pursued.goals:
-            self.reason = "production has not been started"
+            self.reason = message("plan.not-started")
         elif not present.pursued.hopeful:
             self.status, self.reason = PlanStatus.NONE, why_violated(self._automaton, active)
             self._none_while_blind = False

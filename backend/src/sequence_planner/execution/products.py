@@ -11,6 +11,7 @@ from sequence_planner.execution.state import ExecutionState
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.syntax import Constant
 from sequence_planner.language.types import Value
+from sequence_planner.texts.message import message
 
 
 def lacking(master: WorkMaster, state: State) -> dict[str, Value]:
@@ -26,11 +27,11 @@ def lacking(master: WorkMaster, state: State) -> dict[str, Value]:
 def kept_back(conduct: ExecutionState) -> Iterator[str]:
     """Yield what has to be otherwise before values may be brought that are not so yet, in words."""
     if conduct.production is not Production.STARTED:
-        yield "production to be started"
+        yield message("waits.production")
     if conduct.mode is not Mode.AUTOMATIC:
-        yield "automatic mode"
+        yield message("waits.automatic")
     if conduct.operator_plan is not None:
-        yield f"the end of what is carried out: {conduct.operator_plan.title}"
+        yield message("waits.end", title=conduct.operator_plan.title)
 
 
 def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[str]) -> Iterator[str]:
@@ -41,7 +42,7 @@ def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[st
     for name in sorted(running):
         ability = automaton.abilities[name]
         if written := sorted(_written(ability) & brought):
-            yield f"the end of {ability.title} ({name}), which decides on {', '.join(written)}"
+            yield message("waits.end-of", title=ability.title, name=name, variables=", ".join(written))
 
 
 def _written(ability: Ability) -> frozenset[str]:

@@ -61,11 +61,11 @@ class OperatorPlan(Immutable):
     into_safe: bool = False
 
     @classmethod
-    def trial(cls, ability: Ability, by: str, why: str, taken: Timestamp) -> OperatorPlan:
+    def trial(cls, ability: Ability, title: str, by: str, why: str, taken: Timestamp) -> OperatorPlan:
         """A run of one ability alone."""
         return cls(
             kind=OperatorPlanKind.TRIAL,
-            title=f"Try: {ability.title}",
+            title=title,
             plan=Plan((PlanTick((), (ability.name,)), PlanTick((), ())), minimal_ticks=False, minimal_starts=True),
             goal=TRUE if ability.finish_guard is None else ability.finish_guard,
             by=by,

@@ -12,6 +12,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.plan_tracker import PlanCursor, PlannedStart
 from sequence_planner.execution.state import ExecutionState, OutOfService
 from sequence_planner.execution.vocabulary import ServiceKind
+from sequence_planner.texts.message import Message, message
 
 # Calling running abilities off, by the `cancel` actions that they declare.
 
@@ -46,9 +47,9 @@ class Late:
     begun: bool
     within: float
 
-    def __str__(self) -> str:
+    def message(self) -> Message:
         """Say it, as in `has not begun within 2 s`."""
-        return f"has not {'finished' if self.begun else 'begun'} within {self.within:g} s"
+        return message("late.finished" if self.begun else "late.begun", seconds=self.within)
 
 
 def overdue(step: PlannedStart, ability: Ability, monotonic: float) -> Late | None:
@@ -75,7 +76,7 @@ def to_call_off(automaton: Automaton, order: PlanCursor, now: Timestamp) -> dict
     for step in order.running:
         ability = automaton.abilities[step.ability]
         if ability.timeouts.replan and (what := overdue(step, ability, now.monotonic)) is not None:
-            late[step.ability] = str(what)
+            late[step.ability] = what.message()
     return late
 
 
@@ -85,13 +86,10 @@ def after_another_try(
     """The conduct once these abilities were tried in vain once more, and those that are given up with it."""
     tried = {name: conduct.tried.get(name, 0) + 1 for name in late}
     given_up = tuple(name for name, times in tried.items() if times > automaton.abilities[name].timeouts.retries)
-    gone = [
-        OutOfService(ServiceKind.ABILITY, name, now, None, f"{late[name]}, tried {_times(tried[name])}")
-        for name in given_up
-    ]
+    gone = [OutOfService(ServiceKind.ABILITY, name, now, None, _tried(late[name], tried[name])) for name in given_up]
     left = {name: times for name, times in {**conduct.tried, **tried}.items() if name not in given_up}
     return replace(conduct.without_service(gone), tried=left), given_up
 
 
-def _times(number: int) -> str:
-    return "once" if number == 1 else f"{number} times"
+def _tried(late: str, times: int) -> Message:
+    return message("late.tried-once", late=late) if times == 1 else message("late.tried", late=late, times=times)

@@ -10,7 +10,7 @@ there is a case for each of its values. What has no value, as what comes before 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
 from operator import itemgetter
@@ -36,7 +36,7 @@ from sequence_planner.language.shorthand.cases import (
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, NamedPredicate, Vocabulary
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import placed_at
-from sequence_planner.language.suggestions import beginning_with, nearest, nearest_of
+from sequence_planner.language.suggestions import arguments_of, beginning_with, nearest, nearest_of, shape_of
 from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
@@ -97,6 +97,7 @@ class NameScope(Immutable):
 
     `variables` maps full names to types; `prefixes` are tried in order before the bare name (such as
     `nutrunner.run_nut.` and `nutrunner.`); `parameters` maps a parameter to its value and the enumeration it is of.
+    Names that begin with what is `unsuggested` are found, and never what somebody may have meant.
     """
 
     variables: Mapping[str, Type]
@@ -105,12 +106,13 @@ class NameScope(Immutable):
     vocabulary: Vocabulary = NO_VOCABULARY
     copies: int = 1
     """How often what is resolved here is written out, by the quantifiers around it."""
+    unsuggested: str | None = None
 
     def binding(self, parameters: Mapping[str, tuple[str, EnumerationType]], copies: int = 1) -> NameScope:
         """The same with further parameters."""
-        return NameScope(
-            self.variables, self.prefixes, {**self.parameters, **parameters}, self.vocabulary, self.copies * copies
-        )
+        given = {**self.parameters, **parameters}
+        copies *= self.copies
+        return NameScope(self.variables, self.prefixes, given, self.vocabulary, copies, self.unsuggested)
 
     def substitute(self, name: Name) -> Name:
         """`name` with the parameters among its arguments replaced by their values."""
@@ -136,8 +138,10 @@ class NameScope(Immutable):
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The full names of all variables."""
-        return tuple(self.variables)
+        """The full names of all variables that somebody may have meant."""
+        if self.unsuggested is None:
+            return tuple(self.variables)
+        return tuple(name for name in self.variables if not name.startswith(self.unsuggested))
 
     def short(self, beginning: str = "") -> list[str]:
         """Return what names that begin so are here without a prefix."""
@@ -222,15 +226,26 @@ def type_of(expression: Expression, scope: NameScope) -> Type:
     return _typed(expression, scope, None)[1]
 
 
+_ALIKE = 0.5  # as arguments have to be for an instance to be what was meant
+
+
 def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> str:
     """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
-    return _said(nearest(word, candidates, likeness))
+    every = list(candidates)
+    return _said(word, every, nearest(word, every, likeness))
 
 
-def _said(*near: tuple[float, str] | None) -> str:
-    """The one that is most like it, the first of those that are equally."""
+def _said(word: str, candidates: Iterable[str], *near: tuple[float, str] | None) -> str:
+    """The one that is most like it, the first of those that are equally; of several instances what they look like."""
     found = [each for each in near if each is not None]
-    return f"; did you mean `{max(found, key=itemgetter(0))[1]}`?" if found else ""
+    if not found:
+        return ""
+    meant = max(found, key=itemgetter(0))[1]
+    shape = shape_of(meant)
+    if shape != meant and nearest(arguments_of(word), [arguments_of(meant)], _ALIKE) is None:
+        first, *others = (name for name in candidates if shape_of(name) == shape)
+        return f"; did you mean `{shape}`, as in `{first}`?" if others else f"; did you mean `{first}`?"
+    return f"; did you mean `{meant}`?"
 
 
 def _truth(expression: Expression, scope: NameScope) -> Expression:
@@ -666,8 +681,8 @@ def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
     return _suggestion_of(word, own, scope.names, 0.5)
 
 
-def _suggestion_of(word: str, own: Iterable[str], names: tuple[str, ...], likeness: float) -> str:
-    return _said(nearest(word, own, likeness), nearest_of(word, names, likeness))
+def _suggestion_of(word: str, own: Collection[str], names: tuple[str, ...], likeness: float) -> str:
+    return _said(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
 
 
 def _names(type_: Type) -> tuple[str, ...]:

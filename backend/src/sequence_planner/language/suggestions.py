@@ -6,6 +6,7 @@ a name as a whole and, where it has no parameter or owner itself, with the name 
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterable
@@ -14,6 +15,7 @@ from functools import lru_cache
 
 # What is known of a list of names is kept for the next questions about it; a list is that of a station.
 _OWNERS, _PARAMETERS = "./", "(["  # what stands behind an owner, and before a parameter
+_ARGUMENTS = re.compile(r"([(\[])([^()\[\]]+)([)\]])")
 _LISTS = 4
 _WORDS = 64
 
@@ -30,6 +32,16 @@ def nearest(word: str, candidates: Iterable[str], cutoff: float) -> tuple[float,
     if part is None or (whole is not None and whole[0] >= part[0]):
         return whole
     return part[0], parts[part[1]]
+
+
+def shape_of(name: str) -> str:
+    """What all instances look like, as in `move(…).executing`."""
+    return _ARGUMENTS.sub("\\1…\\3", name)
+
+
+def arguments_of(name: str) -> str:
+    """What stands between its brackets."""
+    return " ".join(each[1] for each in _ARGUMENTS.findall(name))
 
 
 def _parts(word: str, name: str) -> list[str]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections import defaultdict
 from collections.abc import Awaitable, Callable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
@@ -17,6 +16,7 @@ from pygls.protocol.language_server import lsp_method
 
 from sequence_planner.core.late_log import LateLog
 from sequence_planner.language_server.documents.texts import DocumentText
+from sequence_planner.language_server.threads import ServerThreads
 from sequence_planner.language_server.workspace import OpenWorkspace, StationFile, path_of
 from sequence_planner.version import VERSION
 
@@ -28,8 +28,6 @@ NAME = "sequence-planner"
 DEADLINE = 60.0  # seconds that a check of a whole station may take
 _WATCHED = ("**/*.yaml", "**/*.yml", "**/messages/**/*.{msg,srv,action}", "**/stages/**")
 _REFUSED = -32803  # RequestFailed: nothing is wrong with the request
-
-Found = TypeVar("Found")
 
 
 class _Protocol(LanguageServerProtocol):
@@ -75,15 +73,16 @@ class StationLanguageServer(LanguageServer):
     """
 
     def __init__(self) -> None:
-        self.stations = OpenWorkspace(self, DEADLINE)  # which the protocol looks at when it is made
+        self.threads = ServerThreads()
+        self.stations = OpenWorkspace(self, self.threads, DEADLINE)  # which the protocol looks at when it is made
         super().__init__(NAME, VERSION, protocol_cls=_Protocol, converter_factory=default_converter)
         self.shows_guards = True
         self.offer(types.INITIALIZE, self.initialized)
         self.offer(types.WORKSPACE_DID_CHANGE_CONFIGURATION, lambda params: self.take_settings(params.settings))
         self.offer(types.WORKSPACE_DID_CHANGE_WATCHED_FILES, self.files_changed)
         self.offer(types.TEXT_DOCUMENT_DID_SAVE, self.saved)
-        self._answering = ThreadPoolExecutor(1, "answering")
         self._published: dict[Path, set[str]] = defaultdict(set)
+        self._texts: dict[tuple[Path, str], DocumentText] = {}
         self._telling: set[asyncio.Task[None]] = set()
 
     def offer(self, method: str, handler: Callable[[Any], object], options: object = None) -> None:
@@ -95,13 +94,13 @@ class StationLanguageServer(LanguageServer):
 
         self.feature(method, options)(handled)
 
-    async def worked_out(self, work: Callable[[], Found]) -> Found:
-        """Return what is found in the thread for answers."""
-        return await asyncio.get_running_loop().run_in_executor(self._answering, work)
-
     def text_of_file(self, file: StationFile) -> DocumentText:
         """The text of a file as it is now; empty where it is gone."""
-        return DocumentText(file.station.files.get(file.name, ""), self.stations.encoding)
+        text, key = file.station.files.get(file.name, ""), (file.station.folder, file.name)
+        known = self._texts.get(key)
+        if known is None or known.text != text:
+            known = self._texts[key] = DocumentText(text, self.stations.encoding)
+        return known
 
     def uri(self, station: EditedStation, file: str) -> str:
         """The address of a file, as the editor that has it open writes it."""
@@ -173,6 +172,7 @@ class StationLanguageServer(LanguageServer):
 
     def leave(self, station: EditedStation) -> None:
         """Nothing of a station is open any more, so that nothing is said of it either."""
+        self._texts = {key: text for key, text in self._texts.items() if key[0] != station.folder}
         for file in self._published.pop(station.folder, set()):
             self._publish(station, file, [])
 

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import asyncio
 import importlib
+import logging
 from collections.abc import Mapping
 from functools import cache, partial
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 
 from sequence_planner.language_server.server import StationLanguageServer
 from sequence_planner.language_server.streams import ClientStreams, talk
@@ -40,6 +42,8 @@ _OFFERED: Mapping[str, tuple[str, str, object]] = {
 def serve_editor() -> int:
     """Talk to an editor over the standard streams until it leaves; returns the exit code."""
     streams = ClientStreams()
+    for handler in logging.getLogger().handlers:
+        handler.addFilter(_is_news)
 
     async def talking() -> int:
         server = StationLanguageServer()
@@ -48,8 +52,14 @@ def serve_editor() -> int:
             return await talk(server.protocol, streams)
         finally:
             await server.stations.close()
+            server.threads.close()
 
     return asyncio.run(talking())
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Return whether somebody should hear of it: what an editor is refused it is told itself."""
+    return record.exc_info is None or not isinstance(record.exc_info[1], JsonRpcException)
 
 
 def _offer(server: StationLanguageServer) -> None:
@@ -75,4 +85,4 @@ async def _import_all(server: StationLanguageServer) -> None:
         for name in _LATER:
             importlib.import_module(f"{__package__}.{name}")
 
-    await server.worked_out(imported)
+    await server.threads.found_at_once(imported)

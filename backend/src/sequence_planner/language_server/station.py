@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import tempfile
 import traceback
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from sequence_planner.analysis.report import FindingDocument, GuardDocument, error_document
 from sequence_planner.core.late_log import LateLog
@@ -19,6 +19,7 @@ from sequence_planner.editor.schemas.check import CheckState, CheckView, listed
 from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.language.types import Place
 from sequence_planner.language_server.snapshot import StationSnapshot
+from sequence_planner.language_server.threads import ServerThreads
 from sequence_planner.model.files import LONGEST_FILE, Files, FolderReader, is_of_model
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.loader import unread_files
@@ -27,7 +28,6 @@ from sequence_planner.process.gc_tuning import collection_put_off
 from sequence_planner.process.task import WorkerError
 
 LOG = LateLog(__name__)
-Found = TypeVar("Found")
 
 
 class StationListener(Protocol):
@@ -43,21 +43,20 @@ class StationListener(Protocol):
 
 
 class EditedStation:
-    """The station in `folder`. Used from one event loop; what takes longer is done in the one thread of `loading`,
-    which it shares with other stations.
+    """The station in `folder`. Used from one event loop; what takes longer is done in `threads`.
 
     `findings` are of change `checked`: then its files were `checked_files`. `guards` are what the supervisor adds, by
     ground ability, as far as it is known; after an edit they are those from before until they have been found again.
     """
 
-    def __init__(self, folder: Path, loading: ThreadPoolExecutor, listener: StationListener, deadline: float) -> None:
+    def __init__(self, folder: Path, threads: ServerThreads, listener: StationListener, deadline: float) -> None:
         self.folder = folder
         self.number = 0
         self.findings: list[FindingDocument] = []
         self.checked_files: Files = {}
         self.guards: Mapping[str, GuardDocument] = {}
         self._listener = listener
-        self._loading = loading
+        self._threads = threads
         self._saved = FolderReader(folder)
         self._on_disk: dict[str, str] = {}
         self._typed: dict[str, str] = {}
@@ -108,7 +107,7 @@ class EditedStation:
         """Return what makes it unusable, as far as it shows before pipelines are built. Raises `WorkerError`."""
         number = self.number
         try:
-            found = await self._in_thread(lambda: self._errors(files))
+            found = await self._threads.found_later(lambda: self._errors(files))
         except Exception as error:  # so that what is typed next is looked at all the same
             LOG.error("a station could not be looked at", because="".join(traceback.format_exception(error)))
             raise WorkerError(str(error)) from error
@@ -127,7 +126,7 @@ class EditedStation:
     async def close(self) -> None:
         """End what is being found out about it."""
         await self._desk.close()
-        await asyncio.get_running_loop().run_in_executor(self._loading, self._temporary.cleanup)
+        await self._threads.found_later(self._temporary.cleanup)
 
     def _hear(self, view: CheckView) -> None:
         files = self._files_of.get(view.number)
@@ -162,7 +161,7 @@ class EditedStation:
 
     def _read_names(self, number: int, files: Files) -> None:
         """Have names read; until then those from before are known."""
-        made = asyncio.ensure_future(self._in_thread(lambda: self._read(number, files)))
+        made = asyncio.ensure_future(self._threads.found_later(lambda: self._read(number, files)))
         if self._snapshot is None or not self._snapshot.done():
             self._snapshot = made
         else:
@@ -178,6 +177,7 @@ class EditedStation:
         if not self._readable:  # names that are saved are known where what is typed cannot be read yet
             self._draft.take(self._knowing.news(self._on_disk))
             assert self._draft.lexicon
+            gc.freeze()  # most of it stays, and to look through it would hold up whoever types
         self._draft.take(self._knowing.news(files))
         lexicon = self._draft.lexicon
         for each in (lexicon.family, lexicon.operations):  # here, and not when somebody waits for them
@@ -189,6 +189,3 @@ class EditedStation:
         content = ModelContent(files)
         self._readable = {file: files[file] if file in content else self._readable.get(file, "") for file in files}
         return ModelContent(self._readable) if content.skipped else content
-
-    async def _in_thread(self, work: Callable[[], Found]) -> Found:
-        return await asyncio.get_running_loop().run_in_executor(self._loading, work)

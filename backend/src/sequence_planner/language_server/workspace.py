@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
 
 from sequence_planner.language_server.documents.texts import DocumentText, OpenDocument, plain_lines
+from sequence_planner.language_server.threads import ServerThreads
 
 if TYPE_CHECKING:
     from sequence_planner.language_server.station import EditedStation, StationListener
@@ -36,12 +36,12 @@ def path_of(uri: str) -> Path | None:
 class OpenWorkspace:
     """All that is open. A station begins with the first document of it that is opened, and ends with the last."""
 
-    def __init__(self, listener: StationListener, deadline: float) -> None:
+    def __init__(self, listener: StationListener, threads: ServerThreads, deadline: float) -> None:
         self.encoding = "utf-16"
         self.deadline = deadline
         self.documents: dict[str, OpenDocument] = {}
         self._listener = listener
-        self._loading = ThreadPoolExecutor(1, "loading")  # stations are read where the working folder is theirs
+        self._threads = threads
         self._stations: dict[Path, EditedStation] = {}
 
     @property
@@ -59,7 +59,7 @@ class OpenWorkspace:
         if folder not in self._stations:
             from sequence_planner.language_server.station import EditedStation  # noqa: PLC0415 (see `serving`)
 
-            self._stations[folder] = EditedStation(folder, self._loading, self._listener, self.deadline)
+            self._stations[folder] = EditedStation(folder, self._threads, self._listener, self.deadline)
             self._stations[folder].look_again()
             self._take_over(self._stations[folder])
         elif (file := self._stations[folder].file_of(path)) is not None:
@@ -114,7 +114,6 @@ class OpenWorkspace:
         """End all of it."""
         for station in self.stations:
             await station.close()
-        self._loading.shutdown(wait=False, cancel_futures=True)
 
     def _take_over(self, station: EditedStation) -> None:
         """All that is open of it is as typed, also what was opened before its `station.yaml` was there."""

@@ -5,32 +5,21 @@ pydantic finds it; here its findings get their place in the file, and those abou
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from sequence_planner.core.data_models import complained
+from sequence_planner.core.data_models import complained, expectation
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.source import Finding
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
 
-# What was expected, by the first word of pydantic's name for the error.
-_EXPECTED = {
-    "is": "a text",
-    "string": "a text",
-    "bool": "true or false",
-    "int": "an integer",
-    "float": "a number",
-    "finite": "a finite number",
-    "list": "a list",
-    "tuple": "a list",
-    "dict": "names with their definitions",
-    "mapping": "names with their definitions",
-    "model": "names with their definitions",
-}
+# What a mapping is called in a document.
+_NAMES = "names with their definitions"
+_IN_DOCUMENTS = {"dict": _NAMES, "mapping": _NAMES, "model": _NAMES}
 
 
 def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, kind: type[BaseModel]) -> list[Finding]:
@@ -63,6 +52,18 @@ def complaint(error: ValidationError, kind: type[BaseModel]) -> str:
         else:
             expected.setdefault(shown(details["input"]), {})[_expectation(details)] = None
     return "; ".join([*said, *(f"expected {' or '.join(wants)}, found {found}" for found, wants in expected.items())])
+
+
+def members(errors: Iterable[Mapping[str, Any]], body: object) -> list[tuple[str, str]]:
+    """The places of errors in a request with such a `body`, as in `body.mode`, each with what is wrong there."""
+    found = []
+    for details in errors:
+        *around, name = details["loc"] or ("",)
+        near = ""
+        if details["type"] == "extra_forbidden":
+            near = suggestion(str(name), [field for kind in _parts_in(body) for field in _fields_at(kind, around[1:])])
+        found.append((".".join(map(str, details["loc"])), f"{complained(details)}{near}"))
+    return found
 
 
 def _path(loc: Sequence[str | int], content: object) -> Iterable[str | int]:
@@ -142,23 +143,7 @@ def _is_looked_into(details: ErrorDetails, every: Iterable[ErrorDetails]) -> boo
 
 
 def _expectation(details: ErrorDetails) -> str:
-    limits = details.get("ctx", {})
-    match details["type"]:
-        case "literal_error":
-            return str(limits["expected"]).replace("'", "`")
-        case "greater_than":
-            return f"a number greater than {limits['gt']:g}"
-        case "greater_than_equal":
-            return f"a number of at least {limits['ge']:g}"
-        case "less_than_equal":
-            return f"a number of at most {limits['le']:g}"
-        case "too_short":
-            least = limits["min_length"]
-            return "at least one entry" if least == 1 else f"at least {least} entries"
-        case "too_long":
-            return f"at most {limits['max_length']} entries"
-        case other:
-            return _EXPECTED.get(other.partition("_")[0], details["msg"])
+    return expectation(details, _IN_DOCUMENTS)
 
 
 def shown(value: object) -> str:

@@ -22,13 +22,13 @@ from sequence_planner.planning.heuristic.search import HeuristicSearch
 from sequence_planner.planning.heuristic.unreachable import Relaxing
 from sequence_planner.planning.operation_decomposition import OperationByOperation
 from sequence_planner.planning.pdr.ic3 import Reachability
-from sequence_planner.planning.pdr.invariants import CertificateError
 from sequence_planner.planning.pdr.proof_clauses import asserted, is_met, satisfies
 from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
-from sequence_planner.planning.problem import Circumstances, Contract, Goal, Plan, Proof
+from sequence_planner.planning.problem import CertificateError, Circumstances, Contract, Goal, Plan, Proof
 from sequence_planner.planning.validation.acceptance import Acceptance, tightened
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget, SpentError
+from sequence_planner.texts.message import Message, message
 
 # What is soon known of a question: that there is a plan, or that there is none. Nobody need look for a proof then.
 
@@ -207,7 +207,7 @@ def _covers(refuted: PlanningTask, proof: Proof, task: PlanningTask) -> bool:
         refuted.goals == task.goals
         and refuted.circumstances.offline <= task.circumstances.offline
         and refuted.circumstances.barred <= task.circumstances.barred
-        and satisfies(asserted(task.state, task.goals), proof.invariant)
+        and satisfies(asserted(task.state, task.goals), proof)
     )
 
 
@@ -500,37 +500,38 @@ def diagnose(
     return Diagnosis(reason, () if reason is None else corrections(automaton, supervisor, task, budget))
 
 
-def member_text(member: Member, out_of_service: Collection[str] = ()) -> str:
+def member_text(member: Member, out_of_service: Collection[str] = ()) -> Message:
     """A member of a reason, in the names of the model; resources can be offline because they are `out_of_service`."""
     match member.part:
         case MemberKind.VALUE if member.value is None:
-            return f"{member.name} is not known"
+            return message("member.unknown", name=member.name)
         case MemberKind.VALUE:
             assert member.value is not None
-            return f"{member.name} is {print_value(member.value)}"
+            return message("member.value", name=member.name, value=print_value(member.value))
         case MemberKind.SPECIFICATION:
-            return f"the specification {member.name}"
+            return message("member.specification", name=member.name)
         case MemberKind.AVOID:
-            return f"{member.name} is to be avoided"
-        case MemberKind.OFFLINE:
-            return f"{member.name} is {'out of service' if member.name in out_of_service else 'offline'}"
-        case MemberKind.BARRED:
-            return f"{member.name} is out of service"
+            return message("member.avoid", name=member.name)
+        case MemberKind.OFFLINE if member.name not in out_of_service:
+            return message("member.offline", name=member.name)
+        case MemberKind.OFFLINE | MemberKind.BARRED:
+            return message("member.out-of-service", name=member.name)
         case MemberKind.LOCAL:
-            return f"the local formula of {member.name}"
+            return message("member.local", name=member.name)
         case MemberKind.GOAL:
-            return f"the goal {member.name}"
+            return message("member.goal", name=member.name)
 
 
-def correction_text(correction: Correction, out_of_service: Collection[str] = ()) -> str:
+def correction_text(correction: Correction, out_of_service: Collection[str] = ()) -> Message:
     """Changes that would help, in the names of the model; resources can be `out_of_service`."""
-    return " and ".join(_change_text(change, out_of_service) for change in correction.changes)
+    return message("list", items=[_change_text(change, out_of_service) for change in correction.changes])
 
 
-def _change_text(change: CorrectedValue, out_of_service: Collection[str]) -> str:
+def _change_text(change: CorrectedValue, out_of_service: Collection[str]) -> Message:
     if change.value is not None:
-        return f"{change.name} := {print_value(change.value)}"
-    return f"{change.name} {'in service' if change.ability or change.name in out_of_service else 'online'}"
+        return message("correction.value", name=change.name, value=print_value(change.value))
+    returns = change.ability or change.name in out_of_service
+    return message("correction.in-service" if returns else "correction.online", name=change.name)
 
 
 # Why there is no plan from any of several initial states: a reason for each, as few as are found to be enough.

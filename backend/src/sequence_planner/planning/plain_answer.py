@@ -14,7 +14,7 @@ class PlainAnswer(Immutable):
 
     No plan has up to `searched` transitions, or, when there is a plan, none has fewer than `searched`. `engine` gave
     the answer. That there is none at all is proven by `proof`, or, without one, by having looked at all that can be
-    reached, or by sums that nothing changes. Of several initial states `begin` is the one from which the plan leads.
+    reached. Of several initial states `begin` is the one from which the plan leads.
     """
 
     verdict: Verdict

@@ -90,7 +90,7 @@ class PlanCache:
             return None
         unknown, values = self._unknown(task.state), asserted(task.state, task.goals)
         for each in candidates:
-            if each.unknown == unknown and satisfies(values, each.proof.invariant):
+            if each.unknown == unknown and satisfies(values, each.proof):
                 return each.proof
         return None
 

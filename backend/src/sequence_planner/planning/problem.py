@@ -117,6 +117,34 @@ class Literal(Immutable):
 Clause = tuple[Literal, ...]
 
 
+class ConservedSum(Immutable):
+    """A sum of the `weights` of values, of 0 where none is given, that is `total` and that no start changes: exactly,
+    or modulo `modulus` if that is not 0.
+    """
+
+    weights: Mapping[str, Mapping[Value, int]]
+    total: int
+    modulus: int = 0
+
+    def residue(self, number: int) -> int:
+        """The number as it counts."""
+        return number % self.modulus if self.modulus else number
+
+    def is_other(self, difference: int) -> bool:
+        """Return whether sums with this difference are not the same."""
+        return self.residue(difference) != 0
+
+    def holds_in(self, values: Mapping[str, Value | None]) -> bool:
+        """Return whether the sum of these values, all of which are known, is the one."""
+        there = [(weights, values[name]) for name, weights in self.weights.items()]
+        known = sum(weights.get(value, 0) for weights, value in there if value is not None)
+        return all(value is not None for _, value in there) and not self.is_other(known - self.total)
+
+
+class CertificateError(Exception):
+    """An alleged proof that proves nothing; the message says which step fails."""
+
+
 class Proof(Immutable):
     """A proof that there is no plan at all: an inductive invariant of the state to plan from, in which no goal is
     reached.
@@ -126,11 +154,13 @@ class Proof(Immutable):
     `goal.<name>.reached`, and of formulas in which state their automata are, `goal.<name>.at`. `by` is the method that
     found it. One by `pdr` has been checked by a solver of its own; those by `relaxation` and `pairs`, whose clauses
     say no more than that values are never taken, or two never together, have not, but pass the same check
-    (`pdr.certificate`).
+    (`pdr.invariants`). One by `sums` says that a sum is `conserved`, and has been checked start by start
+    (`validation.conservation`).
     """
 
     by: str
     invariant: tuple[Clause, ...]
+    conserved: ConservedSum | None = None
 
 
 class PlanAnswer(Immutable):

@@ -30,6 +30,12 @@ class Body(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
+class AnswerModel(BaseModel):
+    """Base of answers. What reads and writes one is built when it is first needed, as most are needed seldom."""
+
+    model_config = ConfigDict(defer_build=True)
+
+
 class NothingBody(Body):
     """Nothing more is to be said."""
 

@@ -7,7 +7,7 @@ is for reading. A document never shows a stack trace: what went wrong inside is 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
@@ -21,10 +21,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
-from sequence_planner.core.data_models import complained
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.editor.processes import BodyError
 from sequence_planner.mes.order import OrderCommand, OrderRefused
+from sequence_planner.model.validation import members
 from sequence_planner.process.task import WorkerError
 
 LOG = structlog.get_logger(__name__)
@@ -160,17 +160,24 @@ async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     found = error.errors()
     if any(each["type"] == "json_invalid" for each in found):
-        position = found[0]["loc"][-1]
-        detail = f"The body is not JSON: {found[0]['ctx']['error']} at character {position}."
-        return problem_response(400, "malformed-json", "The body is not JSON", detail)
-    errors = [FieldError(field=".".join(map(str, each["loc"])), expected=complained(each)) for each in found]
-    detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
-    return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
+        return _not_json(f"{found[0]['ctx']['error']} at character {found[0]['loc'][-1]}")
+    body = getattr(request.scope.get("route"), "body_field", None)
+    return _not_as_expected(members(found, None if body is None else body.field_info.annotation))
 
 
 async def _unexpected(request: Request, error: Exception) -> Response:
     assert isinstance(error, BodyError)
-    return await _invalid(request, RequestValidationError(error.errors))
+    return _not_json(error.not_json) if error.not_json else _not_as_expected(error.wrong)
+
+
+def _not_json(why: str) -> Response:
+    return problem_response(400, "malformed-json", "The body is not JSON", f"The body is not JSON: {why}.")
+
+
+def _not_as_expected(wrong: Iterable[tuple[str, str]]) -> Response:
+    errors = [FieldError(field=place, expected=what) for place, what in wrong]
+    detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
+    return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
 
 
 async def _work_ended(request: Request, error: Exception) -> Response:

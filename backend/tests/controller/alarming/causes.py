@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sequence_planner.controller.alarms.kinds import AlarmKind, Cause
-from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.views.station import AlarmGroup, Priority
+from sequence_planner.texts.message import as_it_was
 
 
 def cause(key: str, *follows: str, priority: Priority = Priority.MEDIUM, text: str = "") -> Cause:

@@ -1,21 +1,23 @@
-"""The catalogue of alarms: every kind has its texts in every language, and these are given what they name."""
+"""The catalogue of texts: every kind of alarm has its own in every language, and each is given what it names."""
 
 from __future__ import annotations
 
 import ast
 import json
+import pickle
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
+from pydantic import TypeAdapter
 
-import sequence_planner.controller
+import sequence_planner
 from sequence_planner.controller.alarms.kinds import KINDS
-from sequence_planner.controller.alarms.message import PLACE, Message, Wording, message
-from sequence_planner.controller.alarms.texts import TEXTS
+from sequence_planner.texts.catalogue import TEXTS
+from sequence_planner.texts.message import PLACE, Message, Wording, as_it_was, message
 
-SOURCE = Path(sequence_planner.controller.__file__).parent
+SOURCE = Path(sequence_planner.__file__).parent
 PAGE = Path(__file__).parents[4] / "frontend" / "src" / "lib" / "text"
 LANGUAGES = sorted(path.name for path in PAGE.iterdir() if path.is_dir())
 OF_KIND = ("text", "past", "consequence", "action")
@@ -24,7 +26,7 @@ PHRASES = TEXTS.keys() - {f"{kind}.{what}" for kind in KINDS for what in OF_KIND
 
 def texts(language: str) -> Mapping[str, str]:
     """The texts of the page in a language."""
-    found: Mapping[str, str] = json.loads((PAGE / language / "alarm-texts.json").read_text(encoding="utf-8"))
+    found: Mapping[str, str] = json.loads((PAGE / language / "messages.json").read_text(encoding="utf-8"))
     return found
 
 
@@ -34,7 +36,7 @@ def places(text: str) -> set[str]:
 
 
 def calls(name: str) -> Iterator[ast.Call]:
-    """Calls of a function or method in the controller."""
+    """Calls of a function or method of the program."""
     for path in SOURCE.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and node.args and ast.unparse(node.func).split(".")[-1] == name:
@@ -95,6 +97,32 @@ def test_causes_are_given_what_the_texts_of_their_kind_name() -> None:
     assert KINDS.keys() - raised <= {"many-silent", "never-heard", "left-out", "undecided"}, (
         "made of several kinds at once"
     )
+
+
+def test_what_was_written_down_as_a_string_is_told_again_as_what_it_said() -> None:
+    late = message("late.tried", late=message("late.begun", seconds=2.0), times=3)
+    assert str(late) == "has not begun within 2 s, tried 3 times"
+    told = as_it_was(str(late), "late.")
+    assert (told.id, told.arguments["times"], told) == (late.id, 3, late)
+    assert isinstance(told.arguments["late"], Message)
+    assert told.arguments["late"].id == "late.begun"
+    assert as_it_was("re-planned: a better way was found", "plan.").id == "plan.better"
+    assert as_it_was("it was dark", "plan.") == message("as-it-was", text="it was dark")
+
+
+def test_each_text_is_written_down_so_that_it_is_known_again() -> None:
+    for beginning in ("plan.", "ended.", "waits."):
+        for name in (each for each in PHRASES if each.startswith(beginning) and PLACE.search(TEXTS[each]) is None):
+            assert as_it_was(TEXTS[name], beginning).id == name
+
+
+def test_a_message_is_a_string_that_other_processes_understand() -> None:
+    said = message("silent.many", count=2, resource=message("quoted", title=Wording({"en": "Arm"})))
+    assert f"{said}." == "Nothing is heard on 2 topics of “Arm”."
+    again = pickle.loads(pickle.dumps(said))
+    assert (again, again.id, again.arguments) == (said, said.id, said.arguments)
+    kept = TypeAdapter(Message)
+    assert kept.validate_json(kept.dump_json(said)).sent() == said.sent()
 
 
 def test_a_message_reads_as_its_language_has_it() -> None:

@@ -82,7 +82,9 @@ def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:
     rig.run(30)
     because = ["bolts[bolt_pair_3] == placed never goes together with robot.target_pose == bolt_pair_3"]
     rig.scene.consistency.questions = [
-        QuestionView(variable="bolts[bolt_pair_3]", believed="placed", possible=["empty"], because=because)
+        QuestionView(
+            variable="bolts[bolt_pair_3]", believed="placed", possible=["empty"], because=because, because_messages=[]
+        )
     ]
     rig.run(1)
     (alarm,) = rig.shown.values()

@@ -17,6 +17,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.state import LastOperatorPlan, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
+from sequence_planner.texts.message import as_it_was
 from support.simulated import Rig, never
 
 
@@ -135,7 +136,7 @@ def test_outputs_that_nobody_has_decided_on_are_an_alarm(monkeypatch: pytest.Mon
 def test_what_did_not_come_back_is_an_alarm_until_production_is_started() -> None:
     rig = Rig()
     left_out = ("speed was 3, and ranges over 0..2 now", "operation polish was completed, and is none")
-    shown = alarms(rig, RestoredState(left_out=left_out))
+    shown = alarms(rig, RestoredState(left_out=tuple(map(as_it_was, left_out))))
     told = shown.current(Timestamp(1000, 10))["not-restored"]
     assert told.text.endswith("could not be fully restored: speed was 3, and ranges over 0..2 now, and 1 more")
     assert tuple(told.parts) == left_out
@@ -150,7 +151,11 @@ def test_a_question_names_the_operations_that_it_decides() -> None:
     shown = alarms(rig)
     shown.consistency.questions = [
         QuestionView(
-            variable="bolts[bolt_pair_1]", believed="placed", possible=["empty"], because=["a does not go with b"]
+            variable="bolts[bolt_pair_1]",
+            believed="placed",
+            possible=["empty"],
+            because=["a does not go with b"],
+            because_messages=[],
         )
     ]
     told = shown.current(Timestamp(1000, 10))["contradiction"]

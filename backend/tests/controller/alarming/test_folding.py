@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from controller.alarming.causes import cause
 from sequence_planner.controller.alarms.alarm import urgency
-from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.alarms.registry import LINGERS, Folding
 from sequence_planner.controller.views.station import Priority
+from sequence_planner.texts.message import as_it_was
 from support.examples import examples
 
 KEYS = ("a", "b", "c", "d", "e")

@@ -21,11 +21,11 @@ from hypothesis.stateful import (
 from controller.alarming.causes import cause as plain_cause
 from sequence_planner.controller.alarms.alarm import Alarm
 from sequence_planner.controller.alarms.kinds import Cause
-from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.alarms.registry import OFTEN, QUIET, AlarmRegistry
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.texts.message import as_it_was
 
 FAR = 1000.0  # seconds after which nothing counts as coming and going
 

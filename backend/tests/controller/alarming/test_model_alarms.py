@@ -15,7 +15,6 @@ from sequence_planner.automaton.grounding import ground
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.alarm import KIND, aside_from
 from sequence_planner.controller.alarms.kinds import Cause
-from sequence_planner.controller.alarms.message import Wording
 from sequence_planner.controller.alarms.model_conditions import ModelAlarms
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.restore import RestoredState
@@ -25,6 +24,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.source import ModelError
+from sequence_planner.texts.message import Wording
 from support.places import MODELS
 from support.simulated import Rig, never
 

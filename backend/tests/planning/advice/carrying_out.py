@@ -60,6 +60,8 @@ def carried_out(stopped: Stopped, offer: RecoveryProposal) -> None:
     state, circumstances = changed(stopped, offer)
     goals = missing(stopped.goals, state)
     inside = supervisor.safe.includes(state)
+    if offer.kind is OfferKind.PHYSICAL:  # the tick that hears of it takes in at once what has finished
+        inside = inside or supervisor.safe.includes(synchronise(automaton, finish(automaton, state).state))
     if offer.errand is None:
         assert offer.kind in (OfferKind.REPLAN, OfferKind.CORRECTION, OfferKind.PHYSICAL, OfferKind.COMBINED)
         assert (offer.goal, offer.unsupervised, offer.restart, offer.breaks) == (TRUE, False, False, ())

@@ -1,6 +1,6 @@
 /** To acknowledge several alarms, each as it was shown. */
 import type { Refusal } from '#lib/rest/refusal.ts';
-import { wordsOf } from './wording.ts';
+import { wordsOf } from '#lib/text/message.ts';
 import { isNew, type Alarms, type Keyed } from './priority.ts';
 
 /** One that was not acknowledged, and why. */

@@ -1,5 +1,5 @@
 /** A record of the run in words: what happened, on what, by whom and why. */
-import { wordsOf } from '#lib/alarm/wording.ts';
+import { wordsOf } from '#lib/text/message.ts';
 import type { Alarm } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';

@@ -85,7 +85,7 @@ test('how far an order has come is told by its job', () => {
 		taken: 0,
 		begun: 0,
 		ended: null,
-		waits_for: [],
+		waits_for: [], waits_for_messages: [],
 		steps: { place: { ...step, state: 'completed' as const }, tighten: { ...step, state: 'active' as const } }
 	};
 	expect(progressOf(viewOf({ jobs: { 'e-1': job } }), 'e-1')).toEqual({ done: 1, all: 2, active: ['tighten'] });

@@ -3,11 +3,11 @@ import type { OutOfService, Topic } from '#lib/contract.ts';
 import { view } from '#lib/testing/view.ts';
 import { returning } from './returning.ts';
 
-const OUT: OutOfService = { of: 'resource', name: 'robot', title: 'Robot', since: 990, by: 'Eva', why: 'it squeaks' };
+const OUT: OutOfService = { of: 'resource', name: 'robot', title: 'Robot', since: 990, by: 'Eva', why: 'it squeaks', why_message: null };
 
 function topic(trouble: string | null): Topic {
 	const seen = { last: 999, messages: 7, deadline: 1, fresh: true, peers: 1 };
-	return { type: 'msgs/msg/State', direction: 'in', resource: 'robot', trouble, ...seen };
+	return { type: 'msgs/msg/State', direction: 'in', resource: 'robot', trouble, trouble_message: null, ...seen };
 }
 
 test('a resource that is to come back is put back, awaited, not understood, or back', () => {

@@ -20,8 +20,8 @@ describe('the page speaks of a restart', () => {
 	const cases: [string, Partial<StationView>][] = [
 		['in any mode but the automatic one', { mode: 'hold' }],
 		['while estimates are not confirmed', { unconfirmed: true }],
-		['while outputs are not decided', { undecided: { 'robot.go': { value: true, reacts: [], quiet: [false], unsafe: [] } } }],
-		['while belief and measurement disagree', { questions: [{ variable: 'b', believed: 1, possible: [2], because: [] }] }],
+		['while outputs are not decided', { undecided: { 'robot.go': { value: true, reacts: [], reacts_messages: [], quiet: [false], unsafe: [] } } }],
+		['while belief and measurement disagree', { questions: [{ variable: 'b', believed: 1, possible: [2], because: [], because_messages: [] }] }],
 		['when there is no plan for what is active', { plan: { ...PLAN, status: 'none' }, operations: { tighten: active } }]
 	];
 	test.each(cases)('%s', (_, over) => expect(concernsRestart(view(over))).toBe(true));
@@ -39,7 +39,7 @@ test('unconfirmed are the estimates that nobody has seen since', () => {
 });
 
 test('a station of which too little is heard is not said to be outside its safe states', () => {
-	const way = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '' };
+	const way = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '', reason_message: { id: 'as-it-was', arguments: { text: '' } } };
 	expect(wantedFor(view({ way_back: { ...way, awaits: ['/ur10/state'] } }))).toEqual(['unsure']);
 	const violated = [{ name: 'never', title: 'Never' }];
 	expect(wantedFor(view({ way_back: { ...way, violated, awaits: ['/ur10/state'] } }))).toEqual(['outside']);
@@ -47,7 +47,7 @@ test('a station of which too little is heard is not said to be outside its safe 
 });
 
 test('what is out of service is a reason only where there is no plan without it', () => {
-	const out = { of: 'resource', name: 'robot', title: 'Robot', since: 990, by: 'Eva', why: 'it squeaks' } as const;
+	const out = { of: 'resource', name: 'robot', title: 'Robot', since: 990, by: 'Eva', why: 'it squeaks', why_message: null } as const;
 	expect(wantedFor(view({ out_of_service: [out] }))).toEqual([]);
 	const stands = view({ out_of_service: [out], plan: { ...PLAN, status: 'none' }, operations: { tighten: active } });
 	expect(wantedFor(stands)).toEqual(['noPlan', 'outOfService']);

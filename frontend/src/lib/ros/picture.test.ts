@@ -51,7 +51,7 @@ test('nodes stand in the order of the topics that they are joined to', () => {
 });
 
 test('a line to a node that is not understood is broken', () => {
-	const mismatch = { kind: 'type', policy: null, node: '/b', ours: '', theirs: '', text: '' } as const;
+	const mismatch = { kind: 'type', policy: null, node: '/b', ours: '', theirs: '', text: '', text_message: { id: 'as-it-was', arguments: { text: '' } } } as const;
 	const picture = pictureOf([{ ...row('/t', ['/a', '/b'], []), mismatches: [mismatch] }]);
 	expect(picture.left.map((line) => line.broken)).toEqual([false, true]);
 });

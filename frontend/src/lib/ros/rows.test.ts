@@ -21,9 +21,10 @@ const topic = (rest: Partial<Topic> = {}): Topic => ({
 	fresh: true,
 	peers: 1,
 	trouble: null,
+	trouble_message: null,
 	...rest
 });
-const MISMATCH: Mismatch = { kind: 'rival', policy: null, node: '/x', ours: '', theirs: '', text: '' };
+const MISMATCH: Mismatch = { kind: 'rival', policy: null, node: '/x', ours: '', theirs: '', text: '', text_message: { id: 'as-it-was', arguments: { text: '' } } };
 
 function graph(publishers: Endpoint[] = [], mismatches: Mismatch[] | null = [], resource = 'robot'): GraphTopic {
 	const use = { resource, direction: 'in', type: 'p/msg/T', type_hash: '', quality: QUALITY, peers: 0 } as const;

@@ -13,7 +13,7 @@ const counted = (messages: number): Record<string, Topic> => ({
 		deadline: null,
 		fresh: true,
 		peers: 1,
-		trouble: null
+		trouble: null, trouble_message: null
 	}
 });
 

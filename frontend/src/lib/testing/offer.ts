@@ -15,6 +15,7 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		revision: 7,
 		kind: 'replan',
 		title: 'Go on as it is',
+		title_message: { id: 'offer.nothing-first' },
 		physical: [],
 		online: [],
 		in_service: [],

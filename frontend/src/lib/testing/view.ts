@@ -4,6 +4,7 @@ import type { Alarm, Plan, PlanStep, StationView, Task, Variable } from '#lib/co
 export const PLAN: Plan = {
 	status: 'followed',
 	reason: '',
+	reason_message: { id: 'as-it-was', arguments: { text: '' } },
 	steps: [],
 	ticks: 0,
 	minimal_ticks: true,
@@ -31,7 +32,8 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 		expected_start: null,
 		expected_end: null,
 		new: false,
-		waits_for: []
+		waits_for: [],
+		waits_for_messages: []
 	};
 	return { ...base, ...rest };
 }

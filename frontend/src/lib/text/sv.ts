@@ -2,7 +2,7 @@
 import { front } from './sv-front.ts';
 import { ability } from './sv/ability.ts';
 import { account } from './sv/account.ts';
-import alarmTexts from './sv/alarm-texts.json';
+import messages from './sv/messages.json';
 import { alarms } from './sv/alarms.ts';
 import { backups } from './sv/backups.ts';
 import { check } from './sv/check.ts';
@@ -22,4 +22,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, alarmTexts, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, messages, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

@@ -1,5 +1,6 @@
 /** What is waited for, in words: what the model writes of an ability is said with its title, the rest as it is written. */
 import type { Ability, Condition } from '#lib/contract.ts';
+import { told } from '#lib/text/message.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
 import { valueText, variableName } from '#lib/wording/values.ts';
 
@@ -19,7 +20,8 @@ export function waitText(condition: string, abilities: Titles, texts: Text['oper
 }
 
 /** A condition as a sentence: where one variable decides it, with the values that it should have. */
-export function sentenceOf({ text, involved }: Condition, abilities: Titles, texts: Text['operate']['why']): string {
+export function sentenceOf({ text: written, text_message, involved }: Condition, abilities: Titles, texts: Text['operate']['why']): string {
+	const text = told(text_message, written);
 	const flag = FLAG.exec(text);
 	if (flag !== null && Object.hasOwn(abilities, flag[2] ?? '')) return waitText(text, abilities, texts);
 	const [only, second] = involved;

@@ -381,6 +381,19 @@ def check_guards(automaton: Automaton) -> Iterator[ModelWarning]:
         reporting.dead |= {part.name for part in stuck}
 
 
+def check_alarms(automaton: Automaton) -> Iterator[ModelWarning]:
+    """Alarms that are always there, and those that never are, even where that was written as `true` or `false`."""
+    alarms = automaton.alarms
+    never, always = _constant(automaton, [ModelCondition(name, "when", each.when) for name, each in alarms.items()])
+    for kind, found, comes in (("always-holds", always, "always"), ("never-holds", never, "never")):
+        for part in found:
+            message = (
+                f"the alarm `{part.key}` is {comes} there, since `{print_expression(part.expression)}` {comes} holds: "
+                "write when it is to be there"
+            )
+            yield ModelWarning(alarms[part.key].place, kind, message)
+
+
 class _Reporting:
     """Chooses what is said of many instances. `dead` are the parts that never hold, by name."""
 

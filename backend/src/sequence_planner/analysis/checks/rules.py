@@ -12,6 +12,7 @@ from sequence_planner.analysis.checks.guards import (
     SatisfiabilityQuestion,
     UndecidedError,
     can_be_asked,
+    check_alarms,
     check_conflicts,
     check_guards,
     differ,
@@ -241,6 +242,7 @@ CHECKS: Mapping[str, Callable[[Automaton], Iterable[ModelWarning]]] = {
     "tasks of people": check_people,
     "finishes that rely on `executing`": check_executing,
     "conditions that never hold": check_guards,
+    "alarms that are always there": check_alarms,
 }
 CONFLICTS = "finishes that conflict"  # looked for last, as that can take long
 

@@ -342,7 +342,16 @@ def _why(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _proof(proof: Proof | None) -> dict[str, Any] | None:
-    return None if proof is None else {"by": proof.by, "invariant": [_clause(clause) for clause in proof.invariant]}
+    if proof is None:
+        return None
+    told: dict[str, Any] = {"by": proof.by, "invariant": [_clause(clause) for clause in proof.invariant]}
+    if (conserved := proof.conserved) is not None:
+        weights = {
+            name: {print_value(value): weight for value, weight in each.items()}
+            for name, each in conserved.weights.items()
+        }
+        told["sum"] = {"weights": weights, "total": conserved.total, "modulus": conserved.modulus or None}
+    return told
 
 
 def _clause(clause: Clause) -> str:

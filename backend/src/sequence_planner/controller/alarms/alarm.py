@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pydantic import BaseModel, ConfigDict, JsonValue, TypeAdapter, ValidationError
 
 from sequence_planner.controller.alarms.kinds import KINDS, AlarmKind, Cause
-from sequence_planner.controller.alarms.message import Message, as_it_was
 from sequence_planner.controller.views.station import AlarmGroup, AlarmMessages, AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.texts.message import Message, as_it_was
 
 # How urgent an alarm is.
 
@@ -139,10 +139,10 @@ class PutAside(BaseModel):
 
     model_config = ConfigDict(frozen=True)
     priority: Priority
-    text: str | Message  # a string where it is of a program that wrote no other
-    past: str | Message = ""
-    consequence: str | Message
-    action: str | Message
+    text: Message | str  # a string where it is of a program that wrote no other
+    past: Message | str = ""
+    consequence: Message | str
+    action: Message | str
     kind: str = ""
     subject: str = ""
     by: str

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sequence_planner.controller.alarms.kinds import BEGINS_AT_REST, DEPLOYMENT_UNDONE, NOT_RESTORED, Cause
-from sequence_planner.controller.alarms.message import as_it_was, message
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
+from sequence_planner.texts.message import as_it_was, message
 
 
 class Beginning:

@@ -7,14 +7,15 @@ from dataclasses import replace
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.controller.alarms.kinds import LEFT_OUT, NO_PLAN, UNDECIDED, UNSAFE_STATE, Cause
-from sequence_planner.controller.alarms.message import Argument, Item, Message, message, quoted
 from sequence_planner.controller.recovery.who_can import WhoCan
+from sequence_planner.controller.views.wording import title_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import variables
 from sequence_planner.planning.heuristic.relaxation import reachable
 from sequence_planner.planning.problem import Circumstances
+from sequence_planner.texts.message import Argument, Item, Message, message, quoted
 
 # What comes of an alarm's cause: which of the active operations wait because of it, as far as that can be told.
 
@@ -39,7 +40,8 @@ class Consequences:
         if execution.production is not Production.STARTED:
             return message("wait.not-started")
         if execution.operator_plan is not None:
-            return message("wait.errand", title=message("quoted", title=execution.operator_plan.title), until=until)
+            title = title_text(execution.operator_plan.title)
+            return message("wait.errand", title=message("quoted", title=title), until=until)
         if execution.mode is not Mode.AUTOMATIC:
             return message("wait.mode", mode=message(f"mode.{execution.mode}"))
         names = sorted(execution.active.intersection(operations))

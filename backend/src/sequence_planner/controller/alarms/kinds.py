@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from sequence_planner.controller.alarms.message import Argument, Message, places
 from sequence_planner.controller.views.station import AlarmGroup, Priority
+from sequence_planner.texts.message import Argument, Message, places
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import replace
 from sequence_planner.automaton.automaton import AlarmDeclaration, Automaton, State
 from sequence_planner.automaton.compiler import closure
 from sequence_planner.controller.alarms.kinds import MODEL, Cause
-from sequence_planner.controller.alarms.message import Argument, Wording
 from sequence_planner.controller.views.station import Priority
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.syntax import variables
+from sequence_planner.texts.message import Argument, Wording
 
 
 class ModelAlarms:

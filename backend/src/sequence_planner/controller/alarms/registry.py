@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 from sequence_planner.controller.alarms.alarm import Alarm, Suppression, most_urgent, urgency
 from sequence_planner.controller.alarms.kinds import Cause
-from sequence_planner.controller.alarms.message import Message, message
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.views.station import AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.texts.message import Message, message
 
 # Alarms that come and go: one that does so often is one alarm that lasts.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final, Generic, TypeVar
 
@@ -214,12 +214,12 @@ class StandingNotes:
         self._looked = now.monotonic
         return True
 
-    def look(self, packml: PackML, waits: Mapping[str, list[str]], now: Timestamp) -> None:
+    def look(self, packml: PackML, waits: Mapping[str, Sequence[str]], now: Timestamp) -> None:
         """Take note of how it stands now."""
         if (changed := self._packml.see(packml, now)) is not None:
             self._tell(PACKML, {"state": changed[0].value, "since": changed[1]})
         self._jobs = {job: self._jobs.get(job) or _Steady(WAITS_LAST) for job in waits}
         for job, steady in self._jobs.items():
-            if (told := steady.see(waits[job], now)) is not None:
+            if (told := steady.see([*waits[job]], now)) is not None:
                 texts: list[JsonValue] = [*told[0]]
                 self._tell(JOB_WAITS, {"job": job, "waits_for": texts, "since": told[1]})

@@ -8,7 +8,6 @@ from sequence_planner.automaton.automaton import Ability
 from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import CONFLICT, GIVEN_UP, OVERDUE, STILL, TRIED, Cause, silences
-from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.views.station import AbilityView
@@ -19,6 +18,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.syntax import variables
+from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
 
 class Abilities:
@@ -163,11 +163,11 @@ class Abilities:
             gone = [each for each in given_up if abilities[each.name].resource == resource]
             titles = [abilities[each.name].title for each in gone]
             texts = [
-                message("given-up.failure", ability=title, why=each.why)
+                message("given-up.failure", ability=title, why=as_it_was(each.why, "late."))
                 for title, each in zip(titles, gone, strict=True)
             ]
             past = [
-                message("given-up.failure", ability=title, why=in_the_past(each.why))
+                message("given-up.failure", ability=title, why=as_it_was(in_the_past(each.why), "late."))
                 for title, each in zip(titles, gone, strict=True)
             ]
             one = len(gone) == 1

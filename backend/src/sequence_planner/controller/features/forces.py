@@ -9,7 +9,6 @@ from collections.abc import Iterator
 
 from sequence_planner.automaton.automaton import Kind, State
 from sequence_planner.controller.alarms.kinds import FORCED, Cause
-from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.views.execution import force_views
@@ -20,6 +19,7 @@ from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import contains
 from sequence_planner.planning.recovery_path import violated
+from sequence_planner.texts.message import message
 
 _FORCED = (Kind.MEASURED, Kind.OUTPUT)
 

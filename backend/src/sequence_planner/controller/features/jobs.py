@@ -21,6 +21,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job, JobAct, Jobs, Step, Waits
 from sequence_planner.execution.vocabulary import JobState
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.texts.message import Message
 
 # Jobs, as they are ordered: what is asked for is done if the station allows it now, or refused with the reason.
 
@@ -187,7 +188,7 @@ class JobViews:
         jobs = self._durable()
         return {"by_order": jobs.by_order, "jobs": job_views(self._execution, jobs, self._around(moment))}
 
-    def waits(self, moment: Timestamp) -> dict[str, list[str]]:
+    def waits(self, moment: Timestamp) -> dict[str, list[Message]]:
         """What jobs wait for that are to go on."""
         self._alarms.current(moment)
         around, told = self._around(moment), (JobState.WAITING, JobState.RUNNING)

@@ -27,6 +27,7 @@ from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
+from sequence_planner.texts.message import Message
 
 
 class Modes:
@@ -43,7 +44,7 @@ class Modes:
         links: DeviceLinks,
         doubting: ConsistencyMonitor,
         alarms: AlarmManager,
-        waits: Callable[[Timestamp], Mapping[str, list[str]]],
+        waits: Callable[[Timestamp], Mapping[str, list[Message]]],
         tell: Tell,
     ) -> None:
         self._execution = execution

@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import LEFT_OUT, LOCAL, NO_PLAN, PLANNER, UNDECIDED, Cause, silences
-from sequence_planner.controller.alarms.message import Message, message
 from sequence_planner.controller.recovery.explain import ConditionContext, waits_for
 from sequence_planner.controller.views.station import (
     DiagnosisView,
@@ -17,7 +16,7 @@ from sequence_planner.controller.views.station import (
     ReplacementView,
     StepStatus,
 )
-from sequence_planner.controller.views.wording import diagnosis_view
+from sequence_planner.controller.views.wording import diagnosis_view, reason_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -26,6 +25,7 @@ from sequence_planner.execution.plan_tracker import PlannedStart, Replacement, f
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
 from sequence_planner.language.printer import print_expression
 from sequence_planner.planning.problem import Contract, Plan, PlanAnswer, Verdict
+from sequence_planner.texts.message import Message, message
 
 
 class LivePlan:
@@ -69,6 +69,7 @@ class LivePlan:
         view = PlanView(
             status=execution.plan.status,
             reason=execution.plan.reason,
+            reason_message=reason_text(execution.plan.reason),
             steps=steps,
             ticks=len(plan.ticks) if plan else 0,
             minimal_ticks=plan is not None and plan.minimal_ticks,
@@ -90,6 +91,7 @@ class LivePlan:
         return ReplacementView(
             at=at,
             why=replacement.why,
+            why_message=reason_text(replacement.why),
             dropped=[
                 DroppedStepView(ability=each.name, title=each.title, resource=each.resource) for each in abilities
             ],
@@ -116,7 +118,8 @@ class LivePlan:
             expected_start=due.start if due and step.started is None else None,
             expected_end=due.end if due else None,
             new=replacement is not None and step.number in replacement.new,
-            waits_for=waiting,
+            waits_for=[*waiting],
+            waits_for_messages=waiting,
         )
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
@@ -158,12 +161,12 @@ class LivePlan:
     def _why_none(self) -> Message:
         plan = self._execution.plan
         if plan.answer is None or plan.reason not in (why_none(plan.answer, blind) for blind in (False, True)):
-            return message("no-plan.other", reason=plan.reason)
+            return message("no-plan.other", reason=reason_text(plan.reason))
         if plan.reason == why_none(plan.answer, blind=True):
-            return message("no-plan.unknown", reason=plan.reason)
+            return message("no-plan.unknown", reason=reason_text(plan.reason))
         if plan.answer.verdict is Verdict.NONE_AT_ALL:
-            return message("no-plan.none", reason=plan.reason)
-        return message("no-plan.found", reason=plan.reason)
+            return message("no-plan.none", reason=reason_text(plan.reason))
+        return message("no-plan.found", reason=reason_text(plan.reason))
 
     def _needed(self) -> Message:
         """Say what to do where there is no plan: what is out of service may be all that is missing."""

@@ -23,6 +23,7 @@ from sequence_planner.execution.record.recorder import RunRecorder, model_digest
 from sequence_planner.execution.state import InitialState
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.journal.writer import Fence, RunWriter
+from sequence_planner.texts.message import message
 
 PATIENCE = 1.0  # seconds for which outputs may wait for their record before nothing more is started
 MOST_UNWRITTEN = 100_000  # records; then nothing more is taken in, and no tick taken
@@ -110,9 +111,9 @@ class Records:
     def obstacles(self) -> tuple[str, ...]:
         """What keeps every ability from starting."""
         self._was_behind = self.trouble is not None
-        unwritten = ["what has happened to be journalled"] if self._was_behind else []
+        unwritten = [message("waits.journal")] if self._was_behind else []
         began = self._execution.production is Production.STARTED and self.gate.released is None
-        unsent = ["the first commands to be sent"] if began else []
+        unsent = [message("waits.first-commands")] if began else []
         return (*self._devices.obstacles(), *unwritten, *unsent)
 
     def repeat(self, moment: Timestamp) -> None:

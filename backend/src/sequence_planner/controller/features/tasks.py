@@ -13,7 +13,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.controller.alarms.kinds import PROBLEM, Cause
-from sequence_planner.controller.alarms.message import Argument, Message, message
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
     AcknowledgeTask,
@@ -27,6 +26,7 @@ from sequence_planner.controller.views.station import TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
+from sequence_planner.texts.message import Argument, Message, message
 
 _NEXT_MOVES = 2  # coming steps that a task names as what moves next
 

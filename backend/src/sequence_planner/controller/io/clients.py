@@ -43,10 +43,10 @@ class RequestMaker:
         self._said: tuple[Value | None, ...] | None = None
 
     def begin(self) -> None:
-        """A message is wanted: `message` makes it, now or later."""
+        """A message is wanted: `next_message` makes it, now or later."""
         self._said = None
 
-    def message(self, state: State, now: float) -> dict[str, object] | None:
+    def next_message(self, state: State, now: float) -> dict[str, object] | None:
         """The fields of the message that is wanted; None when stages hold it back, until they do not."""
         said = tuple([state[name] for name in self._pipeline.variables])
         if said != self._said:
@@ -228,7 +228,7 @@ class GoalClient:
     def heed(self, state: State, now: float) -> None:
         """The state is so now: send a goal or cancel it, if that is wanted."""
         self._do(self._course.heed(state[self._use.when] is True))
-        if self._making and (message := self.maker.message(state, now)) is not None:
+        if self._making and (message := self.maker.next_message(state, now)) is not None:
             self._making = False
             self._begin(self._carry_out(message))
 
@@ -374,7 +374,7 @@ class ServiceClient:
         if not self._making:
             self.maker.begin()
             self._making = True
-        message = self.maker.message(state, now)
+        message = self.maker.next_message(state, now)
         if message is None:
             return
         self._making = False

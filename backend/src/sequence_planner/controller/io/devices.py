@@ -9,7 +9,6 @@ import structlog
 
 from sequence_planner.automaton.automaton import State
 from sequence_planner.controller.alarms.kinds import NOT_EMULATED, Cause
-from sequence_planner.controller.alarms.message import as_it_was
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inbox, Inputs
 from sequence_planner.controller.io.network import NetworkWatch
@@ -21,6 +20,7 @@ from sequence_planner.ros.qos import QualityEvent
 from sequence_planner.ros.transport import Sample, TellsServices, Transport
 from sequence_planner.simulation.manual_interface import NODE as EMULATED_DEVICES
 from sequence_planner.station import ReadyStation
+from sequence_planner.texts.message import as_it_was, message
 
 LOG = structlog.get_logger(__name__)
 
@@ -115,7 +115,7 @@ class Devices:
 
     def obstacles(self) -> tuple[str, ...]:
         """Return what keeps every ability from starting."""
-        owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
+        owed = [message("waits.command", topic=topic) for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:

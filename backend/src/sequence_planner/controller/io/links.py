@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
 
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import (
@@ -17,7 +18,6 @@ from sequence_planner.controller.alarms.kinds import (
     AlarmKind,
     Cause,
 )
-from sequence_planner.controller.alarms.message import Argument, Message, as_it_was, message
 from sequence_planner.controller.io.inputs import InputError, InputErrors, Inputs, InputTopic
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
@@ -26,6 +26,7 @@ from sequence_planner.controller.views.station import ResourceView, TopicView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
+from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
 GRACE = 30.0  # seconds after the start for devices to be heard first
 STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
@@ -96,7 +97,7 @@ class DeviceLinks:
                 deadline=feed.pipeline.deadline,
                 fresh=feed.fresh(moment.monotonic),
                 peers=self._network.peers[name],
-                trouble=self._network.troubles.get(name) or feed.trouble,
+                **_trouble(self._network.troubles.get(name) or feed.trouble),
             )
         for name, command in self._commander.topics.items():
             views[name] = TopicView(
@@ -108,7 +109,7 @@ class DeviceLinks:
                 deadline=None,
                 fresh=command.last is not None,
                 peers=self._network.peers[name],
-                trouble=self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed,
+                **_trouble(self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed),
             )
         return views
 
@@ -191,7 +192,7 @@ class DeviceLinks:
 
     def _mismatches(self) -> Iterator[Cause]:
         """Of each resource one: what was built from other definitions is so on every topic."""
-        troubles: dict[str, dict[str, str]] = {}
+        troubles: dict[str, dict[str, Message]] = {}
         for topic, trouble in self._network.troubles.items():
             troubles.setdefault(self._network.resource_of(topic), {})[topic] = trouble
         for resource, by_topic in troubles.items():
@@ -308,3 +309,7 @@ def _counted(place: str, report: InputError, moment: Timestamp) -> Message:
         first, last = span
         times = message("message.times", count=report.count, first=first, last=last)
     return message("message.said", topic=place, report=report.text, times=times)
+
+
+def _trouble(trouble: str | None) -> dict[str, Any]:
+    return {"trouble": trouble, "trouble_message": None if trouble is None else as_it_was(trouble)}

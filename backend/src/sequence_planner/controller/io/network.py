@@ -24,6 +24,7 @@ from sequence_planner.ros.qos import Direction, QualityOfService, disagreements
 from sequence_planner.ros.transport import NetworkEndpoint, Role, ServiceEnd
 from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.ros.types.standard_types import GOAL_STATUSES
+from sequence_planner.texts.message import Message, message
 
 # Where the station and others on its topics do not understand one another, each with both sides.
 
@@ -40,7 +41,7 @@ class Mismatch:
     node: str | None
     ours: str
     theirs: str
-    text: str
+    text: Message
     policy: Policy | None = None
 
 
@@ -91,14 +92,12 @@ def call_uses(pipelines: StationPipelines) -> dict[str, CallUse]:
     return {name: CallUse(part.name, part.topic.resource) for name, part in (services | goals).items()}
 
 
-def not_understood(end: ServiceEnd) -> str:
+def not_understood(end: ServiceEnd) -> Message:
     """Return what to say of a server that puts the numbers of calls elsewhere than the station does."""
     name, is_action, _ = end.service.partition("/_action/")
-    does = "carries out" if is_action else "serves"
-    return (
-        f"{end.node or 'another node'} {does} {name} on {worded_vendor(end.vendor)}, whose calls are written otherwise "
-        "than this station's: nothing is asked of it"
-    )
+    told = message("graph.node") if end.node is None else end.node
+    what = "graph.action" if is_action else "graph.call"
+    return message(what, node=told, name=name, vendor=worded_vendor(end.vendor))
 
 
 def mismatches(endpoint: NetworkEndpoint, use: Use) -> list[Mismatch]:
@@ -112,14 +111,14 @@ def mismatches(endpoint: NetworkEndpoint, use: Use) -> list[Mismatch]:
 
 
 def _of_type(endpoint: NetworkEndpoint, use: Use) -> Iterator[Mismatch]:
-    topic, does = use.topic, "publishes" if endpoint.direction == "publisher" else "subscribes to"
-    says = f"{who(endpoint)} {does} {topic.name}"
+    topic, does = use.topic, "graph.publishes" if endpoint.direction == "publisher" else "graph.subscribes"
+    says = message(does, node=who(endpoint), topic=topic.name)
     if endpoint.type_name != topic.type_name:
-        text = f"{says} as {endpoint.type_name}, and the station's model says {topic.type_name}"
+        text = message("graph.type", says=says, theirs=endpoint.type_name, ours=topic.type_name)
         yield Mismatch("type", endpoint.node, topic.type_name, endpoint.type_name, text)
     elif endpoint.type_hash not in (None, use.type_hash):
         theirs = str(endpoint.type_hash)
-        text = f"{says} with another definition of {topic.type_name}: theirs is {theirs}, ours is {use.type_hash}"
+        text = message("graph.definition", says=says, type=topic.type_name, theirs=theirs, ours=use.type_hash)
         yield Mismatch("definition", endpoint.node, use.type_hash, theirs, text)
 
 
@@ -128,22 +127,24 @@ def _of_quality(endpoint: NetworkEndpoint, use: Use) -> Iterator[Mismatch]:
     offered, wanted = (ours, theirs) if use.own == "publisher" else (theirs, ours)
     for said in disagreements(offered, wanted):
         policy = cast("Policy", said.partition(":")[0])
-        sides = "we publish" if use.own == "publisher" else "we subscribe"
-        text = (
-            f"{use.topic.name}: nothing passes between {who(endpoint)} and the station ({sides}). {said.capitalize()}"
+        text = message(
+            "graph.quality-published" if use.own == "publisher" else "graph.quality-subscribed",
+            topic=use.topic.name,
+            node=who(endpoint),
+            difference=said.capitalize(),
         )
         yield Mismatch("quality", endpoint.node, worded(ours, policy), worded(theirs, policy), text, policy)
 
 
 def _rival(endpoint: NetworkEndpoint, use: Use) -> Mismatch:
     name = use.topic.name
-    text = f"{who(endpoint)} also publishes {name}: two would command the same device"
+    text = message("graph.rival", node=who(endpoint), topic=name)
     return Mismatch("rival", endpoint.node, use.topic.type_name, endpoint.type_name, text)
 
 
 def who(endpoint: NetworkEndpoint) -> str:
     """Say whose endpoint it is."""
-    return endpoint.node or "another node"
+    return endpoint.node or message("graph.node")
 
 
 def worded(quality: QualityOfService, policy: Policy) -> str:
@@ -243,7 +244,15 @@ def _use(found: Iterable[NetworkEndpoint], use: Use) -> StationUseView:
         quality=_quality(use.topic.quality),
         peers=peers,
         mismatches=[
-            MismatchView(kind=m.kind, policy=m.policy, node=m.node, ours=m.ours, theirs=m.theirs, text=m.text)
+            MismatchView(
+                kind=m.kind,
+                policy=m.policy,
+                node=m.node,
+                ours=m.ours,
+                theirs=m.theirs,
+                text=m.text,
+                text_message=m.text,
+            )
             for m in wrong
         ],
     )
@@ -344,8 +353,8 @@ class NetworkWatch:
         self.seen: tuple[Sequence[NetworkEndpoint], Sequence[ServiceEnd] | None] = ((), None)
         self.changed = asyncio.Event()
         self.peers: dict[str, int] = dict.fromkeys(self.uses, 0)
-        self.troubles: dict[str, str] = {}
-        self.rivals: dict[str, str] = {}  # who else publishes a topic with which the station commands, in words
+        self.troubles: dict[str, Message] = {}
+        self.rivals: dict[str, Message] = {}  # who else publishes a topic with which the station commands, in words
 
     def look(self, graph: Sequence[NetworkEndpoint], ends: Sequence[ServiceEnd] | None = None) -> frozenset[str]:
         """Take a new look; returns the incoming topics whose publishers have all gone since the last one."""

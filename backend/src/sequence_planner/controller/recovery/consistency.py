@@ -18,7 +18,6 @@ from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import CONTRADICTION, UNDECIDED_OUTPUTS, Cause
-from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.station import QuestionView, UndecidedOutputView
 from sequence_planner.controller.views.wording import value_text
@@ -28,6 +27,7 @@ from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Value
+from sequence_planner.texts.message import Message, message
 
 # Where what the station believes does not fit what is measured, and what else could be true.
 #
@@ -46,7 +46,7 @@ Price = Callable[[str, Value], float]  # of a variable's value; infinite where i
 class Contradictions:
     """`because` says which belief does not go together with which measurement; by one of `hypotheses` all fits."""
 
-    because: tuple[str, ...] = ()
+    because: tuple[Message, ...] = ()
     hypotheses: tuple[Hypothesis, ...] = ()
 
 
@@ -68,7 +68,10 @@ def questions(automaton: Automaton, found: Contradictions, state: State) -> list
             continue
         said = [hypothesis.get(name, believed) for hypothesis in found.hypotheses]
         possible = [value for value in automaton.types[name].domain if value in said]
-        question = QuestionView(variable=name, believed=believed, possible=possible, because=list(found.because))
+        because = list(found.because)
+        question = QuestionView(
+            variable=name, believed=believed, possible=possible, because=[*because], because_messages=because
+        )
         asked.append((sum(said.count(value) ** 2 for value in possible), question))
     return [question for _, question in sorted(asked, key=lambda each: each[0])]
 
@@ -121,7 +124,7 @@ def _fits(fits: StateSet, state: State) -> bool:
 
 def _of_pairs(automaton: Automaton, known: NeverTogether, state: State) -> Contradictions:
     """By pairs: each estimate by itself, and only where it could have some other value."""
-    because: list[str] = []
+    because: list[Message] = []
     options: dict[str, list[Value]] = {}
     for name in automaton.names(Kind.ESTIMATED):
         excluded = {(value, other) for one, value, other, seen in known.pairs if one == name and state[other] == seen}
@@ -142,7 +145,7 @@ def _last_first(automaton: Automaton, names: Iterable[str]) -> list[str]:
     return sorted(names, key=lambda name: order.index(automaton.variables[name].kind))
 
 
-def _because(automaton: Automaton, state: State, names: Iterable[str]) -> str:
+def _because(automaton: Automaton, state: State, names: Iterable[str]) -> Message:
     """That the belief in some of `names` does not go with what the others are measured to be."""
     told = set(names)
     believed: list[str] = []
@@ -152,7 +155,7 @@ def _because(automaton: Automaton, state: State, names: Iterable[str]) -> str:
         if value is not None:
             kind = automaton.variables[name].kind
             (believed if kind is Kind.ESTIMATED else measured).append(value_text(automaton, name, value))
-    return f"{' and '.join(believed)} is believed, which never goes together with {' and '.join(measured)}"
+    return message("belief.never", believed=" and ".join(believed), measured=" and ".join(measured))
 
 
 def _different(hypotheses: Iterable[Hypothesis]) -> tuple[Hypothesis, ...]:
@@ -257,7 +260,12 @@ class RestoredOutputs:
             if reacts := self._reactions(name, state):
                 others = (other for other in automaton.types[name].domain if other != value)
                 quiet = [v for v in others if not self._reactions(name, self._execution.corrected({**real, name: v}))]
-                yield name, UndecidedOutputView(value=value, reacts=reacts, quiet=quiet, unsafe=self._unsafe(name))
+                yield (
+                    name,
+                    UndecidedOutputView(
+                        value=value, reacts=[*reacts], reacts_messages=reacts, quiet=quiet, unsafe=self._unsafe(name)
+                    ),
+                )
 
     def _unsafe(self, name: str) -> list[Value]:
         """The values that would lead out of the safe states while all else is as it is."""
@@ -266,7 +274,7 @@ class RestoredOutputs:
         domain = execution.automaton.types[name].domain
         return [value for value in domain if leaves(safe, state, execution.corrected({name: value}))]
 
-    def _reactions(self, name: str, state: State) -> list[str]:
+    def _reactions(self, name: str, state: State) -> list[Message]:
         found = (_reaction(self._execution.automaton, effect, state) for effect in self._readers.get(name, ()))
         return list(dict.fromkeys(text for text in found if text is not None))
 
@@ -282,7 +290,7 @@ def _readers(automaton: Automaton) -> Mapping[str, list[Effect]]:
     return readers
 
 
-def _reaction(automaton: Automaton, effect: Effect, state: State) -> str | None:
+def _reaction(automaton: Automaton, effect: Effect, state: State) -> Message | None:
     """Return what the effect would change; None where it certainly would change nothing."""
     guard = evaluate(effect.guard, state)
     if guard is False:
@@ -297,9 +305,11 @@ def _reaction(automaton: Automaton, effect: Effect, state: State) -> str | None:
         return None
     if guard is None:
         unknown = sorted(n for n in read_variables(automaton, (effect.guard,)) if state[n] is None)
-        return f"{effect.resource} may react: {' and '.join(unknown)} unknown"
-    said = (f"{n} changes" if v is None else value_text(automaton, n, v) for n, v in changes.items())
-    return f"{effect.resource} reacts: {' and '.join(said)}"
+        return message("reacts.may", resource=effect.resource, variables=" and ".join(unknown))
+    said = [
+        message("reacts.changes", variable=n) if v is None else value_text(automaton, n, v) for n, v in changes.items()
+    ]
+    return message("reacts.does", resource=effect.resource, changes=said)
 
 
 # What a person should look at: beliefs that do not fit what is measured, and outputs that nobody has decided on.

@@ -31,6 +31,7 @@ from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Value, contains
 from sequence_planner.planning.problem import Contract, Goal, PlanAnswer, PlanRequest, Verdict, goal_of
 from sequence_planner.planning.recovery_path import violated
+from sequence_planner.texts.message import Message, message
 
 # What follows from a correction, found out without making it.
 
@@ -39,9 +40,9 @@ WAITING = 2.0  # seconds beyond that: the adviser may be at something else
 MOST_RELATED = 12
 
 _WHY_NONE = {
-    Verdict.NONE_UP_TO: "No plan was found in as many ticks as are looked at.",
-    Verdict.NONE_AT_ALL: "There is no plan at all from there.",
-    Verdict.LATE: "No plan was found in the time there is; one may exist.",
+    Verdict.NONE_UP_TO: message("preview.none-up-to"),
+    Verdict.NONE_AT_ALL: message("preview.none-at-all"),
+    Verdict.LATE: message("preview.late"),
 }
 
 
@@ -99,6 +100,8 @@ class Corrections:
         before, after = self._startable(now), self._startable(then)
         wrong_now, wrong_then = (self._doubting.contradictions(state).because for state in (now, then))
         changes = [self._changed(name, value) for name, value in values.items()]
+        gone = [text for text in wrong_now if text not in wrong_then]
+        new = [text for text in wrong_then if text not in wrong_now]
         preview = CorrectionPreview(
             revision=revision,
             changes=changes,
@@ -109,17 +112,19 @@ class Corrections:
             no_longer_startable=[name for name in before if name not in after],
             activated=sorted(active - execution.active),
             completed=sorted(execution.active - active),
-            contradictions_gone=[text for text in wrong_now if text not in wrong_then],
-            contradictions_new=[text for text in wrong_then if text not in wrong_now],
+            contradictions_gone=[*gone],
+            contradictions_new=[*new],
+            contradiction_messages=[*gone, *new],
             plan=None,
             goals=[],
             left_out=[],
             reason="",
+            reason_message=None,
             obstacle=None if refusal is None else refusal.detail,
         )
         goals = self._goals(active)
         if not goals:
-            return preview.model_copy(update={"reason": "No operation would be active, so there is nothing to plan."})
+            return preview.model_copy(update=_why(message("preview.nothing")))
         state = record_activity(automaton, then, active)
         return preview.model_copy(update=await self._planned(state, goals))
 
@@ -131,9 +136,9 @@ class Corrections:
         try:
             answer = await self._plan(request, PLANNED_WITHIN + WAITING)
         except CommandRefused as refused:
-            return {"reason": f"{refused.title}: {refused.detail}"}
+            return _why(message("preview.refused", title=refused.title, detail=refused.detail))
         if answer.plan is None:
-            return {"reason": _WHY_NONE[answer.verdict], "left_out": list(answer.left_out)}
+            return {**_why(_WHY_NONE[answer.verdict]), "left_out": list(answer.left_out)}
         preview = plan_preview(self._execution.automaton, answer.plan)
         return {"plan": preview, "goals": list(answer.goals), "left_out": list(answer.left_out)}
 
@@ -166,7 +171,10 @@ class Corrections:
         read = read_variables(automaton, guards)
         for measured in [each for each in automaton.names(Kind.MEASURED) if each in read][:MOST_RELATED]:
             value = state[measured]
-            yield f"{measured} is unknown" if value is None else value_text(automaton, measured, value)
+            if value is None:
+                yield message("value.unknown", name=measured)
+            else:
+                yield value_text(automaton, measured, value)
 
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""
@@ -296,3 +304,7 @@ def _other_kind(name: str, is_: Kind, wanted: Kind) -> CommandRefused:
 def _moved() -> CommandRefused:
     detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
     return CommandRefused("stale-revision", "The state has moved", detail)
+
+
+def _why(reason: Message) -> dict[str, object]:
+    return {"reason": str(reason), "reason_message": reason}

@@ -30,14 +30,9 @@ from sequence_planner.language.syntax import (
 from sequence_planner.language.types import Value
 from sequence_planner.planning.recovery.proposals import all_equal
 from sequence_planner.synthesis.guards import SupervisorGuard
+from sequence_planner.texts.message import Item, Message, as_it_was, message
 
 # All that keeps an ability from starting now, each piece with what it takes to be over.
-
-WAITS = {
-    Mode.PAUSED: "automatic mode: the station is paused",
-    Mode.HOLD: "automatic mode: the station holds",
-    Mode.RESTART: "a way back to be taken: the station is in restart mode",
-}
 
 
 class HindranceKind(StrEnum):
@@ -57,22 +52,27 @@ class BlockingCondition:
     """One of them: `text` names what is waited for, `expression` says the same where the model can."""
 
     kind: HindranceKind
-    text: str
+    text: Message
     expression: Expression | None = None
 
 
 def of_station(execution: Executor) -> Iterator[BlockingCondition]:
     """Yield what keeps every ability from starting."""
     conduct = execution.conduct
-    texts: list[str] = []
+    texts: list[Message] = []
     if conduct.production is not Production.STARTED:
-        texts.append("production to be started")
+        texts.append(message("waits.production"))
     if conduct.operator_plan is None and conduct.mode is not Mode.AUTOMATIC:
-        texts.append(WAITS[conduct.mode])
+        texts.append(message(f"waits.{conduct.mode}"))
     if conduct.stepping and not conduct.steps:
-        texts.append("a step: the station goes step by step")
-    for text in (*texts, *execution.obstacles):
+        texts.append(message("waits.step"))
+    for text in (*texts, *obstacles(execution)):
         yield BlockingCondition(HindranceKind.STATION, text)
+
+
+def obstacles(execution: Executor) -> Iterator[Message]:
+    """Yield what keeps everything from starting, which is written down as strings."""
+    yield from (as_it_was(each, "waits.", "graph.rival") for each in execution.obstacles)
 
 
 def of_ability(
@@ -89,22 +89,24 @@ def of_ability(
         yield from _unwritten(execution, ability, guard)
 
 
-def _out_of_service(execution: Executor, ability: Ability, feeds: Mapping[str, str]) -> Iterator[str]:
+def _out_of_service(execution: Executor, ability: Ability, feeds: Mapping[str, str]) -> Iterator[Message]:
     conduct, resource = execution.conduct, ability.resource
     title = execution.automaton.resources.get(resource, resource)
     if resource in conduct.silent:
         variables_of = [v.name for v in execution.automaton.variables.values() if v.resource == resource]
         topics = sorted({feeds[v] for v in variables_of if v in feeds and execution.state[v] is None})
-        on = f" on {', '.join(topics)}" if topics else ""
-        yield f"{title} to be heard again{on}"
+        if topics:
+            yield message("waits.heard-on", resource=title, topics=", ".join(topics))
+        else:
+            yield message("waits.heard", resource=title)
     if resource in conduct.out_of(ServiceKind.RESOURCE):
-        yield f"{title} to be put back in service"
+        yield message("waits.service", title=title)
     if ability.name in conduct.out_of(ServiceKind.ABILITY):
-        yield f"{ability.title} to be put back in service"
+        yield message("waits.service", title=ability.title)
     elif ability.name in execution.circumstances.barred:
-        yield "what is forced to be released"
+        yield message("waits.release")
     if ability.restart and not execution.circumstances.restart:
-        yield "restart mode, and a way back that has it"
+        yield message("waits.restart-way")
 
 
 def _written(execution: Executor, ability: Ability, feeds: Mapping[str, str]) -> Iterator[BlockingCondition]:
@@ -114,10 +116,10 @@ def _written(execution: Executor, ability: Ability, feeds: Mapping[str, str]) ->
             yield BlockingCondition(HindranceKind.WRITTEN, lacking_text(execution, part, truth is None, feeds), part)
 
 
-def lacking_text(execution: Executor, part: Expression, unknown: bool, feeds: Mapping[str, str]) -> str:
+def lacking_text(execution: Executor, part: Expression, unknown: bool, feeds: Mapping[str, str]) -> Message:
     """Say what a part of a condition waits for, which does not hold or is `unknown`."""
     topics = awaited(execution, part, feeds) if unknown else []
-    return f"a message on {', '.join(topics)}" if topics else print_expression(part)
+    return message("waits.message", topics=", ".join(topics)) if topics else as_it_was(print_expression(part))
 
 
 def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> list[str]:
@@ -131,12 +133,14 @@ def _unwritten(execution: Executor, ability: Ability, guard: SupervisorGuard | N
     unsupervised = execution.operator_plan is not None and execution.operator_plan.unsupervised
     after = start(execution.automaton, state, ability)
     if after is None:
-        yield BlockingCondition(HindranceKind.WRITTEN, "values that are unknown")
+        yield BlockingCondition(HindranceKind.WRITTEN, message("waits.unknown"))
     elif taken := reverts(execution.automaton, execution.published, state, after):
-        yield BlockingCondition(HindranceKind.UNPUBLISHED, f"{', '.join(sorted(taken))} to be published first")
+        yield BlockingCondition(
+            HindranceKind.UNPUBLISHED, message("waits.published", variables=", ".join(sorted(taken)))
+        )
     elif not execution.supervisor.safe.includes(state):
         if not unsupervised:
-            yield BlockingCondition(HindranceKind.SUPERVISOR, "the station to be back in a safe state")
+            yield BlockingCondition(HindranceKind.SUPERVISOR, message("waits.safe"))
     elif not execution.supervisor.safe.includes(after):
         yield _unsafe(execution, ability, after, guard)
 
@@ -145,21 +149,22 @@ def _unsafe(execution: Executor, ability: Ability, after: State, guard: Supervis
     """Return what the supervisor's guard lacks, and which specification the start would break, at once or later."""
     kind = HindranceKind.SUPERVISOR
     if guard is not None:
-        causes = [execution.automaton.specifications[name].title for name in guard.specifications]
-        causes += ["coming to rest again"] if guard.rest else []
-        sake = f"for the sake of: {', '.join(causes)}"
+        causes: list[Item] = [execution.automaton.specifications[name].title for name in guard.specifications]
+        causes += [message("waits.rest")] if guard.rest else []
         said = TRUE if guard.expression is None else guard.expression
         lacking = [part for part in conjuncts(said) if evaluate(part, execution.state) is not True]
         if lacking:
             condition = conjunction(*lacking)
-            return BlockingCondition(kind, f"{print_expression(condition)}, {sake}", condition)
+            text = message("waits.sake", condition=print_expression(condition), causes=causes)
+            return BlockingCondition(kind, text, condition)
         if guard.expression is None and (nearest := _nearest(execution, ability)) is not None:
-            where = f"{print_expression(nearest)} (the nearest state in which it may start)"
-            return BlockingCondition(kind, f"{where}, {sake}", nearest)
+            where = message("waits.nearest", condition=print_expression(nearest))
+            return BlockingCondition(kind, message("waits.sake", condition=where, causes=causes), nearest)
     for specification in execution.automaton.specifications.values():
         if holds(specification.forbidden, after):
-            return BlockingCondition(kind, f"a safe start: {specification.title} ({specification.name})")
-    return BlockingCondition(kind, "a safe start: started now, a specification could be broken later")
+            named = message("waits.safe-start", title=specification.title, name=specification.name)
+            return BlockingCondition(kind, named)
+    return BlockingCondition(kind, message("waits.safe-later"))
 
 
 def _nearest(execution: Executor, ability: Ability) -> Expression | None:
@@ -298,7 +303,8 @@ class Involving:
         condition, execution = hindrance.expression, self._execution
         names = () if condition is None else responsible(execution.automaton, condition, execution.state)
         involved = [] if condition is None else [self._involved(name, condition) for name in names]
-        return ConditionView(kind=str(hindrance.kind), text=hindrance.text, involved=involved)
+        text = hindrance.text
+        return ConditionView(kind=str(hindrance.kind), text=text, text_message=text, involved=involved)
 
     def _involved(self, name: str, condition: Expression) -> InvolvedView:
         automaton, state = self._execution.automaton, self._execution.state
@@ -320,7 +326,9 @@ class Involving:
     def _abilities(self, name: str, values: tuple[Value, ...]) -> list[ChangerView]:
         running = self._execution.running()
         found = [
-            ChangerView(how=each.how, name=each.ability.name, title=each.ability.title, running=is_running)
+            ChangerView(
+                how=each.how, name=each.ability.name, title=each.ability.title, title_message=None, running=is_running
+            )
             for each in changers(self._execution.automaton, name, values)
             for is_running in (each.ability.name in running,)
         ]
@@ -334,16 +342,20 @@ class Involving:
         title = automaton.resources.get(resource, automaton.title)
         match variable.kind:
             case Kind.ESTIMATED:
-                return [ChangerView(how="correction", name=name, title=f"correct {name}", running=False)]
+                return [_by_person("correction", name, message("changes.correction", name=name))]
             case Kind.OUTPUT:
-                return [ChangerView(how="force", name=name, title=f"force {name}", running=False)]
+                return [_by_person("force", name, message("changes.force", name=name))]
             case Kind.MEASURED if self._execution.state[name] is None:
                 topic = self._around.feeds.get(name, name)
-                return [ChangerView(how="message", name=topic, title=f"a message on {topic}", running=False)]
+                return [_by_person("message", topic, message("changes.message", topic=topic))]
             case Kind.MEASURED:
-                return [ChangerView(how="device", name=resource, title=f"at {title}", running=False)]
+                return [_by_person("device", resource, message("changes.device", title=title))]
             case Kind.ACTIVITY:
                 return []
+
+
+def _by_person(how: str, name: str, title: Message) -> ChangerView:
+    return ChangerView(how=how, name=name, title=title, title_message=title, running=False)
 
 
 # What the next start waits for, in the model's own words.
@@ -351,7 +363,7 @@ class Involving:
 
 def waits_for(
     execution: Executor, name: str, feeds: Mapping[str, str], guard: SupervisorGuard | None = None
-) -> list[str]:
+) -> list[Message]:
     """Everything that keeps the ability from starting now; empty when it starts in the next tick.
 
     `feeds` names the topic behind each measured variable, `guard` is what the supervisor adds to the written ones.
@@ -366,13 +378,13 @@ def waits_for(
     return []
 
 
-def right_moment(execution: Executor) -> str:
+def right_moment(execution: Executor) -> Message:
     """Say what the next start waits for although it may start."""
     if execution.operator_plan is None:
-        return "the right moment: started now, the rest of the plan would not reach its goals"
+        return message("waits.right-moment")
     if before := list(dict.fromkeys(_before(execution))):
-        return f"what comes before it in what was taken: {', '.join(before)}"
-    return "the right moment: started now, what was taken would not come to its end"
+        return message("waits.before", conditions=before)
+    return message("waits.right-moment-taken")
 
 
 def _before(execution: Executor) -> Iterator[str]:

@@ -18,7 +18,6 @@ from pydantic import JsonValue
 from sequence_planner.automaton.automaton import Ability, Kind, State
 from sequence_planner.automaton.reactions import Reactions
 from sequence_planner.controller.alarms.kinds import BY_HAND, Cause
-from sequence_planner.controller.alarms.message import Message, message
 from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard, Ticked, TickOutcome
@@ -28,6 +27,7 @@ from sequence_planner.language.printer import print_value
 from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.graph import GOAL_ON_ITS_WAY, StationPipelines
+from sequence_planner.texts.message import Message, message
 
 KIND: Final = BY_HAND.name  # of the records
 LATENCY: Final = 2.0  # seconds for which a device may act on what it was told before, and that be on its way

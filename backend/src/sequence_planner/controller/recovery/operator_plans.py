@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from sequence_planner.controller.alarms.kinds import ERRAND, ERRAND_WAITS, Cause
-from sequence_planner.controller.alarms.message import Argument, message
 from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.recovery.explain import idle_since, waits_for
 from sequence_planner.controller.views.execution import last_operator_plan_view, operator_plan_view
-from sequence_planner.controller.views.wording import end_text
+from sequence_planner.controller.views.wording import end_text, ended_text, title_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode
+from sequence_planner.texts.message import Argument, message
 
 START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
 END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
@@ -67,7 +67,8 @@ class OperatorPlans:
                 "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]
             )
         yield ERRAND_WAITS.cause(
-            "", {"what": what, "title": message("quoted", title=operator_plan.title), "by": operator_plan.by}
+            "",
+            {"what": what, "title": message("quoted", title=title_text(operator_plan.title)), "by": operator_plan.by},
         )
 
     def _ended(self) -> Iterator[Cause]:
@@ -76,4 +77,7 @@ class OperatorPlans:
         if last is None or last.done or last.by is not None or self._execution.operator_plan is not None:
             return
         if self._execution.mode is not Mode.AUTOMATIC:
-            yield ERRAND.cause(str(last.ended.epoch), {"title": message("quoted", title=last.title), "why": last.why})
+            yield ERRAND.cause(
+                str(last.ended.epoch),
+                {"title": message("quoted", title=title_text(last.title)), "why": ended_text(last.why)},
+            )

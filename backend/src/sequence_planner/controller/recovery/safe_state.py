@@ -12,7 +12,6 @@ from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import UNSAFE_STATE, Cause
-from sequence_planner.controller.alarms.message import Argument, Item, Message, message
 from sequence_planner.controller.views.station import DifferenceView, SpecificationView, WayBackStepView, WayBackView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
@@ -21,6 +20,7 @@ from sequence_planner.language.syntax import Comparison, Constant, Expression, N
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Circumstances, RecoveryPath, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import deciding, violated
+from sequence_planner.texts.message import Argument, Item, Message, message
 
 
 @dataclass(frozen=True)
@@ -182,6 +182,7 @@ class SafeStateMonitor:
         answer = self.answer if situation.certain else None
         found = answer if isinstance(answer, WayBackAnswer) else None
         way = found.way if found is not None else None
+        reason = self.way() if situation.certain else message("unsafe.depends", topics=", ".join(awaits))
         return WayBackView(
             violated=named(situation.violated),
             threatened=named(found.threatened) if found is not None else [],
@@ -190,9 +191,8 @@ class SafeStateMonitor:
             ticks=len(way.ticks) if way is not None else None,
             steps=_steps(automaton, way) if way is not None else [],
             breaks=named(way.breaks) if way is not None else [],
-            reason=str(self.way())
-            if situation.certain
-            else f"Whether the state is safe depends on {', '.join(awaits)}.",
+            reason=reason,
+            reason_message=reason,
         )
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:

@@ -11,7 +11,7 @@ from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.controller.commands.command import CommandRefused, answers, handles
 from sequence_planner.controller.commands.queries import AskDefinition
 from sequence_planner.controller.commands.recovery import TryAbility
-from sequence_planner.controller.recovery.explain import ConditionContext, of_ability
+from sequence_planner.controller.recovery.explain import ConditionContext, obstacles, of_ability
 from sequence_planner.controller.views.automaton_diagram import Drawing
 from sequence_planner.controller.views.details import AbilityDefinitionView, TrialView, TriedReactionView
 from sequence_planner.controller.views.wording import plan_running
@@ -20,6 +20,7 @@ from sequence_planner.execution.events import Heard, OperatorPlanStarted, Ticked
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import LastOperatorPlan, OperatorPlan
 from sequence_planner.execution.vocabulary import Mode, Production
+from sequence_planner.texts.message import Message, message
 
 # What has come of the last trial of an ability: its run from the start to the end, and the reactions of its device.
 
@@ -133,7 +134,8 @@ class Trials:
         if not command.real_devices and (there := self.real_devices()):
             detail = f"{'; '.join(there)}. Confirm that real devices may move."
             raise CommandRefused("real-devices", "There are real devices", detail)
-        trial = OperatorPlan.trial(ability, command.actor.name, command.reason or "", moment)
+        title = message("offer.try", ability=ability.title)
+        trial = OperatorPlan.trial(ability, title, command.actor.name, command.reason or "", moment)
         self._execution.start_operator_plan(trial, moment)
 
     @answers(AskDefinition)
@@ -173,11 +175,11 @@ class Trials:
             return CommandRefused("not-startable", "It may not start now", detail)
         return None
 
-    def _lacking(self, ability: Ability) -> Iterator[str]:
+    def _lacking(self, ability: Ability) -> Iterator[Message]:
         execution = self._execution
         if execution.conduct.stepping and not execution.conduct.steps:
-            yield "a step: the station goes step by step"
-        yield from execution.obstacles
+            yield message("waits.step")
+        yield from obstacles(execution)
         guard = self._around.guards().get(ability.name)
         yield from (each.text for each in of_ability(execution, ability, self._around.feeds, guard))
 

@@ -23,7 +23,7 @@ from sequence_planner.controller.recovery.explain import (
 )
 from sequence_planner.controller.views.details import WhyNotView
 from sequence_planner.controller.views.jobs import why_idle
-from sequence_planner.controller.views.wording import diagnosis_view, plan_preview, read_predicate
+from sequence_planner.controller.views.wording import diagnosis_view, plan_preview, read_predicate, title_text
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
@@ -31,6 +31,7 @@ from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import Expression, Not, conjuncts
 from sequence_planner.planning.recovery.request import ErrandRequest
+from sequence_planner.texts.message import Message, message
 
 
 class WhyNot:
@@ -50,15 +51,15 @@ class WhyNot:
         if ability is None:
             raise _unknown("ability", name)
         if name in execution.running():
-            return self._view("ability", name, ability.title, "It runs.", [])
+            return self._view("ability", name, ability.title, message("blocked.runs"), [])
         guard = self._around.guards().get(name)
         found = [*of_station(execution), *of_ability(execution, ability, self._around.feeds, guard)]
         if not found:
             found = list(self._unplanned(name))
         if not found:
-            summary = "Nothing is in the way: it starts in the next tick."
+            summary = message("blocked.nothing")
         elif found[0].kind is HindranceKind.PLAN:
-            summary = "It may start, and the plan does not have it now."
+            summary = message("blocked.not-planned")
         else:
             summary = _summary(found)
         return self._view("ability", name, ability.title, summary, found)
@@ -68,12 +69,12 @@ class WhyNot:
         order = self._execution.plan.order.names
         if name not in order:
             reason = self._execution.plan.reason
-            yield BlockingCondition(HindranceKind.PLAN, f"a plan that has it{f' ({reason})' if reason else ''}")
+            why = message("waits.in-plan-why", reason=reason) if reason else message("waits.in-plan")
+            yield BlockingCondition(HindranceKind.PLAN, why)
         elif order[0] != name:
             titles = [self._execution.automaton.abilities[each].title for each in order[: order.index(name)]]
-            yield BlockingCondition(
-                HindranceKind.PLAN, f"its turn in the plan, after {', '.join(dict.fromkeys(titles))}"
-            )
+            turn = message("waits.turn", abilities=", ".join(dict.fromkeys(titles)))
+            yield BlockingCondition(HindranceKind.PLAN, turn)
         elif not self._execution.may_go_on(name):
             yield BlockingCondition(HindranceKind.PLAN, right_moment(self._execution))
 
@@ -95,38 +96,39 @@ class WhyNot:
         lacking = list(self._inactive(operation))
         undone = {each.expression for each in lacking}
         lacking += [each for each in self._lacking(operation.precondition) if each.expression not in undone]
-        summary = f"It is not active. {_summary(lacking)}" if lacking else "It becomes active in the next tick."
+        inactive = message("blocked.inactive", why=_summary(lacking)) if lacking else None
+        summary = inactive or message("blocked.next-tick")
         return self._view("operation", name, operation.title, summary, lacking)
 
     def _inactive(self, operation: Operation) -> Iterable[BlockingCondition]:
         """Return why it is not active, beside its precondition."""
         execution = self._execution
         if operation.name in execution.conduct.out_of(ServiceKind.OPERATION):
-            yield BlockingCondition(HindranceKind.SERVICE, f"{operation.title} to be put back in service")
+            yield BlockingCondition(HindranceKind.SERVICE, message("waits.service", title=operation.title))
         if (idle := why_idle(execution, operation.name)) is not None:
             yield BlockingCondition(HindranceKind.ORDER, idle)  # a job lets it be active once more, if it was done
         elif operation.name in execution.conduct.done:
-            text = "a reset: it is completed, and does not become active again by itself"
-            yield BlockingCondition(HindranceKind.SERVICE, text)
+            yield BlockingCondition(HindranceKind.SERVICE, message("waits.reset"))
         if evaluate(operation.goal, execution.state) is True:
             undone = Not(operation.goal)
-            yield BlockingCondition(HindranceKind.WRITTEN, f"{print_expression(undone)}: its goal holds", undone)
+            text = message("waits.goal-holds", condition=print_expression(undone))
+            yield BlockingCondition(HindranceKind.WRITTEN, text, undone)
 
-    def _progress(self, operation: Operation) -> str:
+    def _progress(self, operation: Operation) -> Message:
         """Say how far an active operation is."""
         execution, name = self._execution, operation.name
         if execution.operator_plan is not None:
-            return f"It waits: {execution.operator_plan.title} is being carried out."
+            return message("blocked.operator-plan", title=title_text(execution.operator_plan.title))
         if execution.mode is Mode.RESTART:
-            return "It waits: the station is in restart mode."
+            return message("blocked.restart")
         if name in execution.pursued.violated:
-            return "It cannot be completed any more as its local specification asks: it has to be reset."
+            return message("blocked.violated")
         answer = execution.plan.answer
         if answer is not None and name in answer.left_out:
-            return "It is left out of the plan, for it could not be planned together with the others."
+            return message("blocked.left-out")
         if name in execution.plan.order.goals:
-            return "It is active, and the plan leads to its goal."
-        return f"It is active and has no plan. {execution.plan.reason}".strip()
+            return message("blocked.planned")
+        return message("blocked.no-plan", reason=execution.plan.reason)
 
     @property
     def _unused(self) -> frozenset[str]:
@@ -140,7 +142,7 @@ class WhyNot:
         goal = read_predicate(execution.automaton, text)
         lacking = list(self._lacking(goal))
         if not lacking:
-            return self._view("goal", text, print_expression(goal), "It holds.", [])
+            return self._view("goal", text, print_expression(goal), message("blocked.holds"), [])
         view = self._view("goal", text, print_expression(goal), _summary(lacking), lacking)
         request = ErrandRequest(
             state=execution.state,
@@ -152,15 +154,15 @@ class WhyNot:
         try:
             aimed = await aim(self._adviser, request)
         except CommandRefused as refused:
-            return _more(view, f"Whether it can be reached is not known: {refused.detail}")
+            return _more(view, message("blocked.unknown", why=refused.detail))
         if aimed.offer is not None and aimed.offer.errand is not None:
             plan = plan_preview(execution.automaton, aimed.offer.errand)
-            return _more(view, f"The station could reach it with {_count(len(plan.steps), 'start')}.", plan=plan)
+            return _more(view, message("blocked.reached", starts=len(plan.steps)), plan=plan)
         if aimed.proven:
             answers = execution.conduct.answers
             found = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
-            return _more(view, "The station cannot reach it from here: that is proven.", reasons=found)
-        return _more(view, "No plan to it was found; that there is none is not proven.")
+            return _more(view, message("blocked.proven"), reasons=found)
+        return _more(view, message("blocked.not-found"))
 
     def _lacking(self, condition: Expression) -> Iterable[BlockingCondition]:
         """The parts of a condition that do not hold."""
@@ -175,7 +177,7 @@ class WhyNot:
         of: str,
         name: str,
         title: str,
-        summary: str,
+        summary: Message,
         found: Iterable[BlockingCondition],
     ) -> WhyNotView:
         return WhyNotView(
@@ -184,22 +186,22 @@ class WhyNot:
             title=title,
             revision=self._execution.revision,
             summary=summary,
+            summary_message=summary,
             conditions=[self._involving.condition(each) for each in found],
             plan=None,
             reasons=None,
         )
 
 
-def _summary(found: list[BlockingCondition]) -> str:
-    return f"It waits for {found[0].text}." if len(found) == 1 else f"It waits for {len(found)} things."
+def _summary(found: list[BlockingCondition]) -> Message:
+    if len(found) == 1:
+        return message("blocked.one", what=found[0].text)
+    return message("blocked.several", count=len(found))
 
 
-def _more(view: WhyNotView, text: str, **found: object) -> WhyNotView:
-    return view.model_copy(update={"summary": f"{view.summary} {text}", **found})
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+def _more(view: WhyNotView, text: Message, **found: object) -> WhyNotView:
+    summary = message("sentences", first=view.summary_message, second=text)
+    return view.model_copy(update={"summary": str(summary), "summary_message": summary, **found})
 
 
 def _unknown(kind: str, name: str) -> CommandRefused:

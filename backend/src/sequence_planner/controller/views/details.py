@@ -7,6 +7,7 @@ from typing import Literal
 from sequence_planner.controller.views.part import Value, View
 from sequence_planner.controller.views.proposals import PlanPreviewView
 from sequence_planner.controller.views.station import BeliefView, DiagnosisView, SpecificationView
+from sequence_planner.texts.message import Message
 
 # What a person is shown before a correction is made.
 
@@ -41,10 +42,12 @@ class CorrectionPreview(View):
     completed: list[str]
     contradictions_gone: list[str]
     contradictions_new: list[str]
+    contradiction_messages: list[Message]  # of those that would be gone, and of those that would be new
     plan: PlanPreviewView | None
     goals: list[str]
     left_out: list[str]
     reason: str
+    reason_message: Message | None
     obstacle: str | None
 
 
@@ -237,6 +240,7 @@ class MismatchView(View):
     ours: str
     theirs: str
     text: str
+    text_message: Message
 
 
 class StationUseView(View):
@@ -302,6 +306,7 @@ class ChangerView(View):
     how: str
     name: str
     title: str
+    title_message: Message | None  # null where the title is the model's
     running: bool
 
 
@@ -332,6 +337,7 @@ class ConditionView(View):
 
     kind: str
     text: str
+    text_message: Message
     involved: list[InvolvedView]
 
 
@@ -347,6 +353,7 @@ class WhyNotView(View):
     title: str
     revision: int
     summary: str
+    summary_message: Message
     conditions: list[ConditionView]
     plan: PlanPreviewView | None
     reasons: DiagnosisView | None

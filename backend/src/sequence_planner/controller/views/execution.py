@@ -14,10 +14,11 @@ from sequence_planner.controller.views.station import (
     ServiceView,
     StationStanding,
 )
-from sequence_planner.controller.views.wording import end_text
+from sequence_planner.controller.views.wording import end_text, ended_text, title_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import ExecutionState
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production, ServiceKind
+from sequence_planner.texts.message import as_it_was
 
 _ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
 
@@ -88,6 +89,7 @@ def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
     return OperatorPlanView(
         kind=errand.kind,
         title=errand.title,
+        title_message=title_text(errand.title),
         by=errand.by,
         why=errand.why,
         since=errand.taken.epoch,
@@ -103,7 +105,13 @@ def last_operator_plan_view(conduct: ExecutionState) -> LastOperatorPlanView | N
     if last is None:
         return None
     return LastOperatorPlanView(
-        title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability
+        title=last.title,
+        title_message=title_text(last.title),
+        done=last.done,
+        why=last.why,
+        why_message=ended_text(last.why),
+        ended=last.ended.epoch,
+        ability=last.ability,
     )
 
 
@@ -125,6 +133,7 @@ def service_views(automaton: Automaton, conduct: ExecutionState) -> list[Service
             since=each.since.epoch,
             by=each.by,
             why=each.why,
+            why_message=None if each.by is not None else as_it_was(each.why, "late."),
         )
         for each in sorted(conduct.service.values(), key=lambda each: (each.since.epoch, each.of, each.name))
     ]

@@ -9,6 +9,7 @@ from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.controller.commands.tasks import TaskProblem, WaitingTask
 from sequence_planner.controller.recovery.explain import of_station
 from sequence_planner.controller.views.station import AlarmView, JobStepState, JobStepView, JobView, Priority
+from sequence_planner.controller.views.wording import reason_text, title_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job, Jobs
@@ -18,6 +19,7 @@ from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Pr
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import Expression, conjunction, conjuncts
+from sequence_planner.texts.message import Argument, Item, Message, as_it_was, message
 
 # In words, what keeps a job that is worked from going on: the one place where that is said.
 #
@@ -41,11 +43,11 @@ class Around:
     tasks: Mapping[str, WaitingTask] = field(default_factory=dict)
     problems: Mapping[str, TaskProblem] = field(default_factory=dict)
     alarms: Mapping[str, AlarmView] = field(default_factory=dict)
-    next_waits: tuple[str, ...] = ()
+    next_waits: tuple[Message, ...] = ()
     controlled: bool = True
 
 
-def of_running(execution: Executor, job: Job, around: Around | None) -> list[str]:
+def of_running(execution: Executor, job: Job, around: Around | None) -> list[Message]:
     """Return what a job that has begun waits for; empty only where something is being done that may bring it on.
 
     Of the past, without `around`, only what the execution itself knows is told.
@@ -56,14 +58,14 @@ def of_running(execution: Executor, job: Job, around: Around | None) -> list[str
     return list(dict.fromkeys(found))
 
 
-def _station(execution: Executor, around: Around | None) -> Iterator[str]:
+def _station(execution: Executor, around: Around | None) -> Iterator[Message]:
     conduct = execution.conduct
     yield from (each.text for each in of_station(execution))
     stopped = conduct.production is not Production.STARTED or conduct.mode is not Mode.AUTOMATIC
     if stopped and around is not None and not around.controlled:
-        yield "somebody to take control"
+        yield message("waits.control")
     if conduct.operator_plan is not None:
-        yield f"the end of what is carried out: {conduct.operator_plan.title}"
+        yield message("waits.end", title=title_text(conduct.operator_plan.title))
 
 
 class _Running:
@@ -80,14 +82,15 @@ class _Running:
         others = (each for each in jobs.under_way if each.id != job.id)
         self._alone = not any(execution.active & jobs.eligible(each, self._automaton) for each in others)
 
-    def waits(self) -> list[str]:
-        found, moves = list[str](), False
+    def waits(self) -> list[Message]:
+        found, moves = list[Message](), False
         for step in self._execution.plan.order.running:
             late = self._late(step)
             human = self._automaton.abilities[step.ability].human is not None
             moves = moves or (late is None and not human)
             if late is not None and not human and self._concerns(step.ability):
-                found.append(f"{self._automaton.abilities[step.ability].title}, which {late}")
+                title = self._automaton.abilities[step.ability].title
+                found.append(message("waits.late", ability=title, late=late.message()))
         found += self._tasks()
         conduct = self._execution.conduct
         if conduct.production is not Production.STARTED or not conduct.executes_operations:
@@ -107,21 +110,26 @@ class _Running:
         waiting = self._around.held_up({self._automaton.abilities[ability].resource})
         return bool(waiting & self._active) or not waiting
 
-    def _tasks(self) -> Iterator[str]:
+    def _tasks(self) -> Iterator[Message]:
         running = {step.ability: step for step in self._execution.plan.order.running}
         for id_, task in self._around.tasks.items():
             if not self._concerns(task.ability):
                 continue
             resource = self._automaton.abilities[task.ability].resource
-            text = f"{task.title} to be done by {self._automaton.resources.get(resource, resource)}"
             step, problem = running.get(task.ability), self._around.problems.get(id_)
-            if step is not None and (late := self._late(step)) is not None:
-                text += f", which {late}"
+            late = None if step is None else self._late(step)
+            cannot: Argument = ""
             if problem is not None:
-                text += f", who cannot: {problem.why}" if problem.why else ", who cannot do it"
-            yield text
+                cannot = message("waits.task-problem", why=problem.why) if problem.why else message("waits.task-cannot")
+            yield message(
+                "waits.task",
+                task=task.title,
+                resource=self._automaton.resources.get(resource, resource),
+                late="" if late is None else message("waits.task-late", late=late.message()),
+                problem=cannot,
+            )
 
-    def _operations(self) -> Iterator[str]:
+    def _operations(self) -> Iterator[Message]:
         """Yield what keeps all its operations from being active."""
         if self._active or not self._job.under_way:
             return
@@ -129,38 +137,38 @@ class _Running:
         out = self._execution.conduct.idle_operations(self._automaton)
         for name in sorted(self._eligible):
             if name in out:
-                yield f"{operations[name].title} to be put back in service"
+                yield message("waits.service", title=operations[name].title)
             elif not self._execution.conduct.jobs.by_order:
-                yield "the station to work by order"
+                yield message("waits.by-order")
             else:
-                yield f"the precondition of {operations[name].title}: {self._lacking(operations[name].precondition)}"
+                lacking = self._lacking(operations[name].precondition)
+                yield message("waits.precondition", operation=operations[name].title, condition=lacking)
         if not self._eligible:
             master = self._automaton.work_masters[self._job.work_master]
             awaited = {step for name in master.operations for step in jobs.awaited(self._job, name)}
-            yield from (f"{operations[name].title} of job {job}" for job, name in sorted(awaited))
+            for job, name in sorted(awaited):
+                yield message("waits.other-job", operation=operations[name].title, job=job)
 
     def _lacking(self, condition: Expression) -> str:
         """Say what of a condition does not hold, or all of it where that is not to be told."""
         parts = [part for part in conjuncts(condition) if evaluate(part, self._execution.state) is not True]
         return print_expression(conjunction(*parts) if parts else condition)
 
-    def _plan(self, moves: bool) -> Iterator[str]:
+    def _plan(self, moves: bool) -> Iterator[Message]:
         plan, titles = self._execution.plan, self._automaton.operations
         if not self._active:
             return
         if plan.status is PlanStatus.NONE:
-            yield f"a plan: {plan.reason}"
+            yield message("waits.plan", reason=reason_text(plan.reason))
         elif plan.status is PlanStatus.FOLLOWED:
             left_out = () if plan.answer is None else plan.answer.left_out
             yield from (
-                f"a plan for {titles[name].title}, which the plan leaves out"
-                for name in left_out
-                if name in self._active
+                message("waits.left-out", operation=titles[name].title) for name in left_out if name in self._active
             )
         elif not moves:
-            yield "a plan, which is being looked for"
+            yield message("waits.looking")
 
-    def _alarms(self) -> Iterator[str]:
+    def _alarms(self) -> Iterator[Message]:
         """Alarms that may be why nothing moves."""
         urgent = [
             alarm
@@ -168,21 +176,22 @@ class _Running:
             if alarm.ended is None and alarm.priority is not Priority.LOW and alarm.kind not in _SAID
         ]
         urgent.sort(key=lambda alarm: (alarm.priority is not Priority.HIGH, alarm.since))
-        yield from (f"an alarm to be dealt with: {alarm.text}" for alarm in urgent[:_MOST_ALARMS])
+        yield from (message("waits.alarm", alarm=alarm.messages.text) for alarm in urgent[:_MOST_ALARMS])
 
-    def _next(self) -> Iterator[str]:
+    def _next(self) -> Iterator[Message]:
         """Yield what the next start waits for, where nothing is under way that could bring it about."""
         order = self._execution.plan.order
         if self._active and order.ahead and not order.running and self._around.next_waits:
             title = self._automaton.abilities[order.ahead[0].ability].title
-            yield f"{title} to start, which waits for {' and '.join(self._around.next_waits)}"
+            yield message("waits.start", ability=title, conditions=self._around.next_waits)
 
-    def _goals(self) -> Iterator[str]:
+    def _goals(self) -> Iterator[Message]:
         """Yield what is still to come true, where nothing is to be started for it."""
         if not self._execution.plan.order.ahead:
             operations = self._automaton.operations
             for name in sorted(self._active):
-                yield f"the goal of {operations[name].title}: {print_expression(operations[name].goal)}"
+                goal = print_expression(operations[name].goal)
+                yield message("waits.goal", operation=operations[name].title, goal=goal)
 
 
 # What is shown of jobs, and in words what keeps them and their operations from going on.
@@ -194,12 +203,12 @@ def job_views(execution: Executor, jobs: Jobs | None = None, around: Around | No
     return {job.id: _view(execution, jobs, job, around) for job in jobs.taken}
 
 
-def waits_for(execution: Executor, job: Job, around: Around | None = None) -> list[str]:
+def waits_for(execution: Executor, job: Job, around: Around | None = None) -> list[Message]:
     """Return what keeps a job as a whole from going on."""
     if job.state is JobState.PAUSED:
-        return ["the job to be resumed"]
+        return [message("waits.resumed")]
     if job.state is JobState.WAITING:
-        return list(execution.keeps_from_beginning(job))
+        return [as_it_was(each) for each in execution.keeps_from_beginning(job)]
     if job.state is JobState.RUNNING:
         return of_running(execution, job, around)
     return []
@@ -212,33 +221,34 @@ def _awaited(jobs: Jobs, job: Job, operation: str, automaton: Automaton) -> list
     return [*sorted(own), *(f"{id_}/{name}" for id_, name in sorted(awaited) if id_ != job.id)]
 
 
-def why_idle(execution: Executor, operation: str) -> str | None:
+def why_idle(execution: Executor, operation: str) -> Message | None:
     """Say what has to come before a job asks for an operation; None where one does, or none has to."""
     jobs, automaton = execution.conduct.jobs, execution.automaton
     if not jobs.by_order or operation not in automaton.job_operations:
         return None
     job = jobs.having(operation, automaton)
     if job is None:
-        return "a job that asks for it: the station works by order, and no job asks for it"
+        return message("waits.job")
     if operation in jobs.eligible(job, automaton):
         return None
     if operation in job.completed:
-        return f"another job that asks for it: for {job.title} it is completed"
+        return message("waits.another-job", job=job.title)
     if job.finishing is not None:
-        return f"another job that asks for it: {job.title} is being stopped"
+        return message("waits.another-job-stopping", job=job.title)
     if job.state is JobState.PAUSED:
-        return f"{job.title} to be resumed"
+        return message("waits.job-resumed", job=job.title)
     if job.state is JobState.WAITING:
-        return f"{job.title} to begin, which waits for {' and '.join(waits_for(execution, job)) or 'the next tick'}"
+        conditions = waits_for(execution, job) or [message("waits.next-tick")]
+        return message("waits.job-begins", job=job.title, conditions=conditions)
     before = [_titled(execution, each) for each in _awaited(jobs, job, operation, automaton)]
-    return f"what comes before it for {job.title}: {', '.join(before)}"
+    return message("waits.job-before", job=job.title, operations=before)
 
 
-def _titled(execution: Executor, step: str) -> str:
+def _titled(execution: Executor, step: str) -> Item:
     """An operation as people know it; `4711/tighten` is that of another job."""
     job, _, name = step.rpartition("/")
     title = execution.automaton.operations[name].title
-    return f"{title} of job {job}" if job else title
+    return message("waits.other-job", operation=title, job=job) if job else title
 
 
 def _view(execution: Executor, jobs: Jobs, job: Job, around: Around | None) -> JobView:
@@ -246,6 +256,7 @@ def _view(execution: Executor, jobs: Jobs, job: Job, around: Around | None) -> J
     # One that ended before the model was changed can have a work master that is not there any more.
     names = sorted(job.started.keys() | job.completed.keys()) if master is None else list(master.operations)
     eligible = frozenset[str]() if master is None else jobs.eligible(job, execution.automaton)
+    waits = waits_for(execution, job, around)
     return JobView(
         title=job.title,
         work_master=job.work_master,
@@ -254,7 +265,8 @@ def _view(execution: Executor, jobs: Jobs, job: Job, around: Around | None) -> J
         taken=job.taken.epoch,
         begun=_epoch(job.begun),
         ended=_epoch(job.ended),
-        waits_for=waits_for(execution, job, around),
+        waits_for=[*waits],
+        waits_for_messages=waits,
         steps={name: _step(execution, jobs, job, name, eligible) for name in names},
     )
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.controller.alarms.alarm import Alarm
 from sequence_planner.controller.alarms.kinds import MODEL_UNUSABLE, NO_SUPERVISOR
-from sequence_planner.controller.alarms.message import message
 from sequence_planner.controller.views.part import ControlView
 from sequence_planner.controller.views.station import (
     DeploymentView,
@@ -17,6 +16,7 @@ from sequence_planner.controller.views.station import (
     StationView,
 )
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
+from sequence_planner.texts.message import Message, message
 
 
 def preparing_view(
@@ -56,7 +56,8 @@ def preparing_view(
         alarms[cause.key] = Alarm(cause, began).view()
     plan = PlanView(
         status=PlanStatus.IDLE,
-        reason=_why_no_plan(trouble, unusable=unusable),
+        reason=(reason := _why_no_plan(trouble, unusable=unusable)),
+        reason_message=reason,
         steps=[],
         ticks=0,
         minimal_ticks=False,
@@ -109,7 +110,7 @@ def preparing_view(
     )
 
 
-def _why_no_plan(trouble: str | None, *, unusable: bool) -> str:
+def _why_no_plan(trouble: str | None, *, unusable: bool) -> Message:
     if trouble is None:
-        return "the safe states are being computed"
-    return "the model cannot be used" if unusable else "there is no supervisor"
+        return message("plan.preparing")
+    return message("plan.unusable" if unusable else "plan.no-supervisor")

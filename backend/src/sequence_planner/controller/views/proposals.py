@@ -7,6 +7,7 @@ from __future__ import annotations
 from sequence_planner.controller.views.part import Value as ShownValue
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import DiagnosisView, SpecificationView
+from sequence_planner.texts.message import Message
 
 
 class ValueChangeView(View):
@@ -70,6 +71,7 @@ class OfferView(View):
     revision: int
     kind: str  # replan, restart, reset, correction, physical, combined, way-back, goal
     title: str
+    title_message: Message
     physical: list[ValueChangeView]
     online: list[str]
     in_service: list[str]

@@ -9,12 +9,12 @@ from typing import Annotated
 from pydantic import Field
 
 from sequence_planner.analysis.report import AnalysisDocument
-from sequence_planner.controller.alarms.message import Message
 from sequence_planner.controller.commands.approvals import Act
 from sequence_planner.controller.commands.tasks import ProblemKind
 from sequence_planner.controller.views.part import ControlView, Value, View
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.planning.problem import Contract
+from sequence_planner.texts.message import Message
 
 # Alarms, as they are shown.
 
@@ -162,6 +162,7 @@ class JobView(View):
     begun: float | None
     ended: float | None
     waits_for: list[str]
+    waits_for_messages: list[Message]
     steps: dict[str, JobStepView]
 
 
@@ -218,6 +219,7 @@ class ServiceView(View):
     since: float
     by: str | None
     why: str
+    why_message: Message | None  # of what the station says itself
 
 
 class OperatorPlanView(View):
@@ -229,6 +231,7 @@ class OperatorPlanView(View):
 
     kind: str  # way-back, reset, goal, trial
     title: str
+    title_message: Message
     by: str
     why: str
     since: float
@@ -241,8 +244,10 @@ class LastOperatorPlanView(View):
     """How the last operator plan has ended: `done`, or why not. `ability` is the one that was tried."""
 
     title: str
+    title_message: Message
     done: bool
     why: str
+    why_message: Message
     ended: float
     ability: str | None
 
@@ -256,6 +261,7 @@ class UndecidedOutputView(View):
 
     value: Value
     reacts: list[str]
+    reacts_messages: list[Message]
     quiet: list[Value]
     unsafe: list[Value]
 
@@ -271,6 +277,7 @@ class QuestionView(View):
     believed: Value
     possible: list[Value]
     because: list[str]
+    because_messages: list[Message]
 
 
 class LastCorrectionView(View):
@@ -327,6 +334,7 @@ class WayBackView(View):
     steps: list[WayBackStepView]
     breaks: list[SpecificationView]  # what is violated on the way, and is not now
     reason: str  # which way leads back, or why none is known
+    reason_message: Message
 
 
 # What is shown of who can do what while something does not take part.
@@ -545,6 +553,7 @@ class PlanStepView(View):
     expected_end: float | None
     new: bool  # the plan that was replaced last did not have it
     waits_for: list[str]  # for the next step: what keeps it from starting, in the model's language
+    waits_for_messages: list[Message]
 
 
 class DiagnosisView(View):
@@ -557,6 +566,8 @@ class DiagnosisView(View):
     members: list[str]
     minimal: bool
     corrections: list[str]
+    member_messages: list[Message]
+    correction_messages: list[Message]
 
 
 class DroppedStepView(View):
@@ -572,6 +583,7 @@ class ReplacementView(View):
 
     at: float
     why: str
+    why_message: Message
     dropped: list[DroppedStepView]
 
 
@@ -580,6 +592,7 @@ class PlanView(View):
 
     status: PlanStatus
     reason: str  # why it was made, or why there is none
+    reason_message: Message
     steps: list[PlanStepView]
     ticks: int
     minimal_ticks: bool
@@ -626,6 +639,7 @@ class TopicView(View):
     fresh: bool
     peers: int  # matched publishers or subscribers
     trouble: str | None
+    trouble_message: Message | None
 
 
 class StandbyView(View):

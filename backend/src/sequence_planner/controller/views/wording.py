@@ -25,10 +25,9 @@ from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
 from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal, ValueChange
+from sequence_planner.texts.message import Message, as_it_was, message
 
 # Offers in the words of the people they are shown to.
-
-MOST_NAMED = 3  # abilities in a title
 
 
 def offer_view(
@@ -39,7 +38,8 @@ def offer_view(
         id=id_,
         revision=revision,
         kind=str(offer.kind),
-        title=offer_title(automaton, offer),
+        title=(title := offer_title(automaton, offer)),
+        title_message=title,
         physical=_changes(told(automaton, offer.physical)),
         online=list(offer.online),
         in_service=list(offer.in_service),
@@ -82,38 +82,58 @@ def needs_restart(offer: RecoveryProposal) -> bool:
     return offer.restart or offer.unsupervised or bool(offer.corrections) or (offer.errand is not None and not ordinary)
 
 
-def offer_title(automaton: Automaton, offer: RecoveryProposal) -> str:
+def offer_title(automaton: Automaton, offer: RecoveryProposal) -> Message:
     """Say what is to be done, in one line."""
-    text = ", then ".join(_parts(automaton, offer)) or "go on as it is"
+    first, *then = [*_parts(automaton, offer)] or [message("offer.nothing")]
     if offer.only_if_checked:
-        return f"Only if you have checked: {text}"
-    return text[0].upper() + text[1:]
+        text = message("offer.checked", what=first)
+    else:
+        text = Message(f"{first.id}-first", first.arguments)
+    for each in then:
+        text = message("offer.then", first=text, then=each)
+    return text
 
 
-def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[str]:
+def title_text(title: str) -> Message:
+    """Return what a person has taken, whose title may be of a record."""
+    return as_it_was(title, "offer.")
+
+
+def ended_text(why: str) -> Message:
+    """Return how what a person has taken ended, which may be of a record."""
+    return as_it_was(why, "ended.", "late.", "mode.")
+
+
+def reason_text(reason: str) -> Message:
+    """Return why a plan is as it is, where that may be a string."""
+    return as_it_was(reason, "plan.", "ended.", "late.", "mode.", "offer.")
+
+
+def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
     returning = [automaton.resources[name] for name in offer.online]
     returning += [automaton.abilities[name].title for name in offer.in_service]
     if returning:
-        yield f"bring {' and '.join(returning)} back"
+        yield message("offer.return", titles=returning)
     if offer.physical:
-        records = f", so that {_each(offer.records, 'counts as')}" if offer.records else ""
-        yield f"see to it that {_each(told(automaton, offer.physical), 'is')}{records}"
+        changes = _each(told(automaton, offer.physical), "offer.is")
+        if offer.records:
+            yield message("offer.see-to-so", changes=changes, records=_each(offer.records, "offer.counts-as"))
+        else:
+            yield message("offer.see-to", changes=changes)
     if offer.only_if_checked:
-        yield _each(offer.corrections, "is")
+        yield message("list", items=_each(offer.corrections, "offer.is"))
     elif offer.corrections:
-        yield f"correct {_each(offer.corrections, 'to')}"
+        yield message("offer.correct", changes=_each(offer.corrections, "offer.to"))
     if offer.operation is not None:
-        yield f"reset {automaton.operations[offer.operation].title}"
+        yield message("offer.reset", operation=automaton.operations[offer.operation].title)
     elif offer.kind is OfferKind.GOAL:
-        yield f"bring about that {print_expression(offer.goal)}"
+        yield message("offer.goal", goal=print_expression(offer.goal))
     elif offer.errand is not None and offer.errand.starts:
-        titles = [automaton.abilities[name].title for _, name in offer.errand.starts]
-        more = f" and {len(titles) - MOST_NAMED} more" if len(titles) > MOST_NAMED else ""
-        yield f"start {', '.join(titles[:MOST_NAMED])}{more}"
+        yield message("offer.start", titles=[automaton.abilities[name].title for _, name in offer.errand.starts])
     elif offer.errand is not None:
-        safe = ["the station is back in its safe states"] if offer.into_safe else []
+        safe = [message("offer.safe")] if offer.into_safe else []
         condition = end_text(offer.goal, offer.into_safe)
-        yield f"wait until {' and '.join([*safe, *([condition] if condition else [])])}"
+        yield message("offer.wait", conditions=[*safe, *([condition] if condition else [])])
 
 
 def told(automaton: Automaton, changes: Iterable[ValueChange]) -> list[ValueChange]:
@@ -127,8 +147,8 @@ def _as_new(change: ValueChange, changes: Iterable[ValueChange]) -> list[str]:
     return [each.name for each in changes if each.new == change.new]
 
 
-def _each(changes: Iterable[ValueChange], word: str) -> str:
-    return " and ".join(f"{change.name} {word} {print_value(change.new)}" for change in changes)
+def _each(changes: Iterable[ValueChange], what: str) -> list[Message]:
+    return [message(what, name=change.name, value=print_value(change.new)) for change in changes]
 
 
 def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
@@ -148,16 +168,20 @@ def diagnosis_view(
 
     Nothing is said otherwise of estimates for which somebody has given `answers`, and what can be done comes first.
     """
-    reason, helpful = diagnosis.reason, []
+    reason, helpful = diagnosis.reason, list[tuple[bool, Message]]()
     for correction in diagnosis.corrections:
         said = [change.name for change in correction.changes if change.value is not None]
         if not any(name in answers for name in said):
             text = correction_text(correction, out_of_service)
-            helpful.append((bool(said), f"{text}, only if you have checked that it is so" if said else text))
+            helpful.append((bool(said), message("correction.checked", correction=text) if said else text))
+    members = [] if reason is None else [member_text(member, out_of_service) for member in reason.members]
+    corrections = [text for _, text in sorted(helpful, key=lambda each: each[0])]
     return DiagnosisView(
-        members=[] if reason is None else [member_text(member, out_of_service) for member in reason.members],
+        members=[*members],
         minimal=reason is not None and reason.minimal,
-        corrections=[text for _, text in sorted(helpful, key=lambda each: each[0])],
+        corrections=[*corrections],
+        member_messages=members,
+        correction_messages=corrections,
     )
 
 

@@ -44,6 +44,7 @@ class Assistance:
 
     def __init__(self, server: StationLanguageServer) -> None:
         self._server = server
+        self._at_once = server.threads.found_at_once
         self._schemas = DocumentSchemas()
 
     async def completion(self, params: types.CompletionParams) -> types.CompletionList | None:
@@ -53,7 +54,7 @@ class Assistance:
             return None
         text = self._server.text_of_file(file)
         snapshot, index = await file.station.snapshot(), text.index(params.position)
-        found = await self._server.worked_out(lambda: proposals(snapshot, self._schemas, file.name, text.text, index))
+        found = await self._at_once(lambda: proposals(snapshot, self._schemas, file.name, text.text, index))
         items = [_item(text, number, each) for number, each in enumerate(found)]
         return types.CompletionList(is_incomplete=len(items) >= MOST_OPTIONS, items=items)
 
@@ -64,7 +65,7 @@ class Assistance:
             return None
         text = self._server.text_of_file(file)
         snapshot, index = await file.station.snapshot(), text.index(params.position)
-        found = await self._server.worked_out(lambda: explanation(snapshot, self._schemas, file.name, text.text, index))
+        found = await self._at_once(lambda: explanation(snapshot, self._schemas, file.name, text.text, index))
         if found is None:
             return None
         told = types.MarkupContent(types.MarkupKind.Markdown, found.text)
@@ -81,7 +82,7 @@ class Assistance:
             actions += self._fixes(file, text, params.range)
         if _is_wanted(types.CodeActionKind.RefactorRewrite, wanted):
             snapshot, index = await file.station.snapshot(), text.index(params.range.start)
-            actions += await self._server.worked_out(lambda: list(self._rewritten(file, snapshot, text, index)))
+            actions += await self._at_once(lambda: list(self._rewritten(file, snapshot, text, index)))
         return actions
 
     async def inlay_hints(self, params: types.InlayHintParams) -> list[types.InlayHint] | None:
@@ -90,9 +91,7 @@ class Assistance:
         if file is None or not self._server.shows_guards or not file.station.guards:
             return None
         text, guards = self._server.text_of_file(file), file.station.guards
-        found = await self._server.worked_out(
-            lambda: list(guard_hints(ModelContent({file.name: text.text}), file.name, guards))
-        )
+        found = await self._at_once(lambda: list(guard_hints(ModelContent({file.name: text.text}), file.name, guards)))
         first, last = params.range.start.line, params.range.end.line
         return [
             types.InlayHint(

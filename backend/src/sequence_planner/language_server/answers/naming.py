@@ -54,16 +54,16 @@ def part_at(named: Iterable[Usage], line: int, column: int) -> Usage | None:
     return min(found, key=lambda each: each.length, default=None)
 
 
-def declared_in(snapshot: StationSnapshot, file: str) -> list[Declaration]:
-    """What a file declares, in its order."""
+def declared_in(snapshot: StationSnapshot, file: str | None = None) -> list[Declaration]:
+    """What a file declares, or what all do, in its order."""
     _, gathered = gather(snapshot.content, snapshot.messages, _NO_EXPRESSION, file)
     found = {
-        (usage.line, usage.column, usage.part): Declaration(usage, each.where.path)
+        (usage.file, usage.line, usage.column, usage.part): Declaration(usage, each.where.path)
         for each in gathered.occurrences
-        if each.declares and each.where.file == file
+        if each.declares and file in (None, each.where.file)
         for usage in (usage_of(each),)
     }
-    return [found[key] for key in sorted(found)]
+    return [found[key] for key in sorted(found, key=lambda key: key[:3])]
 
 
 def declarations_of(snapshot: StationSnapshot, part: ModelPart) -> Iterator[Usage]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -57,6 +58,7 @@ class Navigation:
 
     def __init__(self, server: StationLanguageServer) -> None:
         self._server = server
+        self._at_once = server.threads.found_at_once
         self._schemas = DocumentSchemas()
         self._declared: dict[tuple[Path, str], tuple[str, list[Declaration]]] = {}
 
@@ -76,7 +78,7 @@ class Navigation:
             return None
         file, text, index = asked
         snapshot = await file.station.snapshot()
-        found = await self._server.worked_out(lambda: places(snapshot, file.name, text, index))
+        found = await self._at_once(lambda: places(snapshot, file.name, text, index))
         return [self._location(file.station, *each) for each in found]
 
     async def references(self, params: types.ReferenceParams) -> list[types.Location] | None:
@@ -91,7 +93,7 @@ class Navigation:
             usage = _usage_at(snapshot, file.name, text, index)
             return [] if usage is None else used_places(snapshot, files, usage.part)
 
-        found = await self._server.worked_out(places)
+        found = await self._at_once(places)
         return [
             self._location(file.station, each.file, each.line, each.column, each.length)
             for each in found
@@ -111,7 +113,7 @@ class Navigation:
             usage = part_at(found, *_line_and_column(text, index))
             return [] if usage is None else [each for each in found if each.part == usage.part]
 
-        found = await self._server.worked_out(places)
+        found = await self._at_once(places)
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [types.DocumentHighlight(_range(text, each), kinds[each.declares]) for each in found]
 
@@ -122,7 +124,7 @@ class Navigation:
             return None
         file, text, index = asked
         snapshot = await file.station.snapshot()
-        found = await self._server.worked_out(lambda: _usage_at(snapshot, file.name, text, index))
+        found = await self._at_once(lambda: _usage_at(snapshot, file.name, text, index))
         if found is None:
             raise self._server.refuse("there is no name of the model here")
         if found.part.kind == "message":
@@ -145,7 +147,7 @@ class Navigation:
             return renamed(files, usage.part, params.new_name, snapshot.messages)
 
         try:
-            new = await self._server.worked_out(other)
+            new = await self._at_once(other)
         except EditError as error:
             raise self._server.refuse(str(error)) from None
         return self._edit(station, files, new)
@@ -156,7 +158,7 @@ class Navigation:
         if file is None:
             return None
         text, snapshot = self._server.text_of_file(file), await file.station.snapshot()
-        found = await self._server.worked_out(lambda: self._declarations(file.station, snapshot, file.name))
+        found = await self._at_once(lambda: self._declarations(file.station, snapshot, file.name))
         return _nested(text, [each for each in found if each.usage.length])
 
     async def workspace_symbols(self, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
@@ -164,20 +166,14 @@ class Navigation:
         symbols: list[types.WorkspaceSymbol] = []
         for station in self._server.stations.stations:
             snapshot = await station.snapshot()
-            found = await self._server.worked_out(
-                lambda station=station, snapshot=snapshot: [  # type: ignore[misc]
-                    each for file in snapshot.content for each in self._declarations(station, snapshot, file)
-                ]
-            )
+            found = await self._at_once(partial(self._all_declarations, station, snapshot))
             for each in found:
-                if _has_in_order(params.query.lower(), each.usage.part.full.lower()):
-                    usage = each.usage
+                usage, full = each.usage, each.usage.part.full
+                if len(symbols) < _MOST_SYMBOLS and _has_in_order(params.query.lower(), full.lower()):
                     where = self._location(station, usage.file, usage.line, usage.column, usage.length)
-                    kind = _SYMBOL_KINDS.get(each.usage.part.kind, types.SymbolKind.Interface)
-                    symbols.append(
-                        types.WorkspaceSymbol(where, each.usage.part.full, kind, container_name=station.folder.name)
-                    )
-        return symbols[:_MOST_SYMBOLS]
+                    kind = _SYMBOL_KINDS.get(usage.part.kind, types.SymbolKind.Interface)
+                    symbols.append(types.WorkspaceSymbol(where, full, kind, container_name=station.folder.name))
+        return symbols
 
     def _asked(self, params: _AtPosition) -> tuple[StationFile, DocumentText, int] | None:
         file = self._server.stations.file(params.text_document.uri)
@@ -187,11 +183,25 @@ class Navigation:
         return file, text, text.index(params.position)
 
     def _declarations(self, station: EditedStation, snapshot: StationSnapshot, file: str) -> list[Declaration]:
-        text = snapshot.content.texts.get(file, "")
         known = self._declared.get((station.folder, file))
-        if known is None or known[0] != text:
-            known = self._declared[station.folder, file] = text, declared_in(snapshot, file)
-        return known[1]
+        if known is None or known[0] != snapshot.content.texts.get(file, ""):
+            self._know(station, snapshot, declared_in(snapshot, file), [file])
+        return self._declared[station.folder, file][1]
+
+    def _all_declarations(self, station: EditedStation, snapshot: StationSnapshot) -> list[Declaration]:
+        if any((station.folder, file) not in self._declared for file in snapshot.content):
+            self._know(station, snapshot, declared_in(snapshot), list(snapshot.content))
+        return [each for file in snapshot.content for each in self._declarations(station, snapshot, file)]
+
+    def _know(
+        self, station: EditedStation, snapshot: StationSnapshot, found: list[Declaration], files: list[str]
+    ) -> None:
+        """Remember what files declare."""
+        own: dict[str, list[Declaration]] = {file: [] for file in files}
+        for each in found:
+            own.get(each.usage.file, []).append(each)
+        for file, declared in own.items():
+            self._declared[station.folder, file] = snapshot.content.texts.get(file, ""), declared
 
     def _location(
         self, station: EditedStation, file: str, line: int, column: int, length: int | None = None

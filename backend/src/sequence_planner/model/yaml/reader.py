@@ -315,6 +315,7 @@ class _Reader:
 
     def _mapping(self, node: Node, path: EntryPath) -> dict[SourceText, object]:
         content: dict[SourceText, object] = {}
+        written: dict[str, str] = {}
         for key_node, value_node in node.value:
             if key_node.kind != "scalar":
                 self._found(self._place(key_node), "a list or mapping cannot be a name")
@@ -323,11 +324,16 @@ class _Reader:
             if key_node.tag == "merge":
                 self._found(key.place, "`<<` is not known here: write the entries out")
                 continue
+            value = self._text[value_node.start.index : value_node.end.index].strip()
             if key in content:
                 first = self.places[(*path, str(key))]
-                message = f"duplicate name `{key}`, first used in line {first.line}: rename one of them"
+                advice = "rename one of them, or leave one out"
+                if value == written[key]:
+                    advice = "it says the same here: leave one of them out"
+                message = f"duplicate name `{key}`, first used in line {first.line}: {advice}"
                 self._found(key.place, message)
                 continue
+            written[key] = value
             if not self._has_room(key_node):
                 break
             self.places[(*path, str(key))] = key.place

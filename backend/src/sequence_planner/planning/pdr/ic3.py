@@ -424,7 +424,7 @@ class Reachability:
         """
         kind = self._kind(task)
         proof = self._proofs.get(kind)
-        if proof is not None and satisfies(asserted(task.state, task.goals), proof.invariant):
+        if proof is not None and satisfies(asserted(task.state, task.goals), proof):
             return Finding(proof=proof)
         try:
             decision = self.decide(task, budget)

@@ -20,7 +20,7 @@ from sequence_planner.planning.pdr.abstraction import Orders, localisable, local
 from sequence_planner.planning.pdr.proof_clauses import asserted, one_of, open_to
 from sequence_planner.planning.pdr.transition_relation import Cube, Relation, TickQueries
 from sequence_planner.planning.portfolio.engine import PlanningTask
-from sequence_planner.planning.problem import Clause, Goal, Literal, Proof
+from sequence_planner.planning.problem import CertificateError, Clause, Goal, Literal, Proof
 from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
 from sequence_planner.planning.sat.solver import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
@@ -186,10 +186,6 @@ class SecondSolver:
 
 
 # Proofs that there is no plan, checked by another solver, on clauses of their own.
-
-
-class CertificateError(Exception):
-    """An alleged proof that proves nothing; the message says which step fails."""
 
 
 def check(

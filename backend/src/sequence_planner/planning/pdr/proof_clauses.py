@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.problem import Clause, Literal
+from sequence_planner.planning.problem import Literal, Proof
 from sequence_planner.planning.sat.flag_dependencies import FollowingFlags
 
 
@@ -25,9 +25,10 @@ def is_met(literal: Literal, values: Mapping[str, Value | None]) -> bool:
     return (values[literal.name] == literal.value) is literal.equal
 
 
-def satisfies(values: Mapping[str, Value | None], clauses: Iterable[Clause]) -> bool:
-    """Return whether the values satisfy all clauses."""
-    return all(any(is_met(literal, values) for literal in clause) for clause in clauses)
+def satisfies(values: Mapping[str, Value | None], proof: Proof) -> bool:
+    """Return whether the values satisfy the invariant of a proof."""
+    clauses = all(any(is_met(literal, values) for literal in clause) for clause in proof.invariant)
+    return clauses and (proof.conserved is None or proof.conserved.holds_in(values))
 
 
 def one_of(automaton: Automaton, state: State, free: frozenset[str]) -> State:

@@ -34,7 +34,7 @@ class Finding(Immutable):
     """A plan, or a proof that there is none, or neither.
 
     No plan has at most `searched` ticks, or, when there is a plan, none has fewer than `searched`. When it is
-    `exhausted`, there is none in all that can be reached, which has been looked at, or that sums leave.
+    `exhausted`, there is none in all that can be reached, which has been looked at.
     """
 
     plan: Plan | None = None

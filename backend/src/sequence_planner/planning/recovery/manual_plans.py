@@ -238,10 +238,12 @@ class Errands:
         errand = self.to(here, done)
         if errand is not None:
             yield errand
-        # What is done for that alone may end elsewhere; the beginning of the plan itself does not.
+        # What is done for that alone may end elsewhere; the beginning of the plan itself does not. Some of it may still
+        # be under way where the goals are reached.
         ticks = (*plan.ticks[:cut], replace(plan.ticks[cut], starts=()))
         rest = (replace(plan.ticks[cut], effects=()), *plan.ticks[cut + 1 :])
-        whole = self._errand(here, ticks, done)
+        finished = [ability for ability in abilities if not state[ability.flag("executing")]]
+        whole = self._errand(here, ticks, self._done(finished, written))
         if whole is not None and (errand is None or whole.ticks != errand.ticks):
             yield replace(whole, rest=replace(plan, ticks=rest))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.tick import initial_state, update_operations
+from sequence_planner.automaton.tick import finish, initial_state, synchronise, update_operations
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.planning.heuristic.relaxation import reachable, unreached
 from sequence_planner.planning.pdr.proof_clauses import asserted, satisfies
@@ -83,6 +83,15 @@ class Prover:
     def is_safe(self, state: State) -> bool:
         """Return whether the state is certainly in the safe set."""
         return self.supervisor.safe.includes(state)
+
+    def is_safe_when_seen(self, state: State) -> bool:
+        """Return the same of a state in which devices say something new: the tick that hears it takes in at once what
+        has finished by that.
+        """
+        if self.is_safe(state):
+            return True
+        finishing = finish(self.automaton, state)
+        return bool(finishing.finished) and self.is_safe(synchronise(self.automaton, finishing.state))
 
     def is_refuted(self, task: PlanningTask) -> bool:
         """Return whether what is known already says that there is no plan."""
@@ -164,7 +173,7 @@ def _covers(refuted: _Refuted, task: PlanningTask) -> bool:
         and (then.restart or not now.restart)
         and then.offline <= now.offline
         and then.barred <= now.barred
-        and satisfies(asserted(task.state, tuple(goal for goal in same if goal is not None)), refuted.proof.invariant)
+        and satisfies(asserted(task.state, tuple(goal for goal in same if goal is not None)), refuted.proof)
     )
 
 

@@ -112,6 +112,11 @@ def _passes(acts: Acts) -> bool:
     return any(act.rank == PASSING for act in acts)
 
 
+def _is_told(acts: Acts) -> bool:
+    """Return whether devices tell all of it themselves."""
+    return all(act.kind is ActKind.DEVICE for act in acts)
+
+
 class FewestActs:
     """Looks for offers by acts, in the order of their number. Corrections alone, acts at devices alone and both
     together, each with and without a resource that comes back, are looked for until some are found; those that only
@@ -177,7 +182,8 @@ class FewestActs:
         for each in some:
             task = each.after.production()
             knowing = prover.counting if self._helps(each) else prover
-            if not prover.is_safe(each.after.state) or knowing.is_refuted(task):
+            is_safe = prover.is_safe_when_seen if _is_told(each.acts) else prover.is_safe
+            if not is_safe(each.after.state) or knowing.is_refuted(task):
                 dead.append(each)
             elif consultation.here.goals and not task.goals and not _passes(each.acts):
                 yield self._offer(each, consultation.find(task).plan)

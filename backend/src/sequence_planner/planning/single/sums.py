@@ -16,6 +16,8 @@ from sequence_planner.language.syntax import Expression, conjuncts
 from sequence_planner.language.types import Value
 from sequence_planner.planning.demands import Demands, Some, Starts, Written
 from sequence_planner.planning.portfolio.engine import Finding, PlanningTask
+from sequence_planner.planning.problem import ConservedSum, Proof
+from sequence_planner.planning.validation.conservation import check_conserved
 from sequence_planner.process.budget import Budget, SpentError
 
 NAME: Final = "sums"
@@ -33,7 +35,7 @@ class Sums:
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, starts: Starts | None = None) -> None:
         """Leave aside what the supervisor allows: nothing more than can be proven without it is."""
-        self._names = tuple(automaton.abilities)
+        self._automaton = automaton
         self._starts = starts or Starts(automaton, supervisor)
         self._values: dict[str, dict[Value, Row]] = {}
         column = 0
@@ -48,36 +50,38 @@ class Sums:
         self._all = _Unchanged({c for each in self._values.values() for row in each.values() for c in row}, _PRIMES[-1])
 
     def solve(self, task: PlanningTask, budget: Budget) -> Finding:
-        """That there is no plan at all, or nothing."""
+        """A proof that there is no plan at all, or nothing. Raises `CertificateError` where it is none."""
         if None in task.state.values():
             return Finding()
         try:
             if self._rows is None:
                 self._rows = self._changes(budget.require)
-            excluded = any(
-                self._excluded(goal.predicate, task.state, self._rows, budget.require) for goal in task.goals
-            )
+            for goal in task.goals:
+                conserved = self._conserved(goal.predicate, task.state, self._rows, budget.require)
+                if conserved is not None:
+                    check_conserved(self._automaton, task, conserved, budget.require)
+                    return Finding(proof=Proof(NAME, (), conserved))
         except SpentError:
-            return Finding()
-        return Finding(exhausted=excluded)
+            pass
+        return Finding()
 
-    def _excluded(self, predicate: Expression, state: State, rows: list[Row], pause: Callable[[], object]) -> bool:
-        """Return whether no state with the sums of `state` satisfies the parts of a conjunction that read one
-        variable.
-        """
+    def _conserved(
+        self, predicate: Expression, state: State, rows: list[Row], pause: Callable[[], object]
+    ) -> ConservedSum | None:
+        """A sum that is another one in `state` than where the parts of a conjunction hold that read one variable."""
         asked: dict[str, Some] = {}
         for part in conjuncts(predicate):
             if (alone := self._starts.domains.asked(part)) is not None:
                 asked[alone[0]] = asked.get(alone[0], -1) & alone[1]
         bounds = self._bounds(asked)
         if bounds is None:
-            return False  # for others to say
+            return None  # for others to say
         now = {column: weight for name in self._values for column, weight in self._at(name, state).items()}
         fixed = {column for column, (least, most) in bounds.items() if least == most}
         for prime in _PRIMES:
             for weights in _Unchanged(fixed, prime).found(rows, pause):
                 if sum(w * (bounds[column][0] - now.get(column, 0)) for column, w in weights.items()) % prime:
-                    return True
+                    return self._sum(weights, state, prime)
         for weights in self._all.found(rows, pause):
             exact = _exact(weights, rows)
             if exact is not None:
@@ -85,8 +89,18 @@ class Sums:
                 least = sum(min(w * bound for bound in bounds[column]) for column, w in exact.items())
                 most = sum(max(w * bound for bound in bounds[column]) for column, w in exact.items())
                 if not least <= there <= most:
-                    return True
-        return False
+                    return self._sum(exact, state)
+        return None
+
+    def _sum(self, by_column: Row, state: State, modulus: int = 0) -> ConservedSum:
+        """The same by values of variables."""
+        weights: dict[str, dict[Value, int]] = {}
+        for name, values in self._values.items():
+            each = {value: sum(by_column.get(c, 0) * n for c, n in row.items()) for value, row in values.items()}
+            if any(each.values()):
+                weights[name] = {value: weight for value, weight in each.items() if weight}
+        there = (each.get(value, 0) for name, each in weights.items() if (value := state[name]) is not None)
+        return ConservedSum(weights, sum(there), modulus)
 
     def _at(self, name: str, state: State) -> Row:
         value = state[name]
@@ -108,7 +122,7 @@ class Sums:
     def _changes(self, pause: Callable[[], object]) -> list[Row]:
         """Return what spans all differences that starts can make."""
         rows: dict[tuple[tuple[int, int], ...], Row] = {}
-        for name in self._names:
+        for name in self._automaton.abilities:
             pause()
             for row in self._of(self._starts[name]):
                 rows[tuple(sorted(row.items()))] = row

@@ -83,12 +83,11 @@ def _body(declared: Declaring, route: Route, fields: Mapping[str, FieldInfo]) ->
         name: (route.types[name], ...) if name in route.types else (info.annotation, info)
         for name, info in fields.items()
     }
-    described = repr((route.body_text, given))
     if route.body not in _BODIES:
         made = create_model(route.body, __base__=Body, __doc__=route.body_text, __module__=__name__, **given)
-        _BODIES[route.body] = described, made
+        _BODIES[route.body] = given, made
     known, body = _BODIES[route.body]
-    if known != described:
+    if known is not given and (repr(known), body.__doc__) != (repr(given), route.body_text):
         raise ValueError(f"{declared.__name__} has a body called {route.body}, and another one has another such body")
     return body
 
@@ -145,7 +144,7 @@ async def _check_own(watch: Watch | None, command: TaskCommand, client: Controll
         raise ProblemFound(409, "task-changed", "The task has changed", "Look at what is asked for now.")
 
 
-_BODIES: dict[str, tuple[str, type[Body]]] = {}  # by their names, with what they consist of
+_BODIES: dict[str, tuple[dict[str, Any], type[Body]]] = {}  # by their names, with their fields
 
 router = interface()
 for _command in COMMANDS.values():

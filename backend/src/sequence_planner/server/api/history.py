@@ -8,7 +8,7 @@ from typing import Annotated, TypeVar
 
 from fastapi import Depends, Path, Query, Request
 from fastapi.responses import StreamingResponse
-from pydantic import BaseModel, Field
+from pydantic import Field
 from sqlalchemy import Connection
 
 from sequence_planner.auth.roles import Role, Scope
@@ -39,7 +39,7 @@ from sequence_planner.journal.run_journal import RecordQuery, RunRecord
 from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import JSON_ONLY, Body, Identity
+from sequence_planner.server.dependencies import JSON_ONLY, AnswerModel, Body, Identity
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService
@@ -52,7 +52,7 @@ MOST_RECORDS = 200
 audit_router = interface("/audit", tags=["audit"], dependencies=[allowed(Role.OPERATOR, scope=Scope.AUDIT)])
 
 
-class AuditAnswer(BaseModel):
+class AuditAnswer(AnswerModel):
     """Records, newest first; `next` is the `before` with which older ones follow, null when there are none."""
 
     records: list[Record]
@@ -86,7 +86,7 @@ async def read_audit(
 events_router = interface("/events", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
 
 
-class EventsAnswer(BaseModel):
+class EventsAnswer(AnswerModel):
     """Events, the oldest first; `next` is the `after` with which to ask for what comes then."""
 
     events: list[JobEvent]

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 import structlog
 from fastapi import Header, Path, Query, Request, Response
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt
+from pydantic import ConfigDict, Field, StrictBool, StrictInt
 from sqlalchemy import Connection
 
 from sequence_planner.auth.roles import Role, Scope
@@ -49,7 +49,7 @@ from sequence_planner.mes.scheduling.scheduler import Sequencer
 from sequence_planner.mes.tables import LONGEST_ID
 from sequence_planner.server.api.history import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Identity, LiveView, Reason
+from sequence_planner.server.dependencies import JSON_ONLY, Actor, AnswerModel, Body, Identity, LiveView, Reason
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService
@@ -65,7 +65,7 @@ _COMMANDS = {
 }
 
 
-class OrderAnswer(BaseModel):
+class OrderAnswer(AnswerModel):
     """An order. Times are in seconds since the epoch, and in ISO 8601 where `_at` is added.
 
     `stored_by` is the name of a person or a key.
@@ -168,7 +168,7 @@ class Sort(StrEnum):
     WORK = "work"
 
 
-class OrdersAnswer(BaseModel):
+class OrdersAnswer(AnswerModel):
     """Orders in a row; `next` is the `cursor` with which later ones follow, null when there are none."""
 
     job_orders: list[OrderAnswer]
@@ -346,7 +346,7 @@ capabilities_router = interface(
 )
 
 
-class EquipmentAnswer(BaseModel):
+class EquipmentAnswer(AnswerModel):
     """A resource, whether all its topics speak and it is in service."""
 
     title: str
@@ -355,14 +355,14 @@ class EquipmentAnswer(BaseModel):
     abilities: list[str]
 
 
-class HeldAnswer(BaseModel):
+class HeldAnswer(AnswerModel):
     """Number of unfinished orders that the station can hold, and holds now."""
 
     most: int
     now: int
 
 
-class CapabilitiesAnswer(BaseModel):
+class CapabilitiesAnswer(AnswerModel):
     """A work master: a product that may be ordered, and the operations that make it.
 
     `personnel` are the resources whose abilities people carry out, `equipment` all others. Only while `by_order` the
@@ -451,7 +451,7 @@ class CorrectionAnswer(CorrectionMade):
     time_at = iso("time")
 
 
-class ResponseAnswer(BaseModel):
+class ResponseAnswer(AnswerModel):
     """What was made of an order; `number` counts responses without gaps.
 
     Times are in seconds since the epoch, and in ISO 8601 where `_at` is added. Of very many `deviations` the first are
@@ -474,7 +474,7 @@ class ResponseAnswer(BaseModel):
     corrections: list[CorrectionAnswer]
 
 
-class ResponsesAnswer(BaseModel):
+class ResponsesAnswer(AnswerModel):
     """Responses as they were written; `next` is the `cursor` with which later ones follow, null when there are none."""
 
     job_responses: list[ResponseAnswer]
@@ -539,7 +539,7 @@ order_of_work_router = interface(
 )
 
 
-class ExpectedOperation(BaseModel):
+class ExpectedOperation(AnswerModel):
     """Expected start and end of an operation."""
 
     operation: str
@@ -549,7 +549,7 @@ class ExpectedOperation(BaseModel):
     end_at = iso("end")
 
 
-class ExpectedOrder(BaseModel):
+class ExpectedOrder(AnswerModel):
     """Expected start and end of an order, and by how many seconds it is expected to be late."""
 
     id: str
@@ -557,7 +557,7 @@ class ExpectedOrder(BaseModel):
     operations: list[ExpectedOperation]
 
 
-class OrderOfWorkAnswer(BaseModel):
+class OrderOfWorkAnswer(AnswerModel):
     """The orders in the order in which they are to begin, as it was found at `time`; null while there is none.
 
     The first `horizon` orders were searched for the best that was found in time, the others follow by rule; `bound` is

@@ -57,6 +57,7 @@ from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import (
     JSON_ONLY,
     Actor,
+    AnswerModel,
     Body,
     Controller,
     Identity,
@@ -249,7 +250,7 @@ class AttachmentBody(BaseModel):
     dry_run: bool = False
 
 
-class AttachmentAnswer(BaseModel):
+class AttachmentAnswer(AnswerModel):
     """What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
 
     `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.

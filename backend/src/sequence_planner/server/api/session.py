@@ -6,7 +6,7 @@ import contextlib
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import Request, Response
-from pydantic import AfterValidator, BaseModel, Field
+from pydantic import AfterValidator, Field
 from sqlalchemy import Connection
 
 from sequence_planner.auth import first_start, sessions, users
@@ -26,6 +26,7 @@ from sequence_planner.server.dependencies import (
     Actor,
     Address,
     Agent,
+    AnswerModel,
     Body,
     Controller,
     Identity,
@@ -53,7 +54,7 @@ if TYPE_CHECKING:
 # Who a browser is for this server: what it is told, and how it is given another session.
 
 
-class SessionPerson(BaseModel):
+class SessionPerson(AnswerModel):
     """The signed-in person; `issuer` is the provider that vouches for them: they have no password here then."""
 
     id: str
@@ -62,7 +63,7 @@ class SessionPerson(BaseModel):
     issuer: str | None
 
 
-class SessionProvider(BaseModel):
+class SessionProvider(AnswerModel):
     """The provider with which people may sign in too.
 
     `sign_out` is where one signs out of it as well; null where that is not known.
@@ -72,7 +73,7 @@ class SessionProvider(BaseModel):
     sign_out: str | None
 
 
-class SessionWatch(BaseModel):
+class SessionWatch(AnswerModel):
     """The watch that this device is, apart from who is signed in."""
 
     id: str
@@ -81,7 +82,7 @@ class SessionWatch(BaseModel):
     state: WatchState
 
 
-class SessionAnswer(BaseModel):
+class SessionAnswer(AnswerModel):
     """Who the browser is for this server.
 
     `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
@@ -187,7 +188,7 @@ class BeginBody(Body):
     to: Page = HOME
 
 
-class BegunAnswer(BaseModel):
+class BegunAnswer(AnswerModel):
     """Address for the browser to go to."""
 
     location: str
@@ -202,7 +203,7 @@ class ProviderAnswerBody(Body):
     iss: Brought | None = None
 
 
-class ProviderSessionAnswer(BaseModel):
+class ProviderSessionAnswer(AnswerModel):
     """The session that was opened, and the page of this server to go to."""
 
     session: SessionAnswer

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import Query, WebSocket
-from pydantic import BaseModel
 
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.auth.roles import Role, Scope
@@ -42,7 +41,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import Controller, LiveView
+from sequence_planner.server.dependencies import AnswerModel, Controller, LiveView
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
 from sequence_planner.server.stream.broadcast import FlowsFeed, NetworkFeed
@@ -51,7 +50,7 @@ from sequence_planner.server.stream.endpoints import serve
 router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
 
-class Answer(BaseModel):
+class Answer(AnswerModel):
     """The tick and the time (seconds since the epoch, the controller's clock) at which this was so."""
 
     tick: int

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import Depends, Request
-from pydantic import BaseModel
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.backup.archive import How, Manifest
@@ -29,7 +28,7 @@ from sequence_planner.journal.entry import Outcome
 from sequence_planner.process.user import user_name
 from sequence_planner.retention.settings import DAY, GB
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import JSON_ONLY, Actor, Identifier, NothingBody
+from sequence_planner.server.dependencies import JSON_ONLY, Actor, AnswerModel, Identifier, NothingBody
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.backups import (
@@ -44,14 +43,14 @@ from sequence_planner.server.services.retention import RetentionService, Retenti
 # What the server answers about backups, from what the folder holds and the journal tells.
 
 
-class BackupTroubleAnswer(BaseModel):
+class BackupTroubleAnswer(AnswerModel):
     """An obstacle: its kind, and in words with what to do."""
 
     kind: Trouble
     detail: str
 
 
-class BackupContentAnswer(BaseModel):
+class BackupContentAnswer(AnswerModel):
     """What a backup says of itself. `how` and `by` are null where it does not tell who made it.
 
     `time` is in seconds since the epoch; `audit` and `run` are the last records of who did what, and of what happened.
@@ -69,7 +68,7 @@ class BackupContentAnswer(BaseModel):
     revisions: bool
 
 
-class BackupCheckedAnswer(BaseModel):
+class BackupCheckedAnswer(AnswerModel):
     """Result of the last verification of a backup, which is also done when it is made."""
 
     time: float
@@ -78,7 +77,7 @@ class BackupCheckedAnswer(BaseModel):
     detail: str
 
 
-class BackupAnswer(BaseModel):
+class BackupAnswer(AnswerModel):
     """A file in the folder, and the commands that restore it; `content` is null, and `wrong` says why, where the file
     cannot be read.
     """
@@ -91,7 +90,7 @@ class BackupAnswer(BaseModel):
     restoring: RestoreInstructions | None
 
 
-class BackupBusyAnswer(BaseModel):
+class BackupBusyAnswer(AnswerModel):
     """The work under way; `step` is null until it has begun."""
 
     doing: Doing
@@ -101,7 +100,7 @@ class BackupBusyAnswer(BaseModel):
     step: Step | None
 
 
-class BackupAttemptAnswer(BaseModel):
+class BackupAttemptAnswer(AnswerModel):
     """Result of the last work: `requested` if the server ended before it."""
 
     doing: Doing
@@ -112,7 +111,7 @@ class BackupAttemptAnswer(BaseModel):
     trouble: BackupTroubleAnswer | None
 
 
-class BackupsAnswer(BaseModel):
+class BackupsAnswer(AnswerModel):
     """Backups, the newest first, and where and how they are kept. `free` is in bytes, `every` in hours.
 
     The newest is old when it is older than `old_after` (seconds). `trouble` is what keeps one from being made, `last`
@@ -286,7 +285,7 @@ def _silent(error: FolderSilentError) -> ProblemFound:
 # What the server answers about what is kept.
 
 
-class StorageSizesAnswer(BaseModel):
+class StorageSizesAnswer(AnswerModel):
     """Bytes: of the database, of which `unused` are free for what comes (known of SQLite alone); of what happened and
     of job orders in it, estimated; of the archive and of backups beside the database. `free` is what is free on the
     disk of the database (null on another machine), `archive_free` on that of the archive.
@@ -302,7 +301,7 @@ class StorageSizesAnswer(BaseModel):
     archive_free: int | None
 
 
-class StorageDayAnswer(BaseModel):
+class StorageDayAnswer(AnswerModel):
     """Records of the day that begins at `since`, and about how many bytes they take."""
 
     since: float
@@ -310,7 +309,7 @@ class StorageDayAnswer(BaseModel):
     size: int
 
 
-class StorageGrowthAnswer(BaseModel):
+class StorageGrowthAnswer(AnswerModel):
     """How it goes on if it goes on like this: bytes a day in the database (the mean of the last days) and, of these,
     in the archive; `journal` is how large what happened becomes until it is cut, `by_size` whether that is because of
     its size. The disk is full in `full_in` days; null where that is not foreseen within ten years.
@@ -323,7 +322,7 @@ class StorageGrowthAnswer(BaseModel):
     full_in: float | None
 
 
-class StorageKeptAnswer(BaseModel):
+class StorageKeptAnswer(AnswerModel):
     """The records from `first` to `last`, and when these happened, in seconds since the epoch."""
 
     first: int
@@ -332,7 +331,7 @@ class StorageKeptAnswer(BaseModel):
     until: float
 
 
-class StorageFileAnswer(BaseModel):
+class StorageFileAnswer(AnswerModel):
     """A file of the archive: with the records from `first` to `last`, or else with so many `orders`."""
 
     file: str
@@ -345,7 +344,7 @@ class StorageFileAnswer(BaseModel):
     missing: bool
 
 
-class StorageSettingsAnswer(BaseModel):
+class StorageSettingsAnswer(AnswerModel):
     """For how long things are kept, as the station was started: see the options of `run`. `folder` is null where what
     is cut is archived nowhere.
     """
@@ -358,13 +357,13 @@ class StorageSettingsAnswer(BaseModel):
     archive_gb: float | None
 
 
-class StorageBusyAnswer(BaseModel):
+class StorageBusyAnswer(AnswerModel):
     """For whom it is done now."""
 
     by: str
 
 
-class StorageRunAnswer(BaseModel):
+class StorageRunAnswer(AnswerModel):
     """Result of the last clean-up: numbers of records and job orders cut, and of files removed."""
 
     time: float
@@ -373,7 +372,7 @@ class StorageRunAnswer(BaseModel):
     removed: int
 
 
-class StorageAnswer(BaseModel):
+class StorageAnswer(AnswerModel):
     """How much is kept, for how long, and how it grows. `database` and `archived` are null where there is nothing.
 
     `days` are the last days, the oldest first; `files` the newest files of the archive, the newest first, of so many.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from fastapi import Header, Response
-from pydantic import BaseModel, ConfigDict, Field, StrictInt, model_validator
+from pydantic import ConfigDict, Field, StrictInt, model_validator
 from sqlalchemy import Connection
 
 from sequence_planner.auth import api_keys, users
@@ -23,7 +23,7 @@ from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.auth.sessions import end_sessions_of, live_counts
 from sequence_planner.auth.users import Person
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Identifier, Identity, Name
+from sequence_planner.server.dependencies import JSON_ONLY, Actor, AnswerModel, Body, Identifier, Identity, Name
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 
@@ -34,7 +34,7 @@ keys_bodiless = interface("/api-keys", tags=["api keys"], dependencies=[ADMINIST
 keys_router = interface("/api-keys", tags=["api keys"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 
 
-class KeyAnswer(BaseModel):
+class KeyAnswer(AnswerModel):
     """A key without its secret. Times are in seconds since the epoch; `created_by` is the person's name.
 
     `former_until` is when the secret before the last rotation works no more; null without a rotation.
@@ -51,7 +51,7 @@ class KeyAnswer(BaseModel):
     former_until: float | None
 
 
-class KeysAnswer(BaseModel):
+class KeysAnswer(AnswerModel):
     """All keys, the newest first; those that work no more are among them for 90 days."""
 
     keys: list[KeyAnswer]
@@ -72,7 +72,7 @@ class RotationBody(Body):
     days: Annotated[StrictInt, Field(ge=1, le=LONGEST_LIFE)] | None = None
 
 
-class NewKeyAnswer(BaseModel):
+class NewKeyAnswer(AnswerModel):
     """A key and its secret, which is shown this once."""
 
     key: KeyAnswer
@@ -141,7 +141,7 @@ TAGGED: dict[str, Any] = {
 Condition = Annotated[str | None, Header(pattern=r'^(\*|"[0-9]{1,9}")$')]
 
 
-class PersonAnswer(BaseModel):
+class PersonAnswer(AnswerModel):
     """A person. `created` is in seconds since the epoch; `sessions` counts those that are open now.
 
     `revision` is what a change has to name in `If-Match`, in double quotes. `issuer` is the provider with which the
@@ -159,7 +159,7 @@ class PersonAnswer(BaseModel):
     sessions: int
 
 
-class PeopleAnswer(BaseModel):
+class PeopleAnswer(AnswerModel):
     """Everybody, by name."""
 
     people: list[PersonAnswer]

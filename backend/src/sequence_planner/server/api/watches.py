@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from fastapi import Request, Response
-from pydantic import BaseModel, Field, RootModel
+from pydantic import Field, RootModel
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.auth import watches
@@ -20,6 +20,7 @@ from sequence_planner.server.dependencies import (
     Actor,
     Address,
     Agent,
+    AnswerModel,
     Body,
     Controller,
     Identifier,
@@ -38,7 +39,7 @@ from sequence_planner.server.stream.messages import Silence, StreamError, Stream
 # Times are in seconds since the epoch.
 
 
-class WatchAnswer(BaseModel):
+class WatchAnswer(AnswerModel):
     """A watch, as operators see it; `paired_by` is the name of who let it in.
 
     `agent` is what its browser calls itself; it was paired from `address`.
@@ -56,7 +57,7 @@ class WatchAnswer(BaseModel):
     address: str
 
 
-class OfferAnswer(BaseModel):
+class OfferAnswer(AnswerModel):
     """A pairing that nobody has redeemed yet. Its code is not told again."""
 
     id: str
@@ -66,14 +67,14 @@ class OfferAnswer(BaseModel):
     expires: float
 
 
-class WatchResource(BaseModel):
+class WatchResource(AnswerModel):
     """A resource that has tasks for people, so that a watch can serve it."""
 
     name: str
     title: str
 
 
-class WatchesAnswer(BaseModel):
+class WatchesAnswer(AnswerModel):
     """All watches and open offers, the newest first, and the resources to choose from.
 
     There are no resources while the controller is not heard.
@@ -91,7 +92,7 @@ class OfferBody(Body):
     resource: Annotated[str, Field(min_length=1, max_length=200)]
 
 
-class NewOfferAnswer(BaseModel):
+class NewOfferAnswer(AnswerModel):
     """The code to type in on the watch until `expires`; it is shown this once."""
 
     id: str
@@ -109,7 +110,7 @@ class ConfirmationBody(Body):
     """Nothing: to confirm is all that there is to say."""
 
 
-class WatchSelfAnswer(BaseModel):
+class WatchSelfAnswer(AnswerModel):
     """A watch's own data."""
 
     id: str

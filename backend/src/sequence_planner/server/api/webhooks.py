@@ -6,7 +6,7 @@ from functools import partial
 from typing import Annotated, Any
 
 from fastapi import Depends, Query, Request, Response
-from pydantic import BaseModel, Field, StrictInt
+from pydantic import Field, StrictInt
 
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.mes.events import EventKind
@@ -18,7 +18,7 @@ from sequence_planner.mes.webhooks.endpoints import Seal, Webhook, key_file
 from sequence_planner.mes.webhooks.targets import LONGEST_URL, TargetRefused, Targets
 from sequence_planner.server.api.history import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Identifier, Identity, Name
+from sequence_planner.server.dependencies import JSON_ONLY, Actor, AnswerModel, Body, Identifier, Identity, Name
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 
@@ -38,7 +38,7 @@ MADE: dict[str, Any] = {
 Number = Annotated[StrictInt, Field(ge=0, le=LARGEST_NUMBER)]
 
 
-class AllowedAnswer(BaseModel):
+class AllowedAnswer(AnswerModel):
     """Allowed destinations of webhooks: hosts with their ports, and networks; with `loopback` also this machine."""
 
     hosts: list[str]
@@ -46,7 +46,7 @@ class AllowedAnswer(BaseModel):
     loopback: bool
 
 
-class WebhooksAnswer(BaseModel):
+class WebhooksAnswer(AnswerModel):
     """All webhooks, the newest first, and where whoever runs the station lets them go."""
 
     webhooks: list[Webhook]
@@ -65,14 +65,14 @@ class WebhookBody(Body):
     after: Number | None = None
 
 
-class NewWebhookAnswer(BaseModel):
+class NewWebhookAnswer(AnswerModel):
     """A webhook and its secret, which is shown this once."""
 
     webhook: Webhook
     secret: str
 
 
-class DeadLettersAnswer(BaseModel):
+class DeadLettersAnswer(AnswerModel):
     """Events that were given up, the oldest first; `next` is the `after` with which to ask for what comes then."""
 
     dead_letters: list[DeadLetter]
@@ -85,7 +85,7 @@ class AgainBody(Body):
     events: Annotated[list[Number], Field(max_length=MOST_RECORDS)] | None = None
 
 
-class AgainAnswer(BaseModel):
+class AgainAnswer(AnswerModel):
     """Number of events that are sent again."""
 
     events: int

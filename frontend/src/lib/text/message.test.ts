@@ -1,8 +1,8 @@
 import { describe, expect, test } from 'vitest';
-import english from '#lib/text/en/alarm-texts.json';
-import swedish from '#lib/text/sv/alarm-texts.json';
+import english from '#lib/text/en/messages.json';
+import swedish from '#lib/text/sv/messages.json';
 import { alarm } from '#lib/testing/view.ts';
-import { tell, wordsOf } from './wording.ts';
+import { tell, wordsOf } from './message.ts';
 
 const EN = { texts: english, language: 'en' };
 const SV = { texts: swedish, language: 'sv' };

@@ -1,4 +1,4 @@
-/** What an alarm says in the language of the page, made of the messages with which the controller tells it. */
+/** What is said of a station in the language of the page, made of the messages with which the controller tells it. */
 import type { Alarm, Argument, Item, Message } from '#lib/contract.ts';
 import { language, say } from '#lib/text/text.svelte.ts';
 
@@ -20,18 +20,27 @@ export interface Catalogue {
 	readonly language: string;
 }
 
-const ofPage = (): Catalogue => ({ texts: say().alarmTexts, language: language() });
+const ofPage = (): Catalogue => ({ texts: say().messages, language: language() });
+
+/** What a message says; what was written in English, where there is none or the page does not know it. */
+export function told(message: Message | null | undefined, written: string, catalogue = ofPage()): string {
+	return (message && tell(message, catalogue)) ?? written;
+}
+
+/** The same of several. */
+export function toldAll(messages: readonly Message[] | undefined, written: readonly string[], catalogue = ofPage()): readonly string[] {
+	return written.map((each, index) => told(messages?.[index], each, catalogue));
+}
 
 /** The words of an alarm. A record of before, or of a kind that the page does not know, is told as it was written. */
 export function wordsOf(alarm: Pick<Alarm, 'text' | 'consequence' | 'action' | 'parts'> & { messages?: Alarm['messages'] }, catalogue = ofPage()): Words {
 	const { messages } = alarm;
 	if (messages === undefined) return alarm;
-	const told = (message: Message | null, written: string): string => (message && tell(message, catalogue)) ?? written;
 	return {
-		text: told(messages.text, alarm.text),
-		consequence: told(messages.consequence, alarm.consequence),
-		action: told(messages.action, alarm.action),
-		parts: messages.parts.map((part, index) => told(part, alarm.parts[index] ?? ''))
+		text: told(messages.text, alarm.text, catalogue),
+		consequence: told(messages.consequence, alarm.consequence, catalogue),
+		action: told(messages.action, alarm.action, catalogue),
+		parts: toldAll(messages.parts, alarm.parts, catalogue)
 	};
 }
 

@@ -1,12 +1,7 @@
-"""English texts of alarms: of each kind what is wrong, what was, what comes of it and what to do; and their parts.
-
-`make types` writes them for the page, whose Swedish ones are in `frontend/src/lib/text/sv/alarm-texts.json`.
-"""
+"""English texts of alarms: of each kind what is wrong, what was, what comes of it and what to do; and their parts."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Final
 
 
@@ -19,7 +14,7 @@ def _kind(name: str, text: str, past: str, consequence: str, action: str) -> dic
     }
 
 
-TEXTS: Final[dict[str, str]] = {
+ALARMS: Final[dict[str, str]] = {
     # Devices.
     **_kind(
         "silent",
@@ -383,9 +378,3 @@ TEXTS: Final[dict[str, str]] = {
     "as-it-was": "{text}",  # of a record that has but its text
     "over": "{past}. This is over, but not all that followed",
 }
-
-
-if __name__ == "__main__":
-    import sys
-
-    Path(sys.argv[1]).write_text(json.dumps(TEXTS, indent="\t", ensure_ascii=False) + "\n", encoding="utf-8")

@@ -1,0 +1,114 @@
+"""A station that is written shorter means the same: its automaton is compared with that of the model it was before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import product
+from math import prod
+from pathlib import Path
+
+import pytest
+
+from golden.journals import model
+from sequence_planner.automaton.automaton import Automaton, target
+from sequence_planner.core.immutable import Immutable
+from sequence_planner.execution.record.recorder import model_digest
+from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.printer import print_expression
+from sequence_planner.language.syntax import (
+    TRUE,
+    Assignment,
+    BinaryTemporal,
+    Expression,
+    UnaryTemporal,
+    children,
+    occurrences,
+)
+from sequence_planner.language.types import EnumerationType, Type, Value
+from sequence_planner.station import read_station
+
+STATIONS = Path(__file__).parents[3] / "models"
+MOST_STATES = 200_000
+
+# By station, the model that it was before: its digest begins so.
+BEFORE = {"truck_engine_station": "29321a2f211e"}
+
+
+@pytest.fixture(scope="module", params=BEFORE)
+def automata(request: pytest.FixtureRequest) -> tuple[Automaton, Automaton]:
+    with model(BEFORE[request.param]) as folder:
+        before = read_station(folder).automaton
+    assert model_digest(before).startswith(BEFORE[request.param])
+    return before, read_station(STATIONS / request.param).automaton
+
+
+def test_it_means_what_it_meant(automata: tuple[Automaton, Automaton]) -> None:
+    before, now = automata
+    assert {each: _plain(variable.type) for each, variable in now.variables.items()} == {
+        each: _plain(variable.type) for each, variable in before.variables.items()
+    }
+    assert {each: (v.kind, v.initial, v.resource) for each, v in now.variables.items()} == {
+        each: (v.kind, v.initial, v.resource) for each, v in before.variables.items()
+    }
+    for table in ("abilities", "operations", "specifications", "work_masters", "alarms"):
+        _assert_same(getattr(before, table), getattr(now, table), table)
+    _assert_same({each.name: each for each in before.effects}, {each.name: each for each in now.effects}, "effects")
+    _assert_same({"rest": before.rest}, {"rest": now.rest}, "rest")
+
+
+def _assert_same(before: Mapping[str, object], now: Mapping[str, object], what: str) -> None:
+    assert before.keys() == now.keys(), what
+    for name, part in before.items():
+        _assert_alike(part, now[name], f"{what} {name}")
+
+
+def _assert_alike(before: object, now: object, where: str) -> None:
+    """Two values are equal, where expressions within them need only have the same value in each state."""
+    if before == now:
+        return
+    if isinstance(before, Expression) and isinstance(now, Expression):
+        _assert_equivalent(before, now, where)
+    elif _are_actions(before) and _are_actions(now):
+        first, second = _by_target(before), _by_target(now)
+        assert first.keys() == second.keys(), where
+        for name, action in first.items():
+            _assert_alike(action.value, second[name].value, f"{where}: {name}")
+            _assert_equivalent(action.condition or TRUE, second[name].condition or TRUE, f"{where}: {name} if")
+    else:
+        assert isinstance(before, Immutable), f"{where}: {before} is {now} now"
+        assert type(before) is type(now), where
+        for field in before.__match_args__:
+            _assert_alike(getattr(before, field), getattr(now, field), f"{where}.{field}")
+
+
+def _are_actions(value: object) -> bool:
+    return isinstance(value, tuple) and all(isinstance(each, Assignment) for each in value)
+
+
+def _by_target(actions: object) -> dict[str, Assignment]:
+    assert isinstance(actions, tuple)
+    return {target(each): each for each in actions}
+
+
+def _assert_equivalent(before: Expression, now: Expression, where: str) -> None:
+    if print_expression(before) == print_expression(now):
+        return
+    if isinstance(before, UnaryTemporal | BinaryTemporal):
+        assert type(before) is type(now), where
+        for one, other in zip(children(before), children(now), strict=True):
+            _assert_equivalent(one, other, where)
+        return
+    types = {each.name: each.type for each in (*occurrences(before), *occurrences(now))}
+    assert prod(len(type_.domain) for type_ in types.values()) <= MOST_STATES, f"{where} reads too much to compare"
+    for state in _states(types):
+        assert evaluate(before, state) == evaluate(now, state), f"{where} differs where {state}"
+
+
+def _states(types: Mapping[str, Type]) -> Iterator[dict[str, Value | None]]:
+    for values in product(*(type_.domain for type_ in types.values())):
+        yield dict(zip(types, values, strict=True))
+
+
+def _plain(type_: Type) -> object:
+    """A type without the order of its values, but for the first: that is the one that a variable has at first."""
+    return (type_.values[0], frozenset(type_.values)) if isinstance(type_, EnumerationType) else type_
