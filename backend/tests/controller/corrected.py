@@ -8,7 +8,8 @@ from controller.carrying_out import carry_out
 from sequence_planner.analysis.mutual_exclusion import NeverTogether, never_together
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.recovery import CorrectEstimates
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.features.variables import Beliefs
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -35,7 +36,7 @@ def corrections(
 ) -> Corrections:
     return Corrections(
         execution,
-        Planning(),
+        Planning().answer,
         Beliefs(execution) if beliefs is None else beliefs,
         ConsistencyMonitor(execution) if doubting is None else doubting,
         lambda names: None,

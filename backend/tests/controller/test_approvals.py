@@ -6,7 +6,7 @@ import asyncio
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import pytest
 from hypothesis import strategies as st
@@ -94,7 +94,7 @@ def controller(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Controller]
 
 
 def feature(controller: Controller, kind: type[Kept]) -> Kept:
-    return next(each for each in controller.viewing._shown if isinstance(each, kind))
+    return next(each for each in controller.viewing._features if isinstance(each, kind))
 
 
 @dataclass
@@ -114,7 +114,8 @@ class Cell:
 
     @property
     def approvals(self) -> dict[str, ApprovalView]:
-        return feature(self.controller, Approvals).view(self.moment)
+        shown: Any = feature(self.controller, Approvals).view_part(self.moment)["approvals"]
+        return dict(shown)
 
     def value(self, name: str) -> object:
         return self.controller.execution.state[name]
@@ -129,7 +130,7 @@ class Cell:
 
     def control(self, actor: Actor | None) -> None:
         """Let somebody be in control, or nobody."""
-        held = feature(self.controller, ControlLock).view()
+        held = feature(self.controller, ControlLock).holder
         if held is not None:
             self.do(WithdrawControl(actor=SYSTEM, session=held.session))
         if actor is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from sequence_planner.automaton.automaton import Kind
-from sequence_planner.controller.recovery.consistency import Beliefs, beliefs_from
+from sequence_planner.controller.features.variables import Beliefs, beliefs_from
 from sequence_planner.controller.views.station import BeliefView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor

@@ -317,7 +317,7 @@ def test_a_value_that_is_unknown_and_the_alarm_of_its_device_are_in_one_view(
         if why == "its node has gone":
             arm.transport.close()
         else:
-            monkeypatch.setattr("sequence_planner.controller.alarms.device_conditions.GRACE", 0.0)
+            monkeypatch.setattr("sequence_planner.controller.io.links.GRACE", 0.0)
         while (view := on.controller.view()).variables["arm.pose"].value is not None:
             assert not view.alarms
             on.controller.changed.clear()

@@ -10,13 +10,14 @@ import pytest
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.queries import AskCorrection
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, UndoCorrection
 from sequence_planner.controller.views.details import CorrectionPreview
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
-from sequence_planner.planning.problem import Plan, PlanRequest
+from sequence_planner.planning.problem import Plan, PlanAnswer, PlanRequest
 from support.people import ADAM, EVA
 
 from .corrected import WHY, Station, what_is_never_together
@@ -25,7 +26,7 @@ BOLT = "bolts[bolt_pair_2]"
 
 
 def preview(station: Station, then: str = "placed") -> CorrectionPreview:
-    return asyncio.run(station.corrections.preview({BOLT: then}))
+    return asyncio.run(station.corrections.preview(AskCorrection(values={BOLT: then})))
 
 
 def in_restart(station: Station) -> Station:
@@ -106,11 +107,10 @@ def test_a_contradiction_comes_and_goes_with_a_correction() -> None:
 def test_a_plan_that_nobody_can_make_now_leaves_the_rest() -> None:
     station = Station()
 
-    class Away:
-        async def answer(self, request: PlanRequest, deadline: float) -> object:
-            raise CommandRefused("advisor-unavailable", "There is no adviser", "It is started again.", 503)
+    async def is_away(request: PlanRequest, deadline: float) -> PlanAnswer:
+        raise CommandRefused("advisor-unavailable", "There is no adviser", "It is started again.", 503)
 
-    station.corrections._previewing._adviser = Away()  # type: ignore[assignment]
+    station.corrections._plan = is_away
     shown = preview(station)
     assert shown.plan is None
     assert "It is started again." in shown.reason
@@ -207,7 +207,7 @@ def test_what_cannot_be_corrected(values: dict[str, Value], slug: str) -> None:
     station = in_restart(Station())
     before = station.execution.state
     assert refusal(lambda: station.correct(values)) == slug
-    assert refusal(lambda: asyncio.run(station.corrections.preview(values))) == slug
+    assert refusal(lambda: asyncio.run(station.corrections.preview(AskCorrection(values=values)))) == slug
     assert station.execution.state == before
 
 

@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from sequence_planner.controller.features.tasks import WaitingTask
+from sequence_planner.controller.commands.tasks import WaitingTask
 from sequence_planner.controller.recovery.explain import waits_for
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode, PlanStatus

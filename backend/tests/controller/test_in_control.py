@@ -181,7 +181,7 @@ def test_control_is_one_sessions_and_changes_hands_only_as_asked(acts: list[tupl
         else:
             desk.withdraw(WithdrawControl(actor=SYSTEM, session=str(actor.session)), NOW)
             holder = None if holder == actor.session else holder
-        view = desk.view()
+        view = desk.holder
         assert (view.session if view else None) == holder
 
 

@@ -22,9 +22,9 @@ from sequence_planner.controller.commands.jobs import (
     TakeJob,
 )
 from sequence_planner.controller.commands.registry import AnyCommand
-from sequence_planner.controller.features.jobs import KeptJobs
+from sequence_planner.controller.features.records import KeptJobs
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
-from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.views.jobs import job_views, why_idle
 from sequence_planner.core.actor import SYSTEM, ActorKind
 from sequence_planner.core.immutable import replace

@@ -139,10 +139,10 @@ def test_a_violation_raises_an_alarm_that_says_which(tmp_path: Path) -> None:
     rig.run(1)
     shown = alarms(rig)
     now = Timestamp(rig.now, rig.now)
-    assert not [key for key in shown.current(None, now) if key.startswith("local:")]
+    assert not [key for key in shown.current(now) if key.startswith("local:")]
     rig.execution.state = {**rig.execution.state, "arm.goto": "out"}
     rig.tick()
-    texts = [alarm.text for key, alarm in shown.current(None, now).items() if key.startswith("local:")]
+    texts = [alarm.text for key, alarm in shown.current(now).items() if key.startswith("local:")]
     assert set(texts) == {"The local specification `G (arm.goto != out)` of fetch was violated"}
 
 

@@ -11,10 +11,12 @@ import pytest
 
 from sequence_planner.automaton.automaton import Operation
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue
+from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery import proposals
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
 from sequence_planner.controller.recovery.proposals import Offers
 from sequence_planner.controller.recovery.stalls import StallDetector
@@ -68,8 +70,8 @@ class Desk:
     def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
         self.adviser, self.execution = adviser, execution
         doubting = ConsistencyMonitor(execution)
-        corrections = Corrections(execution, adviser, Beliefs(execution), doubting, lambda names: None)
-        self.offers = Offers(execution, adviser, corrections, doubting.impossible, StallDetector(execution))
+        corrections = Corrections(execution, adviser.answer, Beliefs(execution), doubting, lambda names: None)
+        self.offers = Offers(execution, adviser, corrections.correct, doubting.impossible, StallDetector(execution))
         self.seconds = 0.0
         self.at: Value = "home"
 
@@ -139,17 +141,17 @@ def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> 
     async def scenario() -> None:
         async with desk() as there:
             there.tick()
-            offer = await there.offers.goal("at == work and not loaded")
+            offer = await there.offers.goal(AskGoal(predicate="at == work and not loaded"))
             assert offer.errand is not None
             assert [(step.ability, step.tick) for step in offer.errand.steps] == [("go", 1)]
             assert (offer.kind, offer.needs_restart, offer.ends) == ("goal", False, "at == work and not loaded")
             assert offer.obstacle == refused("production-not-started", lambda: there.take(offer))
             there.execution.start_production()
             assert "changed" in refused("stale-revision", lambda: there.take(offer))
-            offer = await there.offers.goal("at == work")
+            offer = await there.offers.goal(AskGoal(predicate="at == work"))
             assert offer.obstacle == refused("wrong-mode", lambda: there.take(offer))
             there.enter(Mode.PAUSED)
-            offer = await there.offers.goal("at == work")
+            offer = await there.offers.goal(AskGoal(predicate="at == work"))
             assert offer.obstacle is None
             refused("not-confirmed", lambda: there.take(offer, starts=[]))
             refused("not-confirmed", lambda: there.take(offer, corrections={"jammed": False}))
@@ -159,8 +161,8 @@ def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> 
             assert there.execution.operator_plan is not None
             assert (there.execution.operator_plan.by, there.execution.operator_plan.why) == ("Eva", "to try it")
             assert there.tick() == ("go",)
-            await refused_later("plan-running", there.offers.goal("loaded"))
-            await refused_later("plan-running", there.offers.advice())
+            await refused_later("plan-running", there.offers.goal(AskGoal(predicate="loaded")))
+            await refused_later("plan-running", there.offers.advice(AskAdvice()))
             assert there.tick(at="work") == ()
             assert there.execution.operator_plan is None
             assert there.execution.conduct.last_operator_plan is not None
@@ -174,13 +176,15 @@ def test_what_cannot_be_offered_is_said() -> None:
     async def scenario() -> None:
         async with desk() as there:
             there.tick()
-            text = await refused_later("bad-predicate", there.offers.goal("loaded and att == work"), 422)
+            text = await refused_later(
+                "bad-predicate", there.offers.goal(AskGoal(predicate="loaded and att == work")), 422
+            )
             assert text.startswith("character 12, `att`: ")
-            await refused_later("bad-predicate", there.offers.goal("loaded and"), 422)
-            await refused_later("goal-holds", there.offers.goal("at == home"))
-            text = await refused_later("no-plan", there.offers.goal("loaded and delivered"))
+            await refused_later("bad-predicate", there.offers.goal(AskGoal(predicate="loaded and")), 422)
+            await refused_later("goal-holds", there.offers.goal(AskGoal(predicate="at == home")))
+            text = await refused_later("no-plan", there.offers.goal(AskGoal(predicate="loaded and delivered")))
             assert "There is no plan as long as all of this is so" in text
-            await refused_later("unknown-operation", there.offers.reset("carry"), 404)
+            await refused_later("unknown-operation", there.offers.reset(AskReset(operation="carry")), 404)
 
     asyncio.run(scenario())
 
@@ -194,7 +198,7 @@ def test_an_operation_is_reset_to_where_it_begins() -> None:
             there.execution.correct({"target": "work"}, "Eva", "seen", there.now)
             there.enter(Mode.PAUSED)
             there.tick()
-            offer = await there.offers.reset("deliver")
+            offer = await there.offers.reset(AskReset(operation="deliver"))
             assert (offer.kind, offer.operation, offer.title) == ("reset", "deliver", "Reset Deliver")
             assert offer.errand is not None
             assert [step.ability for step in offer.errand.steps] == ["back", "load"]
@@ -216,11 +220,11 @@ def test_where_there_was_too_little_time_for_advice_asking_again_finds_it(monkey
     async def scenario() -> None:
         async with desk() as there:
             there.tick()
-            hurried = await there.offers.advice()
+            hurried = await there.offers.advice(AskAdvice())
             assert (hurried.offers, hurried.complete) == ([], False)
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             assert advice.offers
-            assert await there.offers.advice() is advice
+            assert await there.offers.advice(AskAdvice()) is advice
 
     asyncio.run(scenario())
 
@@ -243,11 +247,11 @@ def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monk
             there.tick()
             there.believe(jammed=True)
             there.tick()
-            hurried = await there.offers.advice()
+            hurried = await there.offers.advice(AskAdvice())
             assert [bool(offer.corrections) for offer in hurried.offers] == [True]
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             assert any(offer.errand is not None and not offer.corrections for offer in advice.offers)
-            assert await there.offers.advice() is advice
+            assert await there.offers.advice(AskAdvice()) is advice
 
     asyncio.run(scenario())
 
@@ -258,7 +262,7 @@ def test_all_who_ask_at_once_get_one_answer_though_one_of_them_leaves(monkeypatc
     async def scenario() -> None:
         async with desk() as there:
             there.tick()
-            leaving, *staying = (asyncio.create_task(there.offers.advice()) for _ in range(4))
+            leaving, *staying = (asyncio.create_task(there.offers.advice(AskAdvice())) for _ in range(4))
             await asyncio.sleep(0)  # all have asked, and nobody can have answered
             leaving.cancel()
             first, *others = await asyncio.gather(*staying)
@@ -280,16 +284,16 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             there.believe(jammed=True)
             there.tick()
             assert there.execution.active == {"deliver"}
-            said = next(offer for offer in (await there.offers.advice()).offers if offer.corrections)
+            said = next(offer for offer in (await there.offers.advice(AskAdvice())).offers if offer.corrections)
             assert said.obstacle == refused("not-in-restart", lambda: there.take(said))
             there.enter(Mode.RESTART)
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             assert [offer.obstacle for offer in advice.offers if offer.corrections] == [None]
             assert advice.revision == there.execution.revision
-            assert await there.offers.advice() is advice, "the same question is not asked twice"
+            assert await there.offers.advice(AskAdvice()) is advice, "the same question is not asked twice"
             monkeypatch.setattr(proposals, "MOST_KEPT", len(advice.offers))
-            await there.offers.goal("not jammed")  # and for it another offer is forgotten
-            advice = await there.offers.advice()
+            await there.offers.goal(AskGoal(predicate="not jammed"))  # and for it another offer is forgotten
+            advice = await there.offers.advice(AskAdvice())
             rescue = next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps)
             correction = next(offer for offer in advice.offers if offer.corrections)
             assert [step.ability for step in rescue.errand.steps] == ["rescue"] if rescue.errand else False
@@ -304,17 +308,17 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             refused("stale-revision", lambda: there.take(rescue))
             there.correct(jammed=True)
             there.enter(Mode.PAUSED)
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             rescue = next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps)
             assert "Enter it" in refused("wrong-mode", lambda: there.take(rescue))
             there.enter(Mode.RESTART)
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             there.take(next(offer for offer in advice.offers if offer.errand is not None and offer.errand.steps))
             assert there.tick() == ("rescue",)
             there.tick()
             assert there.execution.operator_plan is None
             assert there.execution.mode is Mode.RESTART, "to leave it is another act"
-            replan = (await there.offers.advice()).offers[0]
+            replan = (await there.offers.advice(AskAdvice())).offers[0]
             assert replan.kind == "replan"
             assert replan.obstacle == refused("nothing-to-execute", lambda: there.take(replan))
 
@@ -330,10 +334,10 @@ def test_a_resource_comes_back_where_nobody_knows_whether_an_operation_can_begin
             there.correct(loaded=True)
             execution.tick({"at": None}, there.now, silent=frozenset({"station"}))
             assert not execution.active
-            (offer,) = (await there.offers.advice()).offers
+            (offer,) = (await there.offers.advice(AskAdvice())).offers
             assert (offer.kind, offer.online, offer.goals) == ("physical", ["station"], ["deliver"])
             execution.set_service(ServiceKind.OPERATION, "deliver", False, "Eva", "not today", there.now)
-            assert [offer.kind for offer in (await there.offers.advice()).offers] == ["replan"]
+            assert [offer.kind for offer in (await there.offers.advice(AskAdvice())).offers] == ["replan"]
 
     asyncio.run(scenario())
 
@@ -347,12 +351,12 @@ def test_what_somebody_has_said_is_contradicted_by_no_offer() -> None:
             there.believe(jammed=True)
             there.tick()
             there.enter(Mode.RESTART)
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             said = {change.name for offer in (*advice.offers, *advice.if_checked) for change in offer.corrections}
             assert said == {"jammed"}, "that it is loaded was said"
             assert not advice.offers[0].corrections
             there.execution.confirm(frozenset({"jammed"}), "Eva", there.now)
-            advice = await there.offers.advice()
+            advice = await there.offers.advice(AskAdvice())
             assert advice.offers
             assert not any(offer.corrections for offer in (*advice.offers, *advice.if_checked))
 

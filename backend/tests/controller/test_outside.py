@@ -9,7 +9,6 @@ from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.controller.recovery.safe_state import SafeStateDifference, SafeStateMonitor
-from sequence_planner.controller.views.execution import way_back
 from sequence_planner.controller.views.station import AlarmState, DifferenceView, SpecificationView, WayBackView
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import PlanStatus
@@ -109,7 +108,7 @@ def test_a_way_back_may_start_restart_abilities() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True)
     assert seen.ask()
     assert str(seen.outside.way()) == CHOOSE
-    found = way_back(seen.execution.automaton, seen.outside, {})
+    found = seen.outside.way_back_view()
     assert found is not None
     assert [step.ability for step in found.steps] == ["lift"]
 
@@ -117,7 +116,7 @@ def test_a_way_back_may_start_restart_abilities() -> None:
 def test_a_way_that_violates_something_says_so() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True, slide="back", extend=False)
     assert seen.ask()
-    found = way_back(seen.execution.automaton, seen.outside, {})
+    found = seen.outside.way_back_view()
     assert found is not None
     assert [step.ability for step in found.steps] == ["slide_out", "lift"]
     assert [each.name for each in found.breaks] == ["sliding"]

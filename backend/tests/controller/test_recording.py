@@ -182,9 +182,9 @@ def test_nothing_that_was_asked_for_before_a_pause_happens_after_it(database: Da
 
 def test_an_alarm_says_that_commands_cannot_be_recorded() -> None:
     async def scenario(on: Bench) -> None:
-        on.controller.alarms.unrecorded = "database or disk is full"
+        on.controller.records.unrecorded = "database or disk is full"
         assert "database or disk is full" in on.controller.view().alarms["unrecorded"].text
-        on.controller.alarms.unrecorded = None
+        on.controller.records.unrecorded = None
         assert on.controller.view().alarms["unrecorded"].ended is not None
         assert on.controller.view().production is Production.WAITING
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from sequence_planner.automaton.automaton import Timeouts
-from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.features.abilities import Abilities
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.stalls import StallDetector
-from sequence_planner.controller.recovery.who_can import WhoCan
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
@@ -61,11 +61,11 @@ def test_a_device_that_was_pushed_away_and_does_not_come_back_is_noticed() -> No
 def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     execution, still = made()
     station = prepare_station(BOLT_TIGHTENING)
-    alarms = PlanAlarms(execution, Inputs(station.pipelines, station.registry), still, WhoCan(execution))
+    alarms = Abilities(execution, Inputs(station.pipelines, station.registry), still, Consequences(execution))
     execution.start_production()
     tick(execution, "between", 1.0)
-    assert not [cause for cause in alarms.causes(None, 5.0) if cause.key.startswith("still:")]
-    (told,) = [cause for cause in alarms.causes(None, 6.1) if cause.key.startswith("still:")]
+    assert not [cause for cause in alarms.causes(Timestamp(1005.0, 5.0)) if cause.key.startswith("still:")]
+    (told,) = [cause for cause in alarms.causes(Timestamp(1006.1, 6.1)) if cause.key.startswith("still:")]
     assert "is stalled: it still reports at == between" in str(told.text)
 
 

@@ -6,8 +6,14 @@ import pytest
 
 from sequence_planner.automaton.automaton import State
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
-from sequence_planner.controller.features.tasks import TaskHandler, TaskProblem, WaitingTask
+from sequence_planner.controller.commands.tasks import (
+    AcknowledgeTask,
+    ReportProblem,
+    SolveProblem,
+    TaskProblem,
+    WaitingTask,
+)
+from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from support.people import EVA

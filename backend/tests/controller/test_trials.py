@@ -10,9 +10,9 @@ import pytest
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.automaton import Operation, Timeouts
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.query_handler import Definitions
+from sequence_planner.controller.commands.queries import AskDefinition
 from sequence_planner.controller.commands.recovery import TryAbility
-from sequence_planner.controller.recovery.consistency import Beliefs
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.trials import Trials
 from sequence_planner.controller.views.details import AbilityDefinitionView, TrialView
@@ -81,7 +81,6 @@ class Press:
         )
         self.real: list[str] = []
         self.trials = Trials(self.execution, around, self._real)
-        self.definitions = Definitions(self.execution, around, self.trials)
 
     def _real(self) -> Sequence[str]:
         return self.real
@@ -117,7 +116,7 @@ class Press:
         return found.value.detail
 
     def definition(self, name: str = "press") -> AbilityDefinitionView:
-        return self.definitions.of(name)
+        return self.trials.definition(AskDefinition(ability=name))
 
     def trial(self) -> TrialView:
         trial = self.definition().trial

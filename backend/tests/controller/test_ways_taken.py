@@ -8,10 +8,8 @@ from controller.ways import Taken, after_a_fault, errand_of, execution_in
 from planning.advice.rules import station
 from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise, update_operations
-from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
 from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.controller.recovery.stalls import StallDetector
-from sequence_planner.controller.recovery.who_can import WhoCan
+from sequence_planner.controller.recovery.operator_plans import OperatorPlans
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
@@ -52,11 +50,10 @@ def take(taken: Taken, errand: OperatorPlan) -> None:
     taken.execution.start_operator_plan(errand, Timestamp(taken.seconds, taken.seconds))
 
 
-def alarms_of(execution: Executor) -> PlanAlarms:
+def alarms_of(execution: Executor) -> OperatorPlans:
     """The alarms of what it does."""
     ready = prepare_station(MODELS / NAME)
-    feeds = Inputs(ready.pipelines, ready.registry)
-    return PlanAlarms(execution, feeds, StallDetector(execution), WhoCan(execution))
+    return OperatorPlans(execution, Inputs(ready.pipelines, ready.registry).heard_on)
 
 
 def test_the_way_to_make_the_bolts_tight_comes_first_and_nobody_is_asked_to_say_they_are() -> None:
@@ -126,7 +123,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     )
 
     def causes(seconds: float) -> list[str]:
-        return [str(c.text) for c in alarms.causes(None, taken.seconds + seconds) if c.key == "errand-waits"]
+        return [str(c.text) for c in alarms.causes(Timestamp(0.0, taken.seconds + seconds)) if c.key == "errand-waits"]
 
     assert taken.tick() == (TO_ABOVE,)
     taken.tick((LEAVES,))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from controller.faulty import FaultyRig
-from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.recovery.who_can import WhoCan, at_once
 from sequence_planner.controller.views.station import WhoCanView
 from sequence_planner.core.clock import Timestamp

@@ -11,9 +11,9 @@ import pytest
 
 from controller.test_offers import Desk, made
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.queries import AskWhyNot
+from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
+from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
-from sequence_planner.controller.recovery.consistency import Beliefs
 from sequence_planner.controller.recovery.explain import ConditionContext, HindranceKind, of_ability
 from sequence_planner.controller.recovery.why_not import WhyNot
 from sequence_planner.controller.views.details import ConditionView, WhyNotView
@@ -38,13 +38,13 @@ class Inquirer:
         self.why_not = WhyNot(execution, around, adviser)
 
     async def ability(self, name: str) -> WhyNotView:
-        return await self.why_not.answer(AskWhyNot(of="ability", name=name))
+        return self.why_not.ability(AskAbilityBlockers(name=name))
 
     async def operation(self, name: str = "deliver") -> WhyNotView:
-        return await self.why_not.answer(AskWhyNot(of="operation", name=name))
+        return self.why_not.operation(AskOperationBlockers(name=name))
 
     async def goal(self, predicate: str) -> WhyNotView:
-        return await self.why_not.answer(AskWhyNot(of="goal", name=predicate))
+        return await self.why_not.goal(AskGoalBlockers(predicate=predicate))
 
     def plan(self) -> None:
         request = self.execution.request(20)

@@ -26,7 +26,7 @@ from sequence_planner.cli.lazy import LazyCommand
 from sequence_planner.cli.main import app
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.kinds import KINDS as ALARMS
-from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
+from sequence_planner.controller.features.variables import KIND as BELIEFS
 from sequence_planner.execution.record.codec import _MISSING, BEGUN, KINDS, SNAPSHOT, WRITTEN_AS, _fields
 from sequence_planner.execution.record.recorder import EXECUTION, ORDER, PLAN
 from sequence_planner.language.syntax import Expression

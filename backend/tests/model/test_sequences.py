@@ -181,7 +181,10 @@ CIRCLE = "sequences order these in a circle, each before the next"
         ("s: ‹{sequence: [lay], parallel: [look]}", ONE_OF),
         ("s: {sequence: [lay, {alternative: [look], ‹goal: gone}]}", "`goal` is not known here"),
         ("s: {‹sequnce: [lay]}", "`sequnce` is not known here; did you mean `sequence`?"),
-        ("‹lay: {sequence: [look]}", "duplicate name `lay`, first used in line 1: rename one of them"),
+        (
+            "‹lay: {sequence: [look]}",
+            "duplicate name `lay`, first used in line 1: rename one of them, or leave one out",
+        ),
         ("s: {sequence: [lay, ‹s]}", "sequences stand in each other in a circle: s → s"),
         ("s: {sequence: [lay, ‹look]}\nt: {sequence: [look, lay]}", f"{CIRCLE}: look → lay → look (`t`, `s`)"),
         (

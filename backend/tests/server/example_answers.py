@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.command import CommandRefused
+from typing import Any
+
+from sequence_planner.controller.commands.command import CommandRefused, Query
 from sequence_planner.controller.commands.queries import (
     AboutWorkMasters,
-    Ask,
+    AskAbilityBlockers,
     AskAdvice,
     AskCorrection,
     AskDefinition,
     AskFigures,
     AskGoal,
+    AskGoalBlockers,
+    AskOperationBlockers,
     AskReset,
-    AskWhyNot,
 )
 from sequence_planner.controller.views.details import (
     AbilityActionView,
@@ -228,7 +231,7 @@ def example_figures(*, behind: bool = False) -> FiguresView:
     )
 
 
-def example_answer(ask: Ask) -> View:
+def example_answer(ask: Query[Any]) -> View:
     """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
     match ask:
         case AboutWorkMasters():
@@ -245,18 +248,26 @@ def example_answer(ask: Ask) -> View:
             if name != DEFINITION.name:
                 raise CommandRefused("unknown-ability", "There is no such ability", "Look at what it has.", 404)
             return DEFINITION
-        case AskWhyNot(of=of, name=name):
-            if of != "goal" and name not in ("robot.move", "tighten"):
-                raise CommandRefused(f"unknown-{of}", f"There is no such {of}", "Look at what it has.", 404)
-            return WhyNotView(
-                of=of,
-                name=name,
-                title="Move",
-                revision=7,
-                summary="It waits for a message on /robot/state.",
-                summary_message=as_it_was("It waits for a message on /robot/state.", "blocked.", "waits."),
-                conditions=[CONDITION],
-                plan=PLAN if of == "goal" else None,
-                reasons=None,
-            )
+        case AskAbilityBlockers(name=name):
+            return _blockers("ability", name)
+        case AskOperationBlockers(name=name):
+            return _blockers("operation", name)
+        case AskGoalBlockers(predicate=name):
+            return _blockers("goal", name)
     raise AssertionError(f"nobody has thought of an answer to {ask.kind}")
+
+
+def _blockers(of: str, name: str) -> WhyNotView:
+    if of != "goal" and name not in ("robot.move", "tighten"):
+        raise CommandRefused(f"unknown-{of}", f"There is no such {of}", "Look at what it has.", 404)
+    return WhyNotView(
+        of=of,
+        name=name,
+        title="Move",
+        revision=7,
+        summary="It waits for a message on /robot/state.",
+        summary_message=as_it_was("It waits for a message on /robot/state.", "blocked.", "waits."),
+        conditions=[CONDITION],
+        plan=PLAN if of == "goal" else None,
+        reasons=None,
+    )

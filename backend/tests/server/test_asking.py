@@ -6,13 +6,13 @@ import asyncio
 import json
 import time
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, Query
 from sequence_planner.controller.commands.execution import SetMode
-from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, Ask
+from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines
 from sequence_planner.controller.ipc import MOST_ASKS, ControllerClient, ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
@@ -33,7 +33,7 @@ class Answers:
         self.waiting = 0
         self.given_up = 0
 
-    async def answer(self, ask: Ask) -> View:
+    async def answer(self, ask: Query[Any]) -> View:
         if isinstance(ask, AboutPipelines):
             return PipelinesView(pipelines={})
         self.waiting += 1
@@ -108,7 +108,7 @@ def test_who_leaves_is_looked_for_no_longer(path: Path) -> None:
 def test_who_hears_nothing_is_told_that_asking_changes_nothing(path: Path) -> None:
     """The controller hangs: not even its refusal comes."""
 
-    async def hang(ask: Ask) -> View:
+    async def hang(ask: Query[Any]) -> View:
         time.sleep(1.5)  # noqa: ASYNC251 - that is what hanging means
         return PipelinesView(pipelines={})
 

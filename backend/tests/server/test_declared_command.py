@@ -1,4 +1,4 @@
-"""A command that is declared in one place has its route, role, control and record, and whoever carries it out."""
+"""What a command or a query declares in one place are its route and role, and of a command control and record."""
 
 from __future__ import annotations
 
@@ -13,18 +13,20 @@ from pydantic import Field
 from sequence_planner.auth.roles import Role
 from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.audit import CommandAudit
-from sequence_planner.controller.commands.bus import CommandBus, handles
-from sequence_planner.controller.commands.command import Command, CommandRefused, Route, Why
+from sequence_planner.controller.commands.bus import CommandBus, QueryBus
+from sequence_planner.controller.commands.command import Command, CommandRefused, Query, Route, Why, answers, handles
 from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
-from sequence_planner.controller.commands.registry import COMMANDS
+from sequence_planner.controller.commands.registry import COMMANDS, QUERIES
 from sequence_planner.controller.features.control_lock import ControlLock
+from sequence_planner.controller.ipc import ControllerLink
+from sequence_planner.controller.views.part import View
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
 from sequence_planner.journal.audit import read
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.ros.transports.memory import MemoryNetwork
-from sequence_planner.server.api.commands import add_routes
+from sequence_planner.server.api.declared import add_routes
 from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
 from support.cell import IDENTITY, cell
@@ -54,6 +56,26 @@ class SetLamp(Command):
     brightness: Annotated[int, Field(ge=0, le=9)]
 
 
+class LampView(View):
+    """A lamp as it is."""
+
+    brightness: int
+    together: int
+
+
+class AskLamp(Query[LampView]):
+    """How bright a lamp is, and how bright as many of them would be."""
+
+    routes = (
+        Route(
+            "GET", "/lamps/{lamp}", "lamp", tag="modes", role="viewer", refusals=(404, 504), names={"number": "times"}
+        ),
+    )
+    kind: Literal["ask-lamp"] = "ask-lamp"
+    lamp: Annotated[str, Field(max_length=20)]
+    number: Annotated[int, Field(ge=1, le=3)] = 2
+
+
 class Lamps:
     """Those of a hall."""
 
@@ -66,6 +88,14 @@ class Lamps:
         if command.lamp not in self.brightness:
             raise CommandRefused("no-lamp", "There is no such lamp", f"There is no `{command.lamp}`.", 404)
         self.brightness[command.lamp] = command.brightness
+
+    @answers(AskLamp)
+    async def ask(self, query: AskLamp) -> LampView:
+        """Look at it."""
+        if query.lamp not in self.brightness:
+            raise CommandRefused("no-lamp", "There is no such lamp", f"There is no `{query.lamp}`.", 404)
+        brightness = self.brightness[query.lamp]
+        return LampView(brightness=brightness, together=query.number * brightness)
 
 
 class Hall(Controller):
@@ -82,6 +112,9 @@ class Hall(Controller):
             require_one=lambda names: None,
             real_devices=list,
         )
+
+        self.queries = QueryBus((self.lamps,), (AskLamp,))
+        self.link = ControllerLink(settings.controller_socket, self.handle, self.queries.answer)
 
     async def handle(self, command: Command) -> None:
         async def act(command: Command) -> None:
@@ -101,6 +134,7 @@ def controller(
     loop: Loop, settings: Settings, database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Controller]:
     monkeypatch.setitem(COMMANDS, "set-lamp", SetLamp)
+    monkeypatch.setitem(QUERIES, "ask-lamp", AskLamp)
     controller = Hall(loop, settings, database)
     controller.start()
     yield controller
@@ -110,9 +144,10 @@ def controller(
 
 @pytest.fixture
 def lit(server: Server) -> Server:
-    """The server, with the routes of the command."""
+    """The server, with the routes of the command and of the query."""
     router = interface()
     add_routes(router, SetLamp)
+    add_routes(router, AskLamp)
     server.app.router.routes.extend(router.routes)
     return server
 
@@ -169,6 +204,23 @@ def test_its_role_and_who_is_in_control_decide_and_what_became_of_it_is_recorded
     assert done.details == {"lamp": "door", "brightness": 7}
 
 
+def test_a_query_is_asked_by_its_route_and_answered_with_its_document(lit: Server, controller: Hall) -> None:
+    operation = lit.app.openapi()["paths"]["/api/v1/lamps/{lamp}"]["get"]
+    assert (operation["operationId"], operation["x-role"]) == ("lamp", "viewer")
+    answer = operation["responses"]["200"]["content"]["application/json"]["schema"]
+    assert answer == {"$ref": "#/components/schemas/LampView"}
+    asked = [(each["name"], each["in"], each["required"]) for each in operation["parameters"]]
+    assert asked == [("lamp", "path", True), ("times", "query", False)]
+    controller.lamps.brightness["door"] = 4
+    with lit.client() as nobody, lit.client(Role.VIEWER) as viewer:
+        assert nobody.get("/api/v1/lamps/door").status_code == 401
+        assert viewer.get("/api/v1/lamps/door").json() == {"brightness": 4, "together": 8}
+        assert viewer.get("/api/v1/lamps/door?times=3").json() == {"brightness": 4, "together": 12}
+        assert viewer.get("/api/v1/lamps/door?times=4").json()["errors"][0]["field"] == "query.times"
+        gone = viewer.get("/api/v1/lamps/gate")
+        assert (gone.status_code, gone.json()["type"]) == (404, "/problems/no-lamp")
+
+
 def test_a_command_that_nobody_handles_or_two_do_is_found_when_the_controller_is_built(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -185,3 +237,5 @@ def test_a_command_that_nobody_handles_or_two_do_is_found_when_the_controller_is
     lock = ControlLock()
     with pytest.raises(ValueError, match="SetLamp is handled twice"):
         CommandBus((Lamps(), Lamps(), lock), (), in_control=lock, require_one=lambda names: None, real_devices=list)
+    with pytest.raises(ValueError, match="no feature handles AskLamp"):
+        QueryBus((lock,), (AskLamp,))

@@ -10,8 +10,8 @@ import httpx
 import pytest
 from pydantic import JsonValue
 
-from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.queries import Ask, AskRecord
+from sequence_planner.controller.commands.command import CommandRefused, Query
+from sequence_planner.controller.commands.queries import AskRecord
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import RecordView
@@ -120,7 +120,7 @@ def test_without_a_controller_nothing_is_recorded(eva: httpx.Client) -> None:
 class Hearing(Controller):
     """A controller whose robot has been at home last."""
 
-    async def answer(self, ask: Ask) -> View:
+    async def answer(self, ask: Query[Any]) -> View:
         assert isinstance(ask, AskRecord)
         if ask.pipeline != STATE:
             raise CommandRefused("no-record", "There is no record", "Try again.", 409)

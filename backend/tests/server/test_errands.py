@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.controller.commands.command import CommandRefused, TextPlace
+from sequence_planner.controller.commands.command import CommandRefused, Query, TextPlace
 from sequence_planner.controller.commands.queries import (
     AboutWorkMasters,
-    Ask,
+    AskAbilityBlockers,
     AskAdvice,
     AskGoal,
+    AskGoalBlockers,
+    AskOperationBlockers,
     AskReset,
-    AskWhyNot,
 )
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan, StopOperatorPlan
 from sequence_planner.controller.ipc import ControllerLink
@@ -32,11 +34,11 @@ class Asked(Controller):
 
     def __init__(self, loop: Loop, settings: Settings) -> None:
         super().__init__(loop, settings.controller_socket)
-        self.asked: list[Ask] = []
+        self.asked: list[Query[Any]] = []
         self.refusal: CommandRefused | None = None
         self.link = ControllerLink(settings.controller_socket, self.handle, self.answer)
 
-    async def answer(self, ask: Ask) -> View:
+    async def answer(self, ask: Query[Any]) -> View:
         if not isinstance(ask, AboutWorkMasters):
             self.asked.append(ask)
         if self.refusal is not None:
@@ -75,9 +77,9 @@ def test_each_question_is_asked_as_it_is_and_answered_with_its_document(
         AskAdvice(),
         AskGoal(predicate="robot.pose == home"),
         AskReset(operation="tighten(1)"),
-        AskWhyNot(of="ability", name="robot.move"),
-        AskWhyNot(of="operation", name="carry(left)"),
-        AskWhyNot(of="goal", name="robot.pose == home"),
+        AskAbilityBlockers(name="robot.move"),
+        AskOperationBlockers(name="carry(left)"),
+        AskGoalBlockers(predicate="robot.pose == home"),
     ]
 
 

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import httpx
 import pytest
@@ -15,9 +15,9 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
 from controller.test_network_watch import REPORTS
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, Query
 from sequence_planner.controller.commands.execution import ClearOverride, SetOverride
-from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, Ask
+from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines
 from sequence_planner.controller.io.network import network_view, uses
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.ipc import ControllerLink
@@ -47,7 +47,7 @@ class Telling(Controller):
     preparing = False
     among: ClassVar[list[frozenset[str] | None]] = []
 
-    async def answer(self, ask: Ask) -> View:
+    async def answer(self, ask: Query[Any]) -> View:
         if self.preparing:
             raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
         if isinstance(ask, AboutPipelines):

@@ -7,6 +7,7 @@ import dataclasses
 import sqlite3
 import time
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import httpx
 import pytest
@@ -16,7 +17,8 @@ from prometheus_client.parser import text_string_to_metric_families
 from prometheus_client.samples import Sample
 
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.commands.queries import Ask, AskFigures
+from sequence_planner.controller.commands.command import Query
+from sequence_planner.controller.commands.queries import AskFigures
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
@@ -40,7 +42,7 @@ class Measured(Controller):
     behind = False
     asked = 0
 
-    async def answer(self, ask: Ask) -> View:
+    async def answer(self, ask: Query[Any]) -> View:
         if isinstance(ask, AskFigures):
             self.asked += 1
             return example_figures(behind=self.behind)

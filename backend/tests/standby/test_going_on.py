@@ -41,7 +41,9 @@ class Taking:
         self.rivals = {"topic": "the station that died is still seen"}
         heard: Any = SimpleNamespace(blind=False)
         network = SimpleNamespace(rivals=self.rivals)
-        self._controller: Any = SimpleNamespace(execution=heard, undecided=(), devices=SimpleNamespace(network=network))
+        self._controller: Any = SimpleNamespace(
+            execution=heard, view=lambda: SimpleNamespace(undecided={}), devices=SimpleNamespace(network=network)
+        )
 
     @property
     def controller(self) -> Controller:

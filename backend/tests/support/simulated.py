@@ -12,8 +12,8 @@ from pathlib import Path
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.tasks import AcknowledgeTask
-from sequence_planner.controller.features.tasks import TaskHandler, WaitingTask
+from sequence_planner.controller.commands.tasks import AcknowledgeTask, WaitingTask
+from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.controller.planner_client import BETTER_EVERY
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from graphlib import CycleError, TopologicalSorter
 
-from sequence_planner.automaton.automaton import Automaton, Flag, reads, target
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Flag, reads, target
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.language.syntax import Assignment, Constant, Expression, Variable, variables
 from sequence_planner.language.types import Value
@@ -127,3 +127,39 @@ def ordered_flags(flags: Sequence[Flag]) -> tuple[tuple[Flag, ...], tuple[str, .
     except CycleError as error:
         return tuple(flags), tuple(error.args[1])
     return tuple(by_name[name] for name in order), ()
+
+
+def reactions(automaton: Automaton, ability: str) -> list[Effect]:
+    """The effects that are written with an ability."""
+    effects = {effect.name: effect for effect in automaton.effects}
+    return [effects[name] for name in automaton.reactions.get(ability, ())]
+
+
+def looked_at(ability: Ability, name: str) -> Iterator[Expression]:
+    """Yield what the ability looks at when it writes the variable."""
+    starts = [action for action in ability.start_actions if target(action) == name]
+    finishes = [action for action in ability.finish_actions if target(action) == name]
+    if starts:
+        yield from (ability.enabled, ability.start_guard)
+    if finishes and ability.finish_guard is not None:
+        yield ability.finish_guard
+    for action in (*starts, *finishes):
+        yield action.value
+        if action.condition is not None:
+            yield action.condition
+
+
+# Changes that every device makes along with something else, so that nobody has to be told of them too: a variable that
+# remembers where a robot has been last becomes what the pose becomes.
+
+
+def is_along(automaton: Automaton, name: str, others: Collection[str]) -> bool:
+    """Return whether nothing gives the variable a value but together with one of the others, which can change alone."""
+    return any(_comes_with(automaton, name, other) for other in others)
+
+
+def _comes_with(automaton: Automaton, name: str, other: str) -> bool:
+    writes = [{target(action): action.value for action in effect.actions} for effect in automaton.effects]
+    both = [each for each in writes if name in each]
+    alone = any(other in each and name not in each for each in writes)
+    return name != other and alone and bool(both) and all(each.get(other) == each[name] for each in both)

@@ -7,28 +7,27 @@ from collections.abc import Callable
 from functools import partial
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.alarms.sources import AlarmSources, build_alarms
-from sequence_planner.controller.commands.bus import CommandBus
-from sequence_planner.controller.commands.query_handler import Definitions, QueryHandler, work_masters_view
-from sequence_planner.controller.commands.registry import COMMANDS
+from sequence_planner.controller.alarms.build import build_alarms
+from sequence_planner.controller.commands.bus import CommandBus, QueryBus
+from sequence_planner.controller.commands.registry import COMMANDS, QUERIES
 from sequence_planner.controller.controller import Controller, Parts
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.failures import Failures
-from sequence_planner.controller.features.jobs import JobHandler
+from sequence_planner.controller.features.jobs import JobHandler, JobViews
 from sequence_planner.controller.features.modes import Modes
+from sequence_planner.controller.features.plan import LivePlan, Operations
 from sequence_planner.controller.features.records import Records
-from sequence_planner.controller.features.tasks import TaskHandler
+from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
+from sequence_planner.controller.features.variables import KIND as BELIEFS
+from sequence_planner.controller.features.variables import Beliefs, Variables
 from sequence_planner.controller.io.devices import Devices
-from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.io.ticks import Ticker
+from sequence_planner.controller.io.traffic import PipelineTraffic
 from sequence_planner.controller.metrics import Figures
 from sequence_planner.controller.planner_client import AdvisorClient, PlannerQuestions
 from sequence_planner.controller.recovery.build import build_recovery
-from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
-from sequence_planner.controller.recovery.explain import ConditionContext
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.manual import ByHand
-from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.builder import ViewBuilder
 from sequence_planner.controller.views.station import StationIdentity
@@ -50,90 +49,108 @@ def build_controller(
 ) -> Controller:
     """Build what runs `station` and writes into the journal of `database`; `known` is what came back from there.
 
-    Raises `ValueError` when nobody handles one of the commands.
+    Raises `ValueError` when nobody handles one of the commands or queries.
     """
     automaton, known = station.automaton, known or RestoredState()
-    wake, failures, figures = asyncio.Event(), Failures(), Figures()
+    wake, failures = asyncio.Event(), Failures()
     execution = Executor(automaton, supervisor, known.beginning)
     devices = Devices(station, transport, wake.set)
     # Whoever listens to the execution hears of each event in this order: it is written down first.
     records = Records(execution, known.beginning, devices, database, fence, failures, wake.set)
-    tasks = TaskHandler(automaton, station.pipelines.feeds)
-    outside = SafeStateMonitor(execution)
+    tasks, in_control = TaskHandler(automaton, station.pipelines.feeds), ControlLock(known.control)
     adviser = AdvisorClient(automaton, supervisor)
-
     beliefs = Beliefs(execution, known.beginning, known.beliefs, partial(records.add_note, BELIEFS, lasts=True))
     records.recorder.know(BELIEFS, beliefs.document())
-    alarms = build_alarms(execution, outside, devices, records, failures.known, known, adviser.expect)
-    by_hand = ByHand(execution, station.pipelines, records.add_note)
-    consistency = ConsistencyMonitor(execution)
-    ticker = Ticker(execution, devices, tasks, records, failures, figures.ticks, wake.set)
+    watching = build_alarms(execution, devices, records, known, adviser.expect)
+    alarms, links, outside, consequences = watching.alarms, watching.links, watching.outside, watching.consequences
+    consistency = ConsistencyMonitor(execution, untold=lambda: links.untold)
+    ticker = Ticker(execution, devices, tasks, records, failures, wake.set)
 
     def take_news(news: Callable[[], None]) -> None:
         """Take note of what the planner says."""
         failures.attempt("hearing the planner", news)
         ticker.again()
 
-    planner = PlannerQuestions(execution, outside, take_news, figures.answers)
-    sources = AlarmSources(alarms, records, ticker, tasks, consistency, by_hand, lambda: planner.trouble)
-    in_control = ControlLock(known.control)
-    viewing = ViewBuilder(identity, execution, outside, devices, beliefs, tasks, records, sources, in_control)
-    ticker.listeners += [lambda outcome, moment: alarms.note(outcome), viewing.note]
-    around = ConditionContext(devices.feeds.heard_on, viewing.since, beliefs, lambda: viewing.guards)
-    recovery = build_recovery(
+    planner = PlannerQuestions(execution, outside, take_news)
+    viewing = ViewBuilder(identity, execution)
+    variables = Variables(execution, devices.feeds.heard_on, beliefs)
+    around, forces, approvals, recovery = build_recovery(
         execution,
         adviser,
         beliefs,
         consistency,
-        alarms.still,
+        watching.still,
         in_control,
-        around,
+        devices.feeds.heard_on,
+        variables.since,
+        lambda: viewing.guards,
         devices.real_devices,
         lambda command, moment: bus.perform(command, moment),  # noqa: PLW0108
     )
-    features = (
-        Modes(execution, outside, devices, consistency),
+    plan = LivePlan(execution, consequences, around, lambda: planner.trouble, lambda: links.untold)
+    operations = Operations(execution)
+    jobs = JobViews(
+        execution,
+        lambda: records.jobs,
+        tasks,
+        alarms,
+        lambda: in_control.holder is not None,
+        consequences.held_up,
+        around,
+    )
+    modes = Modes(execution, outside, devices, links, consistency, alarms, jobs.waits, records.add_note)
+    ticker.listeners += [each.after_tick for each in (variables, watching.abilities, operations, plan)]
+    features = (  # in this order their alarms are looked at, and then shown
+        links,
+        watching.who_can,
+        watching.abilities,
+        watching.operator_plans,
+        plan,
+        failures,
+        ticker,
+        records,
+        outside,
+        watching.beginning,
+        consistency,
+        forces,
+        OpenTasks(execution, tasks, modes.goes_on, consequences.waiting_for),
+        ByHand(execution, station.pipelines, records.add_note),
+        watching.of_model,
+        alarms,
+        modes,
+        jobs,
+        variables,
+        operations,
         tasks,
         JobHandler(execution),
-        recovery.corrections,
-        recovery.offers,
-        recovery.trials,
-        recovery.forces,
-        recovery.approvals,
+        *recovery,
+        approvals,
         in_control,
-        alarms,
+        PipelineTraffic(station.pipelines, devices),
+        devices,
         devices.overrides,
-        consistency,
+        Figures(
+            records.writer,
+            lambda: records.trouble is not None,
+            ticker.took,
+            planner.answers,
+            lambda: {"planner": planner.replaced, "adviser": adviser.replaced},
+        ),
     )
+    alarms.look_at(features)
     viewing.show(features)
     bus = CommandBus(
         features,
         COMMANDS.values(),
         in_control=in_control,
-        require_one=recovery.approvals.require_one,
+        require_one=approvals.require_one,
         real_devices=devices.real_devices,
-    )
-
-    queries = QueryHandler(
-        pipelines=partial(pipelines_view, station.pipelines),
-        flows=devices.flows,
-        record=devices.record,
-        work_masters=partial(work_masters_view, automaton),
-        figures=lambda: figures.view(
-            records.writer,
-            records.trouble is not None,
-            {"planner": planner.replaced, "adviser": adviser.replaced},
-        ),
-        corrections=recovery.corrections,
-        offers=recovery.offers,
-        why_not=recovery.why_not,
-        definitions=Definitions(execution, around, recovery.trials),
     )
     works = (
         ("sending commands", records.repeat),
         ("looking for contradictions", lambda moment: consistency.look()),
-        ("looking after alarms", sources.update),
-        ("noting how it stands", viewing.note_standing),
+        ("looking after alarms", alarms.look),
+        ("noting how it stands", modes.note_standing),
         ("asking the planner", lambda moment: planner.ask(moment.monotonic)),
     )
     return Controller(
@@ -142,13 +159,12 @@ def build_controller(
             devices=devices,
             records=records,
             ticker=ticker,
-            failures=failures,
-            alarms=alarms,
-            consistency=consistency,
+            attempt=failures.attempt,
             viewing=viewing,
             commands=bus,
-            queries=queries,
+            queries=QueryBus(features, QUERIES.values()),
             works=works,
+            begin=consistency.begin,
             close=(devices.close, planner.close, consistency.close, adviser.close),
             wake=wake,
         )

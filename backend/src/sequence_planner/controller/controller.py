@@ -16,17 +16,12 @@ from functools import partial
 
 import structlog
 
-from sequence_planner.controller.alarms.manager import AlarmManager
-from sequence_planner.controller.commands.bus import CommandBus
+from sequence_planner.controller.commands.bus import CommandBus, QueryBus
 from sequence_planner.controller.commands.command import Command
-from sequence_planner.controller.commands.query_handler import QueryHandler
-from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.ticks import Ticker
-from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.views.builder import ViewBuilder
-from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 
@@ -41,19 +36,21 @@ Work = tuple[str, Callable[[Timestamp], None]]
 
 @dataclass(frozen=True)
 class Parts:
-    """All of a controller: `works` are done at each look at the clock, in order; `close` ends what runs beside it."""
+    """All of a controller. `works` are done at each look at the clock, in order, and `attempt` does one of them.
+
+    `begin` begins what runs beside it, and `close` ends that.
+    """
 
     execution: Executor
     devices: Devices
     records: Records
     ticker: Ticker
-    failures: Failures
-    alarms: AlarmManager
-    consistency: ConsistencyMonitor
+    attempt: Callable[[str, Callable[[], None]], None]
     viewing: ViewBuilder
     commands: CommandBus
-    queries: QueryHandler
+    queries: QueryBus
     works: Sequence[Work]
+    begin: Callable[[], None]
     close: Sequence[Callable[[], None]]
     wake: asyncio.Event
 
@@ -68,7 +65,7 @@ class Controller:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self.execution, self.devices, self.records = parts.execution, parts.devices, parts.records
-        self.alarms, self.viewing, self.answer = parts.alarms, parts.viewing, parts.queries.answer
+        self.viewing, self.view, self.answer = parts.viewing, parts.viewing.now, parts.queries.answer
         self.changed = asyncio.Event()
         """Set whenever there was a tick, or something was recorded."""
         self._progress = 0, 0  # numbers of ticks, and of what was recorded, when it was set last
@@ -76,7 +73,7 @@ class Controller:
 
     async def run(self) -> None:
         """Tick until cancelled."""
-        self._parts.consistency.begin()
+        self._parts.begin()
         try:
             while True:
                 self._step(Timestamp.now())
@@ -96,7 +93,7 @@ class Controller:
             await self.records.writer.close()
 
     def _step(self, moment: Timestamp) -> None:
-        attempt = self._parts.failures.attempt
+        attempt = self._parts.attempt
         attempt("looking at the network", lambda: self.devices.look(moment))
         self._parts.ticker.take_due(moment)
         for what, work in self._parts.works:
@@ -116,11 +113,6 @@ class Controller:
         """True if it is the one that commands the station's devices."""
         return self.devices.network.commands
 
-    @property
-    def undecided(self) -> tuple[str, ...]:
-        """The outputs on which a person must decide before production can be started."""
-        return tuple(self._parts.consistency.undecided)
-
     def take_command(self) -> None:
         """Nobody else commands the station's devices, so this one does from now on. Raises `TransportError`."""
         self.devices.take_command()
@@ -132,7 +124,3 @@ class Controller:
         self._parts.commands.execute(command, Timestamp.now())
         LOG.info("command", **command.model_dump(mode="json"))
         self._parts.ticker.again()
-
-    def view(self) -> StationView:
-        """Return what there is to show now."""
-        return self.viewing.view(Timestamp.now())

@@ -11,14 +11,13 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import structlog
 from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 
-from sequence_planner.controller.commands.command import Command, CommandRefused, TextPlace
-from sequence_planner.controller.commands.queries import Ask, Query
-from sequence_planner.controller.commands.registry import AnyCommand
+from sequence_planner.controller.commands.command import Command, CommandRefused, Query, TextPlace
+from sequence_planner.controller.commands.registry import AnyCommand, AnyQuery
 from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
@@ -156,7 +155,7 @@ class AskMessage(LinkMessage):
 
     kind: Literal["ask"] = "ask"
     id: int = Field(ge=0)
-    ask: Ask
+    ask: AnyQuery
     expires: float
 
 
@@ -242,7 +241,7 @@ MOST_COMMANDS = 32  # of one peer, being carried out at the same time
 
 # Carries a command out; false where the journal does not have it yet.
 Handle = Callable[[Command], Awaitable[bool | None]]
-Answer = Callable[[Ask], Awaitable[View]]
+Answer = Callable[[Query[Any]], Awaitable[View]]
 
 
 @dataclass(eq=False)
@@ -257,7 +256,7 @@ class _Peer:
     asks: set[asyncio.Task[None]] = field(default_factory=set)
 
 
-async def _nothing_to_tell(ask: Ask) -> View:
+async def _nothing_to_tell(ask: Query[Any]) -> View:
     raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
 
 
@@ -544,7 +543,7 @@ class ControllerClient:
         patience = self._reply_deadline if ask.patience is None else ask.patience
         expires = time.monotonic() + patience
         answer = await self._exchange(
-            lambda number: AskMessage.model_validate({"id": number, "ask": ask, "expires": expires}),
+            lambda number: AskMessage(id=number, ask=ask, expires=expires),
             patience + ON_THE_WAY,
             "Nothing was changed by asking; try again.",
         )

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable
 from typing import Final
 
+from sequence_planner.controller.commands.command import answers
+from sequence_planner.controller.commands.queries import AskFigures
 from sequence_planner.controller.views.metrics import (
     DistributionView,
     FiguresView,
@@ -17,33 +19,43 @@ from sequence_planner.journal.writer import RunWriter
 from sequence_planner.planning.portfolio.worker import Answer, Request
 from sequence_planner.planning.problem import PlanAnswer, PlanRequest, WayBackAnswer, WayBackRequest
 
-TICKS: Final = (0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0)  # seconds
 ANSWERS: Final = (0.001, 0.005, 0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)  # seconds
 FAILED: Final = "failed"
 
 
 class Figures:
-    """Since the controller began."""
+    """Since the controller began: how long `ticks` took and `answers` of the planner, and how often processes were
+    `replaced`.
+    """
 
-    def __init__(self) -> None:
-        self.began = time.time()
-        self.ticks = Distribution(TICKS)
-        self.answers = Answers()
+    def __init__(
+        self,
+        journal: RunWriter,
+        is_behind: Callable[[], bool],
+        ticks: Distribution,
+        answers: PlannerTimes,
+        replaced: Callable[[], dict[str, int]],
+    ) -> None:
+        self._began = time.time()
+        self._journal, self._is_behind = journal, is_behind
+        self._ticks, self._answers, self._replaced = ticks, answers, replaced
 
-    def view(self, journal: RunWriter, behind: bool, replaced: Mapping[str, int]) -> FiguresView:
+    @answers(AskFigures)
+    def view(self, query: AskFigures) -> FiguresView:
         """All of it as it is now."""
+        journal = self._journal
         return FiguresView(
-            began=self.began,
-            ticks=DistributionView.of(self.ticks),
+            began=self._began,
+            ticks=DistributionView.of(self._ticks),
             journal=JournalFiguresView(
-                waiting=journal.waiting, latency=DistributionView.of(journal.latency), behind=behind
+                waiting=journal.waiting, latency=DistributionView.of(journal.latency), behind=self._is_behind()
             ),
-            planner=self.answers.view(),
-            replaced=dict(replaced),
+            planner=self._answers.view(),
+            replaced=self._replaced(),
         )
 
 
-class Answers:
+class PlannerTimes:
     """The times that the planner took, by what it was asked and what came of that."""
 
     def __init__(self) -> None:

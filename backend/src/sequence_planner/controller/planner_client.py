@@ -14,7 +14,7 @@ import structlog
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.metrics import Answers
+from sequence_planner.controller.metrics import PlannerTimes
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.execution.executor import Executor
 from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
@@ -125,8 +125,8 @@ DIAGNOSIS_DEADLINE = 20.0  # seconds it may take to say why there is no plan at 
 class PlannerQuestions:
     """Asks about `execution` and `outside`. Used from one event loop.
 
-    What comes of an answer is handed to `take`, to be done by whoever runs the station; how long it took is noted in
-    `answers`.
+    What comes of an answer is handed to `take`, to be done by whoever runs the station; `answers` has how long each
+    took.
     """
 
     def __init__(
@@ -134,12 +134,11 @@ class PlannerQuestions:
         execution: Executor,
         outside: SafeStateMonitor,
         take: Callable[[Callable[[], None]], None],
-        answers: Answers,
     ) -> None:
         self._execution = execution
         self._outside = outside
         self._take = take
-        self._answers = answers
+        self.answers = PlannerTimes()
         self._needed: deque[Callable[[], Request | None]] = deque(
             (lambda: execution.request(PLAN_DEADLINE), lambda: outside.request(WAY_BACK_DEADLINE))
         )
@@ -198,12 +197,12 @@ class PlannerQuestions:
             answer = error
         took, self._asking, self._spare = time.monotonic() - began, None, False
         if isinstance(answer, Exception):
-            self._answers.note(request, None, took)
+            self.answers.note(request, None, took)
             # Others are only told; a station whose planner it kills again and again would have no plans.
             again = isinstance(answer, WorkerError) and answer.again and isinstance(request, PlanRequest)
             self._failed(request, str(answer), again)
         else:
-            self._answers.note(request, answer, took)
+            self.answers.note(request, answer, took)
             self._answered(request, answer)
 
     def _answered(self, request: Request, answer: Answer) -> None:

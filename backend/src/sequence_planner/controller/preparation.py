@@ -311,7 +311,7 @@ class Preparation:
     def note_unrecorded(self, why: str | None) -> None:
         """Commands cannot be recorded, for this reason; None when they can again."""
         if self.controller is not None:
-            self.controller.alarms.unrecorded = why
+            self.controller.records.unrecorded = why
 
     def end(self, why: WorkerError) -> None:
         """No more will be found."""

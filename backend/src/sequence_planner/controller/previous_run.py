@@ -12,8 +12,8 @@ from sqlalchemy import Connection
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.alarm import aside_from
-from sequence_planner.controller.recovery.consistency import KIND as BELIEFS
-from sequence_planner.controller.recovery.consistency import beliefs_from
+from sequence_planner.controller.features.variables import KIND as BELIEFS
+from sequence_planner.controller.features.variables import beliefs_from
 from sequence_planner.controller.restore import RestoredState, beginning, last_mode
 from sequence_planner.controller.views.station import BeliefView
 from sequence_planner.core.clock import Timestamp

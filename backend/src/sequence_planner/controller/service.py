@@ -9,6 +9,7 @@ import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Generator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import structlog
 
@@ -16,9 +17,8 @@ from sequence_planner.analysis.store import user_cache
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.audit import CommandAudit
-from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.command import Command, CommandRefused, Query
 from sequence_planner.controller.commands.execution import Deploy
-from sequence_planner.controller.commands.queries import Ask
 from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.durability import Lasting
 from sequence_planner.controller.features.automatic_start import go_on, start_when_alone
@@ -242,7 +242,7 @@ class _Life:
         await self._lasting.begin(controller, None if keeper is None else keeper.epoch)
         if running.emulated:
             unemulated = await asyncio.to_thread(emulation_findings, station)
-            controller.alarms.unemulated = tuple(map(str, unemulated))
+            controller.devices.unemulated = tuple(map(str, unemulated))
         self._living.create_task(self._take_command(station, controller, known, alone))
         async with _beside(self._show(controller)), _beside(show_network(controller.devices.network, self._link)):
             await controller.run()
@@ -316,11 +316,11 @@ class _Life:
         self._link.publish(view)
         return await self._lasting.settle(command, controller, before, audited)
 
-    async def _answer(self, ask: Ask) -> View:
+    async def _answer(self, query: Query[Any]) -> View:
         """Return what is told only when somebody asks for it. Raises `CommandRefused`."""
         if self._preparation.controller is None:
             raise self._refusal()
-        return await self._preparation.controller.answer(ask)
+        return await self._preparation.controller.answer(query)
 
     def _not_yet(self, command: Command, refusal: CommandRefused) -> CommandRefused:
         """The refusal of what cannot be done yet. Whoever wanted to stop the station then is not to see it go on."""

@@ -8,7 +8,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final
 
-from sequence_planner.automaton.automaton import Automaton, State, target
+from sequence_planner.automaton.automaton import Ability, Automaton, State, target
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.execution.jobs import Jobs
@@ -16,7 +16,7 @@ from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.language.syntax import TRUE, Expression
 from sequence_planner.language.types import Value
 from sequence_planner.planning.goals.pursuit import moved, settled
-from sequence_planner.planning.problem import Circumstances, Goal, Plan, goal_of
+from sequence_planner.planning.problem import Circumstances, Goal, Plan, PlanTick, goal_of
 
 # An operator plan: a plan that a person has seen and taken, and that is carried out as it is and never made anew.
 #
@@ -59,6 +59,20 @@ class OperatorPlan(Immutable):
     taken: Timestamp = Timestamp(0.0, 0.0)
     ability: str | None = None
     into_safe: bool = False
+
+    @classmethod
+    def trial(cls, ability: Ability, title: str, by: str, why: str, taken: Timestamp) -> OperatorPlan:
+        """A run of one ability alone."""
+        return cls(
+            kind=OperatorPlanKind.TRIAL,
+            title=title,
+            plan=Plan((PlanTick((), (ability.name,)), PlanTick((), ())), minimal_ticks=False, minimal_starts=True),
+            goal=TRUE if ability.finish_guard is None else ability.finish_guard,
+            by=by,
+            why=why,
+            taken=taken,
+            ability=ability.name,
+        )
 
     @property
     def pursued(self) -> Goal:

@@ -9,8 +9,8 @@ from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.controller.commands.tasks import AcknowledgeTask
-from sequence_planner.controller.features.tasks import TaskHandler, WaitingTask
+from sequence_planner.controller.commands.tasks import AcknowledgeTask, WaitingTask
+from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from pydantic import JsonValue
 
-from sequence_planner.controller.recovery.manual import KIND as BY_HAND
+from sequence_planner.controller.alarms.kinds import BY_HAND
 from sequence_planner.controller.views.part import Value, View
 from sequence_planner.controller.views.station import (
     ForceView,
@@ -184,7 +184,7 @@ MOST_MARKS: Final = 3000
 BINS: Final = 60
 ALARM: Final = "alarm"
 _ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
-_SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND} - {TICKED, _ASKED, _ANSWERED})
+_SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND.name} - {TICKED, _ASKED, _ANSWERED})
 _TOLD: Final = ("started", "ended", "called_off", "given_up", "plan", "mode")
 _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
 _PAGE: Final = 1000

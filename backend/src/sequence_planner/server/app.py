@@ -28,11 +28,10 @@ from sequence_planner.mes.webhooks.delivery import Deliverer, Sender
 from sequence_planner.server import errors, metrics, openapi_document
 from sequence_planner.server import metrics as health
 from sequence_planner.server.api import (
-    commands,
+    declared,
     history,
     job_orders,
     model,
-    queries,
     revisions,
     session,
     station,
@@ -40,36 +39,6 @@ from sequence_planner.server.api import (
     users,
     watches,
     webhooks,
-)
-from sequence_planner.server.api import (
-    history as audit,
-)
-from sequence_planner.server.api import (
-    history as events,
-)
-from sequence_planner.server.api import (
-    job_orders as capabilities,
-)
-from sequence_planner.server.api import (
-    job_orders as job_responses,
-)
-from sequence_planner.server.api import (
-    job_orders as order_of_work,
-)
-from sequence_planner.server.api import (
-    model as attachments,
-)
-from sequence_planner.server.api import (
-    model as draft_pipelines,
-)
-from sequence_planner.server.api import (
-    model as language,
-)
-from sequence_planner.server.api import (
-    session as provider,
-)
-from sequence_planner.server.api import (
-    storage as backups,
 )
 from sequence_planner.server.api.job_orders import OrderOfWorkDesk
 from sequence_planner.server.auth import Remembering, check_declared
@@ -100,17 +69,11 @@ from sequence_planner.server.stream.endpoints import WatchShow
 LONG = 10_000  # bytes; such answers are compressed for who takes them so
 PARTS = (
     session.session_router,
-    provider.provider_router,
+    session.provider_router,
     station.router,
-    commands.router,
-    queries.corrections_router,
-    queries.recovery_router,
-    queries.operator_plans_router,
-    queries.blockers_router,
-    queries.abilities_router,
-    attachments.attachments_router,
-    queries.ros_router,
-    queries.pipelines_router,
+    declared.router,
+    model.attachments_router,
+    station.ros_router,
     endpoints.stream_router,
     users.people_router,
     users.people_bodiless,
@@ -118,23 +81,23 @@ PARTS = (
     users.keys_bodiless,
     watches.router,
     endpoints.watch_stream_router,
-    order_of_work.order_of_work_router,
+    job_orders.order_of_work_router,
     webhooks.router,
     webhooks.bodiless,
-    backups.backups_router,
-    backups.backups_bodiless,
+    storage.backups_router,
+    storage.backups_bodiless,
     storage.storage_router,
     storage.storage_bodiless,
-    audit.audit_router,
+    history.audit_router,
     history.history_router,
     job_orders.job_orders_router,
     job_orders.job_orders_bodiless,
-    job_responses.job_responses_router,
-    events.events_router,
-    capabilities.capabilities_router,
+    job_orders.job_responses_router,
+    history.events_router,
+    job_orders.capabilities_router,
     model.model_router,
-    language.language_router,
-    draft_pipelines.draft_pipelines_router,
+    model.language_router,
+    model.draft_pipelines_router,
     revisions.router,
     openapi_document.router,
 )

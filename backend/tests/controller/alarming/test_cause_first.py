@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from controller.alarming.scene import Told, alarms_of
+from controller.alarming.scene import Scene, Told
 from controller.faulty import FaultyRig
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.views.execution import failing
@@ -21,18 +21,18 @@ class Watched(FaultyRig):
         super().__post_init__()
         self.told = Told()
         self.feeds = Inputs(self.station.pipelines, self.station.registry)
-        self.alarms = alarms_of(self.execution, self.station, self.told, feeds=self.feeds)
+        self.scene = Scene(self.execution, self.station, self.told, feeds=self.feeds, tasks=self.desk)
 
     def tick(self) -> None:
         super().tick()
         for name, feed in self.feeds.expected.items():
             feed.last = self._heard.get(name)
-        self.alarms.note(self.ticks[-1])
-        self.alarms.look(None, Timestamp(self.now, self.now))
+        self.scene.note(self.ticks[-1])
+        self.scene.current(Timestamp(self.now, self.now))
 
     @property
     def shown(self) -> dict[str, AlarmView]:
-        return self.alarms.current(None, Timestamp(self.now, self.now))
+        return self.scene.current(Timestamp(self.now, self.now))
 
 
 def stuck() -> Watched:
@@ -81,7 +81,7 @@ def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:
     rig = stuck()
     rig.run(30)
     because = ["bolts[bolt_pair_3] == placed never goes together with robot.target_pose == bolt_pair_3"]
-    rig.alarms.questions = [
+    rig.scene.consistency.questions = [
         QuestionView(
             variable="bolts[bolt_pair_3]", believed="placed", possible=["empty"], because=because, because_messages=[]
         )

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 
-from controller.alarming.scene import acknowledge, alarms
+import pytest
+
+from controller.alarming.scene import Scene, acknowledge, alarms
 from controller.carrying_out import carry_out
-from sequence_planner.controller.alarms.manager import AlarmManager
-from sequence_planner.controller.commands.tasks import ProblemKind
-from sequence_planner.controller.features.tasks import TaskProblem
+from sequence_planner.controller.commands.tasks import ProblemKind, TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import AlarmState, Priority, QuestionView
@@ -28,9 +28,9 @@ def outcome(
     return TickOutcome(finished, (), started, nothing, nothing, conflicts, nothing, changed=True)
 
 
-def there(shown: AlarmManager, now: Timestamp) -> set[str]:
+def there(shown: Scene, now: Timestamp) -> set[str]:
     """The alarms whose causes are there."""
-    return {key for key, alarm in shown.current(None, now).items() if alarm.ended is None}
+    return {key for key, alarm in shown.current(now).items() if alarm.ended is None}
 
 
 def test_a_conflict_is_shown_until_one_of_the_two_goes_on() -> None:
@@ -39,7 +39,7 @@ def test_a_conflict_is_shown_until_one_of_the_two_goes_on() -> None:
     shown.note(outcome(conflicts=(("a", "b", "x"), ("a", "c", "x"))))
     shown.note(outcome())
     now = Timestamp(1000, 10)
-    assert {"conflict:a:b:x", "conflict:a:c:x"} <= shown.current(None, now).keys()
+    assert {"conflict:a:b:x", "conflict:a:c:x"} <= shown.current(now).keys()
     shown.note(outcome(started=("b",)))
     assert there(shown, now) == {"conflict:a:c:x"}
     shown.note(outcome(finished=("a",)))
@@ -52,18 +52,21 @@ def test_a_clock_that_is_set_makes_nothing_overdue() -> None:
     shown = alarms(rig)
     assert rig.run(10, until=lambda: rig.value("robot.attach_tool") is True)
     attach = "overdue:robot.attach_in_planning_scene"
-    assert attach not in shown.current(None, Timestamp(rig.now + 86400, rig.now + 1))
-    assert attach in shown.current(None, Timestamp(rig.now - 86400, rig.now + 11))
+    assert attach not in shown.current(Timestamp(rig.now + 86400, rig.now + 1))
+    assert attach in shown.current(Timestamp(rig.now - 86400, rig.now + 11))
 
 
 def test_an_alarm_keeps_the_time_at_which_it_came() -> None:
     shown = alarms(Rig())
-    first = shown.current("the planner has ended", Timestamp(1000, 10))
-    later = shown.current("the planner has ended", Timestamp(1060, 70))
+    shown.trouble = "the planner has ended"
+    first = shown.current(Timestamp(1000, 10))
+    later = shown.current(Timestamp(1060, 70))
     assert first["planner"].since == later["planner"].since == 1000
-    carry_out(shown, acknowledge("planner", 1000), Timestamp(1065, 75))
-    assert "planner" not in shown.current(None, Timestamp(1070, 80))
-    assert shown.current("the planner has ended", Timestamp(1080, 90))["planner"].since == 1080
+    carry_out(shown.alarms, acknowledge("planner", 1000), Timestamp(1065, 75))
+    shown.trouble = None
+    assert "planner" not in shown.current(Timestamp(1070, 80))
+    shown.trouble = "the planner has ended"
+    assert shown.current(Timestamp(1080, 90))["planner"].since == 1080
 
 
 def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
@@ -72,17 +75,15 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     shown = alarms(rig)
     assert rig.run(60, until=lambda: "nutrunner.run_nut" in rig.started)
     late = "overdue:nutrunner.run_nut"
-    assert late not in shown.current(None, Timestamp(rig.now + 4, rig.now + 4))
-    told = shown.current(None, Timestamp(rig.now + 6, rig.now + 6))[late]
+    assert late not in shown.current(Timestamp(rig.now + 4, rig.now + 4))
+    told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
     assert told.text == "Smart nutrunner: Run the nutrunner has not begun within 5 s"
     assert told.consequence == "“Tighten bolt pair 3” waits until it does."
 
     assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
-    told = shown.current(None, Timestamp(rig.now + 6, rig.now + 6))[late]
+    told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
     assert told.state is AlarmState.RETURNED
-    both = shown.current(
-        None, Timestamp(rig.now + 29.8, rig.now + 29.8)
-    )  # nor has the robot moved, for which the tool waits
+    both = shown.current(Timestamp(rig.now + 29.8, rig.now + 29.8))  # nor has the robot moved, for which the tool waits
     (robot,) = (alarm for key, alarm in both.items() if key.startswith("overdue:robot") and alarm.ended is None)
     assert robot.state is AlarmState.UNACKNOWLEDGED
     assert any(part.startswith("Smart nutrunner: Run the nutrunner has not finished within ") for part in robot.parts)
@@ -93,14 +94,14 @@ def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is
     shown = alarms(rig)
     assert rig.execution.blind
     now = Timestamp(1000, 10)
-    assert "unsafe-state" not in shown.current(None, now)  # for all that is known it may be safe
+    assert "unsafe-state" not in shown.current(now)  # for all that is known it may be safe
     rig.execution.state = {
         **rig.execution.state,
         "bolts[bolt_pair_1]": "placed",
         "robot.target_pose": "bolt_pair_1",
         "nutrunner.run_nut.executing": False,
     }
-    assert "The tool must turn before it meets placed bolts" in shown.current(None, now)["unsafe-state"].text
+    assert "The tool must turn before it meets placed bolts" in shown.current(now)["unsafe-state"].text
 
 
 def test_what_cannot_be_recorded_is_one_alarm_whoever_notices() -> None:
@@ -109,7 +110,7 @@ def test_what_cannot_be_recorded_is_one_alarm_whoever_notices() -> None:
     rig.run(3)
     shown = alarms(rig)
     shown.unjournalled = shown.unrecorded = "database or disk is full"
-    told = shown.current(None, Timestamp(1000, 10))
+    told = shown.current(Timestamp(1000, 10))
     assert "unrecorded" not in told
     assert told["unjournalled"].parts == ["Commands cannot be recorded: database or disk is full"]
     assert told["unjournalled"].consequence.startswith("Nothing is started. “")
@@ -118,16 +119,17 @@ def test_what_cannot_be_recorded_is_one_alarm_whoever_notices() -> None:
 def test_before_production_nothing_waits() -> None:
     shown = alarms(Rig())
     shown.unjournalled = "database or disk is full"
-    told = shown.current(None, Timestamp(1000, 10))["unjournalled"]
+    told = shown.current(Timestamp(1000, 10))["unjournalled"]
     assert told.consequence == "Nothing is started. Production is not started, so nothing waits for it."
 
 
-def test_outputs_that_nobody_has_decided_on_are_an_alarm() -> None:
+def test_outputs_that_nobody_has_decided_on_are_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = alarms(Rig())
-    shown.undecided = {"nutrunner.run_tool_forward", "robot.target_pose"}
-    told = shown.current(None, Timestamp(1000, 10))["undecided-outputs"]
+    undecided = ["robot.target_pose", "nutrunner.run_tool_forward"]
+    monkeypatch.setattr(shown.consistency, "told", lambda untold: undecided)
+    told = shown.current(Timestamp(1000, 10))["undecided-outputs"]
     assert told.text.endswith("nutrunner.run_tool_forward, robot.target_pose")
-    shown.undecided = ()
+    undecided.clear()
     assert there(shown, Timestamp(1001, 11)) == set()
 
 
@@ -138,7 +140,7 @@ def test_what_did_not_come_back_is_an_alarm_until_production_is_started() -> Non
         message("restored.repeats", name="polish"),
     )
     shown = alarms(rig, RestoredState(left_out=left_out))
-    told = shown.current(None, Timestamp(1000, 10))["not-restored"]
+    told = shown.current(Timestamp(1000, 10))["not-restored"]
     assert told.text.endswith("could not be fully restored: speed was 3, and ranges over 0..2 now, and 1 more")
     assert tuple(told.parts) == (
         "speed was 3, and ranges over 0..2 now",
@@ -153,7 +155,7 @@ def test_a_question_names_the_operations_that_it_decides() -> None:
     rig.start_production()
     rig.run(3)
     shown = alarms(rig)
-    shown.questions = [
+    shown.consistency.questions = [
         QuestionView(
             variable="bolts[bolt_pair_1]",
             believed="placed",
@@ -162,7 +164,7 @@ def test_a_question_names_the_operations_that_it_decides() -> None:
             because_messages=[],
         )
     ]
-    told = shown.current(None, Timestamp(1000, 10))["contradiction"]
+    told = shown.current(Timestamp(1000, 10))["contradiction"]
     assert "bolts[bolt_pair_1] is believed to be placed" in told.text
     assert told.consequence == "Plans may be wrong, and so may be whether “Tighten bolt pair 1” is reached."
 
@@ -172,11 +174,11 @@ def test_a_forced_variable_is_told_as_long_as_it_lasts() -> None:
     shown = alarms(rig)
     now = Timestamp(1000, 10)
     rig.execution.force("robot.pose", "home", Timestamp(1060, 70), "Eva", "its camera is dirty")
-    told = shown.current(None, now)["forced:robot.pose"]
+    told = shown.current(now)["forced:robot.pose"]
     assert told.text == "robot.pose is forced to home by Eva: its camera is dirty"
     assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
     rig.execution.release("robot.pose")
-    assert "forced:robot.pose" not in shown.current(None, now)
+    assert "forced:robot.pose" not in shown.current(now)
 
 
 def test_abilities_of_one_resource_that_are_given_up_are_one_alarm() -> None:
@@ -187,7 +189,7 @@ def test_abilities_of_one_resource_that_are_given_up_are_one_alarm() -> None:
         service[of] = OutOfService(*of, Timestamp(1000, 10), None, "has not begun within 5 s, tried 2 times")
         rig.execution.conduct = replace(rig.execution.conduct, service=service)
     rig.execution.set_service(ServiceKind.ABILITY, "robot.detach_from_planning_scene", False, "Eva", "", rig_now(rig))
-    told = alarms(rig).current(None, Timestamp(1000, 10))
+    told = alarms(rig).current(Timestamp(1000, 10))
     assert {key for key in told if key.startswith("given-up")} == {"given-up:nutrunner", "given-up:robot"}
     assert told["given-up:nutrunner"].text == (
         "Run the nutrunner has not begun within 5 s, tried 2 times: it is given up"
@@ -208,11 +210,11 @@ def test_where_there_is_no_plan_what_is_out_of_service_is_to_be_put_back() -> No
     assert rig.run(3, until=lambda: len(rig.completed) > 0)
     assert "no-plan" not in there(shown, rig_now(rig)), "bolts are placed without it"
     assert rig.run(30, until=lambda: rig.execution.plan.status is PlanStatus.NONE)
-    told = shown.current(None, rig_now(rig))["no-plan"]
+    told = shown.current(rig_now(rig))["no-plan"]
     assert told.consequence == "“Tighten bolt pair 1”, “Tighten bolt pair 2” and “Tighten bolt pair 3” wait."
     assert told.action == "Put Robot UR10 back in service, or see what the active operations need."
     serve(ServiceKind.ABILITY, "nutrunner.run_nut", False)
-    told = shown.current(None, rig_now(rig))["no-plan"]
+    told = shown.current(rig_now(rig))["no-plan"]
     assert told.action.startswith("Put Robot UR10 and Run the nutrunner back in service, or ")
     serve(ServiceKind.RESOURCE, "robot", True)
     serve(ServiceKind.ABILITY, "nutrunner.run_nut", True)
@@ -243,29 +245,30 @@ def test_a_problem_with_a_task_is_told_with_who_has_it_and_what_waits_for_it() -
     assert rig.run(10, until=lambda: bool(rig.desk.open))
     (task,) = rig.desk.open.values()
     shown, now = alarms(rig), Timestamp(rig.now, rig.now)
-    shown.problems = {task.id: (task.ability, TaskProblem("Eva", rig.now, "no bolts"))}
-    alarm = shown.current(None, now)[f"problem:{task.id}"]
+    rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "no bolts")}
+    alarm = shown.current(now)[f"problem:{task.id}"]
     assert (alarm.priority, alarm.state) == (Priority.MEDIUM, AlarmState.UNACKNOWLEDGED)
     assert alarm.text == f"Eva has a problem with “{task.title}”: no bolts"
     assert alarm.consequence.endswith("wait.") or alarm.consequence.endswith("waits.")
-    shown.problems = {task.id: (task.ability, TaskProblem("Eva", rig.now, "", ProblemKind.MISSING))}
-    assert shown.current(None, now)[f"problem:{task.id}"].text.endswith("”: a part is missing")
-    shown.problems = {task.id: (task.ability, TaskProblem("Eva", rig.now, "the left one", ProblemKind.DAMAGED))}
-    assert shown.current(None, now)[f"problem:{task.id}"].text.endswith("”: something is damaged, the left one")
-    shown.problems = {}
+    rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "", ProblemKind.MISSING)}
+    assert shown.current(now)[f"problem:{task.id}"].text.endswith("”: a part is missing")
+    rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "the left one", ProblemKind.DAMAGED)}
+    assert shown.current(now)[f"problem:{task.id}"].text.endswith("”: something is damaged, the left one")
+    rig.desk.problems = {}
     assert f"problem:{task.id}" not in there(shown, now)
 
 
-def test_what_was_moved_by_hand_is_a_notice_that_nobody_has_to_acknowledge() -> None:
+def test_what_was_moved_by_hand_is_a_notice_that_nobody_has_to_acknowledge(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     shown, now = alarms(rig), rig_now(rig)
     moved = Moved("robot", {"robot.pose": ("bolt_pair_1", "home")}, now)
-    shown.moved = [moved]
-    told = shown.current(None, now)["by-hand:robot"]
+    notices = [moved]
+    monkeypatch.setattr(shown.by_hand, "notices", lambda monotonic: notices)
+    told = shown.current(now)["by-hand:robot"]
     assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
     assert told.text == "Robot UR10 says robot.pose == home (before: bolt_pair_1), which nothing commanded"
     assert told.consequence == "Nothing has been started because of it yet."
-    shown.moved = [dataclasses.replace(moved, by="robot.move_to_position(home)", how=WentOn.STARTED, on=now)]
-    assert shown.current(None, now)["by-hand:robot"].consequence == "“Move to home” was started after it."
-    shown.moved = ()
-    assert "by-hand:robot" not in shown.current(None, now)
+    notices[:] = [dataclasses.replace(moved, by="robot.move_to_position(home)", how=WentOn.STARTED, on=now)]
+    assert shown.current(now)["by-hand:robot"].consequence == "“Move to home” was started after it."
+    notices.clear()
+    assert "by-hand:robot" not in shown.current(now)

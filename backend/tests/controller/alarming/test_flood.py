@@ -7,15 +7,13 @@ from functools import cache
 
 import pytest
 
-from controller.alarming.scene import Told, acknowledge, shelve, suppress
+from controller.alarming.scene import Scene, Told, acknowledge, shelve, suppress
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.alarm import aside_from
-from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
-from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
@@ -55,14 +53,17 @@ class Network:
         self.network.commands = True
         self.commander = Outputs(pipelines.outgoing, registry, self)
         self.told = Told()
-        self.alarms = AlarmManager(
-            self.execution, SafeStateMonitor(self.execution), self.feeds, self.network, self.commander, self.told
-        )
+        self.begin()
         self.cut: set[str] = set()
         self.refused: set[str] = set()
         self.tells = False
         self.now = 100.0
         self.most = 0  # alarms shown at once
+
+    def begin(self, known: RestoredState | None = None) -> None:
+        """A controller begins; `known` is what it knows from before."""
+        self.scene = Scene(self.execution, self.station, self.told, known, self.feeds, self.network, self.commander)
+        self.alarms = self.scene.alarms
 
     def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:
         """Nothing is to be done."""
@@ -80,7 +81,7 @@ class Network:
 
     @property
     def shown(self) -> dict[str, AlarmView]:
-        return self.alarms.current(None, self.moment)
+        return self.alarms.current(self.moment)
 
     @property
     def every(self) -> set[str]:
@@ -107,7 +108,7 @@ class Network:
                 self.feeds.abandon(topic)
             silent = self.feeds.offline(self.now)
             outcome = self.execution.tick(self.feeds.measured(self.now), self.moment, silent=silent)
-            self.alarms.note(outcome)
+            self.scene.note(outcome)
             self._plan()
             if self.execution.production == "started":
                 self.commander.publish(self.execution.published, self.now)
@@ -340,15 +341,7 @@ def test_what_was_put_aside_is_so_after_the_controller_was_started_anew() -> Non
     carry_out(before.alarms, shelve("silent:dock", 600), before.moment)
     kept = [content for kind, content in before.told.notes if kind == "alarms-aside"][-1]
     after.now = before.now + 100
-    after.alarms = AlarmManager(
-        after.execution,
-        SafeStateMonitor(after.execution),
-        after.feeds,
-        after.network,
-        after.commander,
-        after.told,
-        RestoredState(aside=aside_from(kept)),
-    )
+    after.begin(RestoredState(aside=aside_from(kept)))
     after.cut = before.cut
     after.start()
     after.run(10)

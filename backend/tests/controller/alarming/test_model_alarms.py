@@ -9,15 +9,18 @@ from pathlib import Path
 import pytest
 from pydantic import JsonValue
 
-from controller.alarming.scene import Told, acknowledge, alarms_of, shelve
+from controller.alarming.scene import Scene, Told, acknowledge, shelve
 from controller.carrying_out import carry_out
 from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.alarm import KIND, aside_from
+from sequence_planner.controller.alarms.kinds import Cause
 from sequence_planner.controller.alarms.model_conditions import ModelAlarms
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.station import AlarmState, AlarmView
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.source import ModelError
@@ -46,40 +49,53 @@ def findings(folder: Path) -> list[str]:
     return [f"{each.place.line}:{each.place.column} {each.message}" for each in wrong.value.findings]
 
 
-def keys(alarms: ModelAlarms, seconds: float, **values: Value | None) -> list[str]:
-    return [cause.key for cause in alarms.causes({"tank.level": values.get("level")}, seconds)]
+class Tank:
+    """The alarms of the model in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self._execution = Executor(ground(load_station(folder)), Supervisor(StateSet((), ()), {}))
+        self._alarms = ModelAlarms(self._execution)
+
+    def causes(self, level: Value | None, seconds: float) -> list[Cause]:
+        """Those that are there when the tank has this level."""
+        self._execution.state = {**self._execution.state, "tank.level": level}
+        return list(self._alarms.causes(Timestamp(seconds, seconds)))
+
+    def keys(self, seconds: float, level: Value | None) -> list[str]:
+        """Their keys."""
+        return [cause.key for cause in self.causes(level, seconds)]
 
 
 def test_it_is_raised_once_it_has_lasted_and_cleared_at_once(tmp_path: Path) -> None:
-    alarms = ModelAlarms(ground(load_station(station(tmp_path, "{when: level < 2, delay: 5}"))))
-    assert keys(alarms, 0.0, level=5) == []
-    assert keys(alarms, 1.0, level=1) == keys(alarms, 5.9, level=0) == []
-    assert keys(alarms, 6.0, level=1) == ["model:tank.low"]
-    assert keys(alarms, 6.1, level=2) == []
-    assert keys(alarms, 6.2, level=1) == keys(alarms, 11.1, level=1) == []
-    assert keys(alarms, 11.3, level=1) == ["model:tank.low"]
+    alarms = Tank(station(tmp_path, "{when: level < 2, delay: 5}"))
+    assert alarms.keys(0.0, level=5) == []
+    assert alarms.keys(1.0, level=1) == alarms.keys(5.9, level=0) == []
+    assert alarms.keys(6.0, level=1) == ["model:tank.low"]
+    assert alarms.keys(6.1, level=2) == []
+    assert alarms.keys(6.2, level=1) == alarms.keys(11.1, level=1) == []
+    assert alarms.keys(11.3, level=1) == ["model:tank.low"]
 
 
 def test_what_is_unknown_neither_raises_nor_clears_it(tmp_path: Path) -> None:
-    alarms = ModelAlarms(ground(load_station(station(tmp_path, "{when: level < 2}"))))
-    assert keys(alarms, 0.0, level=None) == []
-    assert keys(alarms, 1.0, level=1) == ["model:tank.low"]
-    assert keys(alarms, 2.0, level=None) == ["model:tank.low"]
-    assert keys(alarms, 3.0, level=3) == []
+    alarms = Tank(station(tmp_path, "{when: level < 2}"))
+    assert alarms.keys(0.0, level=None) == []
+    assert alarms.keys(1.0, level=1) == ["model:tank.low"]
+    assert alarms.keys(2.0, level=None) == ["model:tank.low"]
+    assert alarms.keys(3.0, level=3) == []
 
 
 def test_its_words_are_told_in_each_language(tmp_path: Path) -> None:
     words = (
         "{when: level < 2, priority: high, title: {en: Low, sv: Låg}, consequence: It runs dry., action: {sv: Fyll.}}"
     )
-    (cause,) = ModelAlarms(ground(load_station(station(tmp_path, words)))).causes({"tank.level": 0}, 0.0)
+    (cause,) = Tank(station(tmp_path, words)).causes(0, 0.0)
     assert [str(each) for each in (cause.text, cause.consequence, cause.action)] == ["Low", "It runs dry.", "Fyll."]
     assert (cause.key, cause.priority, cause.resources) == ("model:tank.low", "high", ("tank",))
 
 
 def test_an_alarm_of_the_station_has_a_bare_name_and_the_resources_that_it_reads(tmp_path: Path) -> None:
     folder = station(tmp_path, "{when: false}", "alarms: {too_low: {when: tank.level == 0}}\n")
-    (cause,) = ModelAlarms(ground(load_station(folder))).causes({"tank.level": 0}, 0.0)
+    (cause,) = Tank(folder).causes(0, 0.0)
     assert (cause.key, str(cause.text), cause.resources) == ("model:too_low", "Too low", ("tank",))
 
 
@@ -118,7 +134,7 @@ class Watched:
     def __init__(self, model: str, known: RestoredState | None = None) -> None:
         self.rig = Rig(acknowledges=never, folder=MODELS / model)
         self.told = Told()
-        self.alarms = alarms_of(self.rig.execution, self.rig.station, self.told, known)
+        self.alarms = Scene(self.rig.execution, self.rig.station, self.told, known)
 
     def after(self, seconds: float, **measured: Value) -> Mapping[str, AlarmView]:
         """The alarms of the model so much later, where devices report these values all the while."""
@@ -127,7 +143,7 @@ class Watched:
         for _ in range(round(seconds * 10)):
             self.rig.now += 0.1
             self.rig.tick()
-            shown = self.alarms.current(None, self.now)
+            shown = self.alarms.current(self.now)
         return {key: alarm for key, alarm in shown.items() if alarm.kind == "model"}
 
     @property
@@ -149,7 +165,7 @@ def test_the_battery_of_the_agv_is_low_and_is_charged() -> None:
         {"en": "The battery of the AGV is low", "sv": "AGV:ns batteri är lågt"}
     )
     assert on.after(1, agv__battery=4)[key].state is AlarmState.RETURNED
-    carry_out(on.alarms, acknowledge(key, alarm.since), on.now)
+    carry_out(on.alarms.alarms, acknowledge(key, alarm.since), on.now)
     assert on.after(1) == {}
     assert on.life(key) == ["came", "returned", "acknowledged"]
 
@@ -159,7 +175,7 @@ def test_a_nutrunner_that_turns_unasked_is_told_and_cannot_be_shelved() -> None:
     assert on.after(4, nutrunner__tool_is_running_forward=True) == {}
     assert on.after(2)[key].priority == "high"
     with pytest.raises(CommandRefused, match="as long as its cause lasts"):
-        carry_out(on.alarms, shelve(key, 60), on.now)
+        carry_out(on.alarms.alarms, shelve(key, 60), on.now)
     assert on.after(1, nutrunner__tool_is_running_forward=False)[key].state is AlarmState.RETURNED
 
 
@@ -175,7 +191,7 @@ def test_a_full_buffer_is_a_notice_that_goes_with_the_next_part() -> None:
 def test_what_is_shelved_stays_so_over_a_start_and_in_its_own_words() -> None:
     on, key = Watched("docking_agv"), "model:agv.battery_low"
     on.after(3, agv__battery=1)
-    carry_out(on.alarms, shelve(key, 600), on.now)
+    carry_out(on.alarms.alarms, shelve(key, 600), on.now)
     (kept,) = [content for kind, content in on.told.notes if kind == KIND]
     again = Watched("docking_agv", RestoredState(aside=aside_from(json.loads(json.dumps(kept)))))
     alarm = again.after(0.2)[key]
@@ -188,6 +204,6 @@ def test_a_journal_of_before_that_has_but_texts_puts_aside_what_it_did() -> None
     kept: dict[str, JsonValue] = {"aside": {"silent:agv": {**said, "by": "Eva", "why": "known", "until": None}}}
     on = Watched("docking_agv", RestoredState(aside=aside_from(kept)))
     on.after(0.1)
-    alarm = on.alarms.current(None, on.now)["silent:agv"]
+    alarm = on.alarms.current(on.now)["silent:agv"]
     assert (alarm.kind, alarm.subject, alarm.text) == ("silent", "agv", "It was silent")
     assert alarm.state is AlarmState.OUT_OF_SERVICE

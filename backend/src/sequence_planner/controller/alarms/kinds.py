@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -142,3 +142,8 @@ NO_SUPERVISOR = _kind("no-supervisor", Priority.HIGH, AlarmGroup.SYSTEM)
 MODEL_UNUSABLE = _kind("model-unusable", Priority.HIGH, AlarmGroup.SYSTEM)
 
 MODEL = _kind("model", Priority.MEDIUM, AlarmGroup.PROCESS, 1)
+
+
+def silences(resources: Collection[str]) -> tuple[str, ...]:
+    """The keys of the alarms by which it is told that these are silent."""
+    return (MANY_SILENT.key(), NEVER_HEARD.key(), *map(SILENT.key, sorted(resources))) if resources else ()

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Protocol, runtime_checkable
 
 from pydantic import JsonValue
 
-from sequence_planner.controller.alarms.alarm import (
-    KIND,
-    Alarm,
-    ConsequenceGraph,
-    Suppression,
-    aside_to_keep,
-)
-from sequence_planner.controller.alarms.device_conditions import DeviceAlarms
-from sequence_planner.controller.alarms.model_conditions import ModelAlarms
-from sequence_planner.controller.alarms.plan_conditions import PlanAlarms
+from sequence_planner.controller.alarms.alarm import KIND, Alarm, Suppression, aside_to_keep
+from sequence_planner.controller.alarms.consequences import ConsequenceGraph
+from sequence_planner.controller.alarms.kinds import Cause
 from sequence_planner.controller.alarms.registry import AlarmRegistry, Folding
-from sequence_planner.controller.alarms.station_conditions import StationAlarms
 from sequence_planner.controller.commands.alarms import (
     AcknowledgeAlarm,
     RestoreAlarm,
@@ -25,83 +18,82 @@ from sequence_planner.controller.commands.alarms import (
     SuppressAlarm,
     UnshelveAlarm,
 )
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.controller.io.network import NetworkWatch
-from sequence_planner.controller.io.outputs import Outputs
+from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
-from sequence_planner.controller.recovery.stalls import StallDetector
-from sequence_planner.controller.recovery.who_can import Run, WhoCan, at_once
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import AlarmView
+from sequence_planner.controller.views.station import AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 
 # What wants a person's attention, and what people do about it.
 
-TellEvent = Callable[[str, Mapping[str, JsonValue]], None]
 KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that it is among what the journal keeps
 
 
-class AlarmManager(StationAlarms):
-    """The alarms of a station. `tell` hears what becomes of each, for the journal.
+class TellEvent(Protocol):
+    """Whoever writes it down."""
 
-    `known` has those that were shelved or out of service before the controller was started. `run` is where it is found
-    out who can do what.
+    def __call__(self, kind: str, content: Mapping[str, JsonValue], *, lasts: bool = False) -> None:
+        """Write down what has become of an alarm; what `lasts` is known again after a start."""
+
+
+@runtime_checkable
+class RaisesAlarms(Protocol):
+    """A feature that has alarms."""
+
+    def causes(self, moment: Timestamp) -> Iterable[Cause]:
+        """The causes of alarms that there are now."""
+
+
+class AlarmManager:
+    """The alarms of a station. `tell` hears what becomes of each, for the journal; `expect` is called when somebody may
+    soon ask for advice.
+
+    `known` has those that were shelved or out of service before the controller was started.
     """
 
     def __init__(
         self,
         execution: Executor,
         outside: SafeStateMonitor,
-        feeds: Inputs,
-        network: NetworkWatch,
-        commander: Outputs,
         tell: TellEvent,
         known: RestoredState | None = None,
-        run: Run = at_once,
+        expect: Callable[[], None] = lambda: None,
     ) -> None:
-        known = known or RestoredState()
-        undone = known.deployment if known.deployment and known.deployment.why is not None else None
-        super().__init__(execution, outside, known, undone)
-        self.who_can = WhoCan(execution, run)
-        self._devices = DeviceAlarms(execution, feeds, network, commander, self.who_can)
-        self.still = StallDetector(execution, lambda: outside.certain)
-        self._declared = ModelAlarms(execution.automaton)
-        self._plans = PlanAlarms(execution, feeds, self.still, self.who_can)
+        self._outside = outside
+        self._sources: Sequence[RaisesAlarms] = ()
         self._following = ConsequenceGraph(execution.automaton, self._touched)
         self._folding = Folding()
         self._lives = AlarmRegistry(self._told)
+        self.shown: Mapping[str, AlarmView] = {}
+        """The alarms as they were shown last."""
         self._tell = tell
+        self._expect = expect
         self._kept: dict[str, Suppression] = {}
         self._kept_at = float("-inf")
-        self._aside_before = known.aside
+        self._aside_before = {} if known is None else known.aside
 
-    def look(self, planner_trouble: str | None, moment: Timestamp) -> None:
+    def look_at(self, features: Iterable[object]) -> None:
+        """Look at those that have alarms, in this order."""
+        self._sources = [feature for feature in features if isinstance(feature, RaisesAlarms)]
+
+    def look(self, moment: Timestamp) -> None:
         """Take note of what is there now; often enough that nothing comes and goes unseen."""
         self._resume(moment)
-        self.who_can.look(self._devices.untold, moment.monotonic)
-        of_devices = tuple(self._devices.causes(moment))
-        of_plans = self._plans.causes(planner_trouble, moment.monotonic, self._devices.untold)
-        of_model = self._declared.causes(self._execution.state, moment.monotonic)
-        causes = (*of_devices, *of_plans, *self.causes(), *of_model)
+        causes = [cause for source in self._sources for cause in source.causes(moment)]
         folded = self._folding.fold(self._following.trace(causes), self._lives.out_of_service, moment.monotonic)
         self._lives.observe(folded.alarms, folded.folded, moment)
         self._keep(moment)
 
-    def current(self, planner_trouble: str | None, moment: Timestamp) -> dict[str, AlarmView]:
+    def current(self, moment: Timestamp) -> dict[str, AlarmView]:
         """All alarms now."""
-        self.look(planner_trouble, moment)
-        return self._lives.view()
+        self.look(moment)
+        self.shown = self._lives.view()
+        return self.shown
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
-        return {"who_can": self.who_can.found}
-
-    @property
-    def untold(self) -> Collection[str]:
-        """The resources whose silence is too young to be told."""
-        return self._devices.untold
+        return {"alarms": self.current(moment)}
 
     @handles(AcknowledgeAlarm)
     def acknowledge(self, command: AcknowledgeAlarm, moment: Timestamp) -> None:
@@ -147,6 +139,8 @@ class AlarmManager(StationAlarms):
 
     def _told(self, key: str, life: Alarm, event: str) -> None:
         view = life.view()
+        if event == "came" and view.priority is not Priority.LOW:
+            self._expect()
         self._tell("alarm", {"alarm": key, "event": event, **view.model_dump(mode="json")})
 
     def _keep(self, moment: Timestamp) -> None:
@@ -155,4 +149,4 @@ class AlarmManager(StationAlarms):
         old = moment.monotonic - self._kept_at > KEEP_EVERY
         if kept != self._kept or (old and kept):
             self._kept, self._kept_at = kept, moment.monotonic
-            self._tell(KIND, aside_to_keep(self._lives.aside))
+            self._tell(KIND, aside_to_keep(self._lives.aside), lasts=True)

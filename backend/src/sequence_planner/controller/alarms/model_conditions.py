@@ -9,23 +9,28 @@ from sequence_planner.automaton.automaton import AlarmDeclaration, Automaton, St
 from sequence_planner.automaton.compiler import closure
 from sequence_planner.controller.alarms.kinds import MODEL, Cause
 from sequence_planner.controller.views.station import Priority
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
 from sequence_planner.language.syntax import variables
 from sequence_planner.texts.message import Argument, Wording
 
 
 class ModelAlarms:
-    """Looks at the state for what the alarms of `automaton` say.
+    """Looks at the state of `execution` for what the alarms of its model say.
 
     An alarm is raised once its condition has held for its delay, and cleared once it does not hold. What is unknown
     neither raises an alarm nor clears one: whose values are not known has an alarm of its own.
     """
 
-    def __init__(self, automaton: Automaton) -> None:
+    def __init__(self, execution: Executor) -> None:
+        self._execution = execution
+        automaton = execution.automaton
         self._alarms = [_Declared(automaton, alarm) for alarm in automaton.alarms.values()]
 
-    def causes(self, state: State, monotonic: float) -> Iterator[Cause]:
-        """Those that are raised now."""
-        return (alarm.cause for alarm in self._alarms if alarm.is_raised(state, monotonic))
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of those that are raised now."""
+        state = self._execution.state
+        return (alarm.cause for alarm in self._alarms if alarm.is_raised(state, moment.monotonic))
 
 
 class _Declared:

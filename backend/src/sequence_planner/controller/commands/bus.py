@@ -1,41 +1,36 @@
-"""Who carries out which command: one table, made of the methods of features that say which command they handle."""
+"""Who carries out which command, and who answers which query: tables made of the methods of features that say so."""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable, Mapping
-from typing import Protocol, TypeVar
+from typing import Any, Protocol
 
-from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.command import HANDLES, Command, CommandRefused, Query
+from sequence_planner.controller.views.part import View
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
 
-Given = TypeVar("Given", bound=Command)
-Feature = TypeVar("Feature")
-Handler = Callable[[Command, Timestamp], None]
-_HANDLES = "_handles"  # of a function: the command that it handles
+Handler = Callable[..., Any]
 
 
-def handles(
-    command: type[Given],
-) -> Callable[[Callable[[Feature, Given, Timestamp], None]], Callable[[Feature, Given, Timestamp], None]]:
-    """Declare that a method carries out a command, now. It raises `CommandRefused`, and nothing has changed then."""
-
-    def declare(method: Callable[[Feature, Given, Timestamp], None]) -> Callable[[Feature, Given, Timestamp], None]:
-        setattr(method, _HANDLES, command)
-        return method
-
-    return declare
-
-
-def handlers(features: Iterable[object]) -> dict[type[Command], Handler]:
-    """The methods of features by the commands that they handle. Raises `ValueError` where two handle the same one."""
-    found: dict[type[Command], Handler] = {}
+def handlers(features: Iterable[object]) -> dict[type, Handler]:
+    """The methods of features by what they handle or answer. Raises `ValueError` where two handle the same."""
+    found: dict[type, Handler] = {}
     for feature in features:
         for name, method in vars(type(feature)).items():
-            if (command := getattr(method, _HANDLES, None)) is not None:
+            if (command := getattr(method, HANDLES, None)) is not None:
                 if command in found:
                     raise ValueError(f"{command.__name__} is handled twice, by {type(feature).__name__} and another")
                 found[command] = getattr(feature, name)
+    return found
+
+
+def complete(features: Iterable[object], declared: Iterable[type]) -> Mapping[type, Handler]:
+    """The handlers of all that is declared. Raises `ValueError` where something has none."""
+    found = handlers(features)
+    if lacking := [each.__name__ for each in declared if each not in found]:
+        raise ValueError(f"no feature handles {', '.join(lacking)}")
     return found
 
 
@@ -62,9 +57,7 @@ class CommandBus:
         require_one: Callable[[Iterable[str]], None],
         real_devices: Callable[[], Iterable[str]],
     ) -> None:
-        self._handlers: Mapping[type[Command], Handler] = handlers(features)
-        if lacking := [each.__name__ for each in commands if each not in self._handlers]:
-            raise ValueError(f"no feature handles {', '.join(lacking)}")
+        self._handlers = complete(features, commands)
         self._in_control = in_control
         self._require_one = require_one
         self._real_devices = real_devices
@@ -83,3 +76,16 @@ class CommandBus:
     def perform(self, command: Command, moment: Timestamp) -> None:
         """Do it, whoever wants it: what two people have agreed on. Raises `CommandRefused`."""
         self._handlers[type(command)](command, moment)
+
+
+class QueryBus:
+    """Has queries answered. Raises `ValueError` when nobody answers one of `queries`."""
+
+    def __init__(self, features: Iterable[object], queries: Iterable[type[Query[Any]]]) -> None:
+        self._handlers = complete(features, queries)
+
+    async def answer(self, query: Query[Any]) -> View:
+        """The document that answers it. Raises `CommandRefused`."""
+        answer = self._handlers[type(query)](query)
+        found: View = await answer if inspect.isawaitable(answer) else answer
+        return found

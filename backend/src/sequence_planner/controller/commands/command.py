@@ -1,17 +1,21 @@
-"""The base of all commands. Each declares once its fields, its routes, who may give it, and what is recorded of it.
+"""The bases of all commands and queries. Each declares once its fields, its routes and who may give or ask it; of a
+command also what is recorded, of a query what answers it.
 
-Whoever adds one writes its class beside those of the same subject, and a method for it in a feature (`bus.handles`).
+Whoever adds one writes its class beside those of the same subject, and a method for it in a feature (`handles`,
+`answers`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StrictStr
 
+from sequence_planner.controller.views.part import View
 from sequence_planner.core.actor import Actor
+from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.journal.entry import LONGEST_REASON
 
@@ -20,30 +24,31 @@ LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader 
 Why = Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
 Revision = Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
 GivenValue = StrictBool | StrictInt | StrictStr
+Answer = TypeVar("Answer", bound=View)
 GivenValues = Annotated[dict[str, GivenValue], Field(min_length=1, max_length=200)]
 
 
 @dataclass(frozen=True)
 class Route:
-    """A route of the REST interface, on which a command is given.
+    """A route of the REST interface, on which a command is given or a query asked.
 
-    `path` names some of the command's fields, the body has the others.
+    `path` names some of its fields, the body has the others, or the query string where there is no body.
 
     `operation` is what generated clients call it, `body` the name of the body's schema, which has the reason where one
-    `may_say_why`. `text` is what the route does where that is not the command's docstring. `role` is the least role of
-    a person (`auth.roles.Role`); with `watch` watches may as well, for tasks of their resource. `types` are those of
-    fields that are required and narrower on this route, `names` what fields are called in the path where that is not
-    their name.
+    `may_say_why`. `text` is what the route does where that is not the docstring of the command or query. `role` is the
+    least role of a person (`auth.roles.Role`); keys may read what viewers may, and with `watch` watches may use it as
+    well, for tasks of their resource. `types` are those of fields that are narrower on this route, `names` what fields
+    are called in the address where that is not their name.
     """
 
-    method: Literal["POST", "PUT", "DELETE"]
+    method: Literal["GET", "POST", "PUT", "DELETE"]
     path: str
     operation: str
     tag: str
     body: str = ""
     body_text: str = ""
     text: str = ""
-    role: Literal["operator", "engineer"] = "operator"
+    role: Literal["viewer", "operator", "engineer"] = "operator"
     watch: bool = False
     may_say_why: bool = True
     refusals: tuple[int, ...] = (409, 504)
@@ -91,6 +96,27 @@ class Command(DataModel):
         return ()
 
 
+class Query(DataModel, Generic[Answer]):
+    """What the controller tells only to who asks, with a document of its `answer_type`. It changes nothing.
+
+    Who asks waits for `patience` seconds at most, where it is null as long as for a command; what is found later is
+    dropped.
+    """
+
+    routes: ClassVar[tuple[Route, ...]] = ()
+    patience: ClassVar[float | None] = None
+    kind: str
+
+    @classmethod
+    def answer_type(cls) -> type[Answer]:
+        """The kind of document that answers it."""
+        for base in cls.__mro__:
+            if issubclass(base, BaseModel) and (arguments := base.__pydantic_generic_metadata__["args"]):
+                found: type[Answer] = arguments[0]
+                return found
+        raise TypeError(f"{cls.__name__} does not say what answers it")
+
+
 class TextPlace(BaseModel):
     """What is wrong within a text that was sent, and where: from `start` to before `end`, in Unicode characters."""
 
@@ -114,3 +140,37 @@ class CommandRefused(Exception):
         self.detail = detail
         self.status = status
         self.place = place
+
+
+# Who carries out a command, and who answers a query: methods of features, which `bus` finds.
+
+Given = TypeVar("Given", bound=Command)
+Asked = TypeVar("Asked", bound=Query[Any])
+Told = TypeVar("Told", bound=View | Awaitable[View])
+Feature = TypeVar("Feature")
+HANDLES = "_handles"  # of a function: the command that it handles, or the query that it answers
+
+
+def handles(
+    command: type[Given],
+) -> Callable[[Callable[[Feature, Given, Timestamp], None]], Callable[[Feature, Given, Timestamp], None]]:
+    """Declare that a method carries out a command, now. It raises `CommandRefused`, and nothing has changed then."""
+
+    def declare(method: Callable[[Feature, Given, Timestamp], None]) -> Callable[[Feature, Given, Timestamp], None]:
+        setattr(method, HANDLES, command)
+        return method
+
+    return declare
+
+
+def answers(query: type[Asked]) -> Callable[[Callable[[Feature, Asked], Told]], Callable[[Feature, Asked], Told]]:
+    """Declare that a method answers a query, at once or after a while. It raises `CommandRefused`.
+
+    The event loop is not held up: what takes long is awaited, and done in another process.
+    """
+
+    def declare(method: Callable[[Feature, Asked], Told]) -> Callable[[Feature, Asked], Told]:
+        setattr(method, HANDLES, query)
+        return method
+
+    return declare

@@ -1,16 +1,12 @@
-"""Questions whose answers are told only to who asks, and take some work: each kind of ask with the document that
-answers it.
-
-Asking changes nothing at the station. Who asks waits for `patience` seconds at most; what is found later is dropped.
-"""
+"""Queries about a running station; `answers` declares who answers one."""
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Generic, Literal, TypeVar
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
-from sequence_planner.controller.commands.command import GivenValues
+from sequence_planner.controller.commands.command import GivenValues, Query, Route
 from sequence_planner.controller.views.details import (
     AbilityDefinitionView,
     CorrectionPreview,
@@ -18,49 +14,48 @@ from sequence_planner.controller.views.details import (
     WorkMastersView,
 )
 from sequence_planner.controller.views.metrics import FiguresView
-from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView, RecordView
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
-from sequence_planner.core.data_models import DataModel
 
 TOLD_WITHIN = 1.0  # seconds: who watches over the station asks again soon
 ADVISED_WITHIN = 15.0  # seconds: the adviser answers one after the other
 LONGEST_PREDICATE = 4000  # characters
 
-Answer = TypeVar("Answer", bound=View)
-
-
-class Query(DataModel, Generic[Answer]):
-    """Base of all asks. `patience` is null where who asks waits as long as for a command."""
-
-    patience: ClassVar[float | None] = None
-    kind: str
-
-    @classmethod
-    def answer_type(cls) -> type[Answer]:
-        """The kind of document that answers it."""
-        for base in cls.__mro__:
-            if issubclass(base, BaseModel) and (arguments := base.__pydantic_generic_metadata__["args"]):
-                found: type[Answer] = arguments[0]
-                return found
-        raise TypeError(f"{cls.__name__} does not say what answers it")
+Name = Annotated[str, Field(max_length=400)]
+Predicate = Annotated[str, Field(min_length=1, max_length=LONGEST_PREDICATE)]
+_GOAL_TEXT = "What shall hold, in the model's language."
 
 
 class AboutPipelines(Query[PipelinesView]):
-    """The graph of the pipelines."""
+    """The typed graph: topics and flows with their stages, the fields on each edge, and what they become."""
 
+    routes = (Route("GET", "/pipelines", "pipelines", tag="pipelines", role="viewer", refusals=(504,)),)
     kind: Literal["about-pipelines"] = "about-pipelines"
 
 
 class AboutFlows(Query[FlowsView]):
-    """A question: what has passed the pipelines, all of them or those `among` these."""
+    """What has passed each edge of the pipelines that are named, or of all: counts, rates, drops and the last record.
+    Rates come with the second look.
+    """
 
+    routes = (
+        Route(
+            "GET",
+            "/pipelines/edges",
+            "pipeline_edges",
+            tag="pipelines",
+            role="viewer",
+            refusals=(504,),
+            types={"among": Annotated[list[Annotated[str, Field(max_length=500)]] | None, Field(max_length=200)]},
+            names={"among": "pipeline"},  # repeated as in `?pipeline=/robot/state&pipeline=robot.holding`
+        ),
+    )
     kind: Literal["about-flows"] = "about-flows"
     among: frozenset[str] | None = None
 
 
 class AskFigures(Query[FiguresView]):
-    """A question about what the controller has counted and timed of itself."""
+    """What the controller has counted and timed of itself."""
 
     patience: ClassVar[float | None] = TOLD_WITHIN
     kind: Literal["ask-figures"] = "ask-figures"
@@ -74,69 +69,149 @@ class AskRecord(Query[RecordView]):
 
 
 class AskAdvice(Query[AdviceView]):
-    """Ways on from the present state, replayed and ranked."""
+    """Proven ways on from the present state, the least effort first, each with its plan.
 
+    409 `plan-running` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
+    """
+
+    routes = (Route("GET", "/recovery/proposals", "recovery_proposals", tag="recovery"),)
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-advice"] = "ask-advice"
 
 
 class AskGoal(Query[OfferView]):
-    """A plan to whatever an engineer wants to hold, in the model's language."""
+    """A plan to whatever shall hold, to be looked at and perhaps taken.
 
+    422 `bad-predicate` names the place; 409 `goal-holds` and `no-plan` say why there is nothing to take.
+    """
+
+    routes = (
+        Route(
+            "POST",
+            "/operator-plans/goal-preview",
+            "preview_goal",
+            tag="recovery",
+            body="GoalBody",
+            body_text=_GOAL_TEXT,
+            role="engineer",
+        ),
+    )
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-goal"] = "ask-goal"
-    predicate: str = Field(max_length=LONGEST_PREDICATE)
+    predicate: Predicate
 
 
 class AskReset(Query[OfferView]):
-    """A plan to the precondition of an operation."""
+    """A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none."""
 
+    routes = (
+        Route(
+            "POST",
+            "/operator-plans/reset-preview",
+            "preview_reset",
+            tag="recovery",
+            body="ResetBody",
+            body_text="The operation whose precondition shall hold again.",
+            refusals=(404, 409, 504),
+        ),
+    )
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-reset"] = "ask-reset"
-    operation: str = Field(max_length=LONGEST_PREDICATE)
+    operation: Annotated[str, Field(min_length=1, max_length=200)]
 
 
-class AskWhyNot(Query[WhyNotView]):
-    """A question about what is in the way of an ability, an operation, or a goal, whose `name` is its predicate."""
+class AskAbilityBlockers(Query[WhyNotView]):
+    """What keeps an ability from starting, and who could change it."""
 
+    routes = (
+        Route(
+            "GET", "/abilities/{name}/blockers", "ability_blockers", tag="station", role="viewer", refusals=(404, 504)
+        ),
+    )
     patience: ClassVar[float | None] = ADVISED_WITHIN
-    kind: Literal["ask-why-not"] = "ask-why-not"
-    of: Literal["ability", "operation", "goal"]
-    name: str = Field(max_length=LONGEST_PREDICATE)
+    kind: Literal["ask-ability-blockers"] = "ask-ability-blockers"
+    name: Name
+
+
+class AskOperationBlockers(Query[WhyNotView]):
+    """What keeps an operation from being active or completed, and who could change it."""
+
+    routes = (
+        Route(
+            "GET",
+            "/operations/{name}/blockers",
+            "operation_blockers",
+            tag="station",
+            role="viewer",
+            refusals=(404, 504),
+        ),
+    )
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-operation-blockers"] = "ask-operation-blockers"
+    name: Name
+
+
+class AskGoalBlockers(Query[WhyNotView]):
+    """What keeps a predicate from being true, and whether the station could reach it; 422 `bad-predicate`."""
+
+    routes = (
+        Route(
+            "POST",
+            "/goals/blockers",
+            "goal_blockers",
+            tag="station",
+            body="GoalBody",
+            body_text=_GOAL_TEXT,
+            role="engineer",
+            refusals=(504,),
+        ),
+    )
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-goal-blockers"] = "ask-goal-blockers"
+    predicate: Predicate
 
 
 class AskDefinition(Query[AbilityDefinitionView]):
-    """A question about how an ability is defined, and what of that holds now."""
+    """Its guards, actions and expected reactions as they are written, what of them holds now, and its last trial."""
 
+    routes = (
+        Route(
+            "GET",
+            "/abilities/{name}/definition",
+            "ability_definition",
+            tag="abilities",
+            role="viewer",
+            refusals=(404, 504),
+            names={"ability": "name"},
+        ),
+    )
     kind: Literal["ask-definition"] = "ask-definition"
-    ability: str = Field(max_length=LONGEST_PREDICATE)
+    ability: Name
 
 
 class AskCorrection(Query[CorrectionPreview]):
-    """A question about what a correction of these estimates would bring about."""
+    """What a correction would bring about: what it would violate, which abilities could start, the plan that follows.
 
+    Nothing is changed by asking, and it may be asked in every mode.
+    """
+
+    routes = (
+        Route(
+            "POST",
+            "/corrections/preview",
+            "preview_correction",
+            tag="corrections",
+            body="ValuesBody",
+            body_text="Estimated variables, each with the value that it is to have.",
+            refusals=(404, 409, 422, 504),
+        ),
+    )
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-correction"] = "ask-correction"
     values: GivenValues
 
 
 class AboutWorkMasters(Query[WorkMastersView]):
-    """A question about what jobs consist of."""
+    """What jobs consist of."""
 
     kind: Literal["about-work-masters"] = "about-work-masters"
-
-
-Ask = Annotated[
-    AboutPipelines
-    | AboutFlows
-    | AskFigures
-    | AskRecord
-    | AskCorrection
-    | AskAdvice
-    | AskGoal
-    | AskReset
-    | AskWhyNot
-    | AskDefinition
-    | AboutWorkMasters,
-    Field(discriminator="kind"),
-]

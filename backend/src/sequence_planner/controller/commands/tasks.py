@@ -1,13 +1,47 @@
-"""Commands for tasks: what a person may say about one that waits, and the revision of it that was seen."""
+"""Tasks that wait for people, and the commands for them: what a person may say about one, as it was seen."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from sequence_planner.controller.commands.command import Command, Revision, Route
+
+
+class ProblemKind(StrEnum):
+    """What is in the way, as far as one touch can say it."""
+
+    MISSING = "missing"  # a part
+    DAMAGED = "damaged"
+    TOOL = "tool"
+    OTHER = "other"
+
+
+@dataclass(frozen=True)
+class WaitingTask:
+    """A task that waits for a person; `created` in seconds since the epoch."""
+
+    id: str
+    revision: int
+    ability: str
+    title: str
+    text: str
+    created: float
+
+
+@dataclass(frozen=True)
+class TaskProblem:
+    """An obstacle that keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if
+    told.
+    """
+
+    by: str
+    since: float
+    why: str
+    what: ProblemKind | None = None
 
 
 class TaskCommand(Command):
@@ -34,15 +68,6 @@ class AcknowledgeTask(TaskCommand):
         ),
     )
     kind: Literal["acknowledge-task"] = "acknowledge-task"
-
-
-class ProblemKind(StrEnum):
-    """What is in the way, as far as one touch can say it."""
-
-    MISSING = "missing"  # a part
-    DAMAGED = "damaged"
-    TOOL = "tool"
-    OTHER = "other"
 
 
 class ReportProblem(TaskCommand):

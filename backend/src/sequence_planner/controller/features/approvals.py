@@ -17,8 +17,7 @@ from sequence_planner.controller.commands.approvals import (
     DeclineRequest,
     RequestApproval,
 )
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.command import Command, CommandRefused, handles
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.views.station import ApprovalState, ApprovalView
 from sequence_planner.core.actor import Actor, ActorKind
@@ -115,13 +114,9 @@ class Approvals:
         self._end(command.request, state, moment, command.actor, command.reason)
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
-        """Its part of the view."""
-        return {"approvals": self.view(moment)}
-
-    def view(self, moment: Timestamp) -> dict[str, ApprovalView]:
-        """Return what waits, and what was over lately."""
+        """Its part of the view: what waits, and what was over lately."""
         self._look(moment)
-        return {
+        views = {
             id_: ApprovalView(
                 act=request.act,
                 revision=request.revision,
@@ -136,6 +131,7 @@ class Approvals:
             )
             for id_, request in self._requests.items()
         }
+        return {"approvals": views}
 
     def _answerable(self, command: ApproveRequest | DeclineRequest, moment: Timestamp) -> _Request:
         request = self._waiting(moment).get(command.request)
@@ -163,7 +159,7 @@ class Approvals:
                 self._end(id_, ApprovalState.OVERTAKEN, moment)
 
     def _controls(self, actor: Actor) -> bool:
-        holder = self._in_control.view()
+        holder = self._in_control.holder
         return holder is not None and holder.session == actor.session
 
     def _end(

@@ -28,7 +28,7 @@ async def start_when_alone(controller: Controller, handle: Handle, look_every: f
     while controller.execution.production is Production.WAITING:
         strangers = controller.devices.strangers(f"/{EMULATED_DEVICES}")
         # What would be refused is not tried again and again, as each try is recorded.
-        strangers += [f"it is not decided what {name} shall be" for name in controller.undecided]
+        strangers += [f"it is not decided what {name} shall be" for name in controller.view().undecided]
         if not strangers and controller.execution.mode is Mode.AUTOMATIC:
             with contextlib.suppress(CommandRefused):  # since the network was looked at, somebody has come
                 await handle(StartProduction(actor=SYSTEM, reason="started with --start"))
@@ -46,7 +46,7 @@ async def go_on(controller: Controller, handle: Handle, before: str, look_every:
     """
     why = f"taken over from {before}, as the model allows"
     while controller.execution.production is Production.WAITING and controller.execution.mode is Mode.AUTOMATIC:
-        if not controller.undecided and not controller.execution.blind and not controller.devices.network.rivals:
+        if not controller.view().undecided and not controller.execution.blind and not controller.devices.network.rivals:
             with contextlib.suppress(CommandRefused):
                 await handle(StartProduction(actor=SYSTEM, reason=why))
         await asyncio.sleep(look_every)

@@ -6,8 +6,7 @@ has it, since when, and from whom it was taken.
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.execution import ReleaseControl, TakeControl, WithdrawControl
 from sequence_planner.controller.views.part import ControlView
 from sequence_planner.core.actor import Actor
@@ -18,15 +17,11 @@ class ControlLock:
     """The session in control, if any."""
 
     def __init__(self, holder: ControlView | None = None) -> None:
-        self._holder = holder
-
-    def view(self) -> ControlView | None:
-        """Return who is in control; None for nobody."""
-        return self._holder
+        self.holder = holder
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
-        return {"control": self._holder}
+        return {"control": self.holder}
 
     @handles(TakeControl)
     def take(self, command: TakeControl, moment: Timestamp) -> None:
@@ -35,13 +30,13 @@ class ControlLock:
         if actor.session is None:
             detail = "Only a person who is signed in can take control; a key or a watch cannot."
             raise CommandRefused("no-session", "Control is for people", detail, 403)
-        holder = self._holder
+        holder = self.holder
         if holder is not None and holder.session == actor.session:
             return
         if holder is not None and holder.session != command.over:
             detail = f"{holder.name} has control by now. Speak to them, then take it over from them."
             raise CommandRefused("control-changed", "Somebody else is in control", detail)
-        self._holder = ControlView(
+        self.holder = ControlView(
             session=actor.session,
             person=actor.id,
             name=actor.name,
@@ -53,17 +48,17 @@ class ControlLock:
     def release(self, command: ReleaseControl, moment: Timestamp) -> None:
         """Let nobody be in control."""
         self.require(command.actor)
-        self._holder = None
+        self.holder = None
 
     @handles(WithdrawControl)
     def withdraw(self, command: WithdrawControl, moment: Timestamp) -> None:
         """A session has ended, and is not in control any more."""
-        if self._holder is not None and self._holder.session == command.session:
-            self._holder = None
+        if self.holder is not None and self.holder.session == command.session:
+            self.holder = None
 
     def require(self, actor: Actor) -> None:
         """Raises `CommandRefused` unless the session of `actor` is in control."""
-        holder = self._holder
+        holder = self.holder
         if holder is None:
             detail = "Nobody is in control. Take control, then try again."
             raise CommandRefused("control-needed", "Control is needed", detail)

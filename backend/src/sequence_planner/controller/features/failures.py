@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import structlog
+
+from sequence_planner.controller.alarms.kinds import CONTROLLER, Cause
+from sequence_planner.core.clock import Timestamp
 
 LOG = structlog.get_logger(__name__)
 
@@ -14,6 +17,11 @@ class Failures:
 
     def __init__(self) -> None:
         self.known: dict[str, str] = {}
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        for what, how in self.known.items():
+            yield CONTROLLER.cause(what, {"what": what, "how": how})
 
     def attempt(self, what: str, act: Callable[[], None]) -> None:
         """Do a piece of work. One that fails is shown and logged, once for each way in which it fails."""

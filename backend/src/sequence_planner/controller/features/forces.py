@@ -5,17 +5,21 @@ For commissioning, where a device is not there yet, or must be made to do someth
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from sequence_planner.automaton.automaton import Kind, State
+from sequence_planner.controller.alarms.kinds import FORCED, Cause
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.views.execution import force_views
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import contains
 from sequence_planner.planning.recovery_path import violated
+from sequence_planner.texts.message import message
 
 _FORCED = (Kind.MEASURED, Kind.OUTPUT)
 
@@ -29,6 +33,23 @@ class Forces:
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
         return {"forces": force_views(self._execution.conduct)}
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        started = self._execution.production is Production.STARTED
+        for name, force in self._execution.conduct.forces.items():
+            resource = self._execution.automaton.variables[name].resource
+            yield FORCED.cause(
+                name,
+                {
+                    "variable": name,
+                    "value": print_value(force.value),
+                    "by": force.by,
+                    "why": force.why,
+                    "consequence": message("forced.ignored") if started else message("forced.later"),
+                },
+                resources=[] if resource is None else [resource],
+            )
 
     def check(self, command: ForceVariable) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""

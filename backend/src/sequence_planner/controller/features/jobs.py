@@ -1,20 +1,27 @@
-"""Handler of job commands, and the record of ended jobs until their durable acknowledgement."""
+"""Jobs: their commands, what is shown of them, and what they consist of."""
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from sequence_planner.automaton.automaton import Automaton, WorkMaster, target
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.alarms.manager import AlarmManager
+from sequence_planner.controller.commands.command import CommandRefused, answers, handles
 from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
+from sequence_planner.controller.commands.queries import AboutWorkMasters
+from sequence_planner.controller.features.tasks import TaskHandler
+from sequence_planner.controller.recovery.explain import ConditionContext
+from sequence_planner.controller.recovery.explain import waits_for as start_waits_for
+from sequence_planner.controller.views.automaton_diagram import work_masters_view
+from sequence_planner.controller.views.details import WorkMastersView
+from sequence_planner.controller.views.jobs import Around, job_views, waits_for
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.execution.events import Heard
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job, JobAct, Jobs, Step, Waits
+from sequence_planner.execution.vocabulary import JobState
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.texts.message import Message
 
 # Jobs, as they are ordered: what is asked for is done if the station allows it now, or refused with the reason.
 
@@ -122,6 +129,11 @@ class JobHandler:
             raise CommandRefused("jobs-under-way", "Jobs are under way", detail)
         self._execution.set_by_order(command.on, command.actor.name, command.reason, moment)
 
+    @answers(AboutWorkMasters)
+    def work_masters(self, query: AboutWorkMasters) -> WorkMastersView:
+        """All work masters of the station, and what its abilities write."""
+        return work_masters_view(self._automaton)
+
     def _known(self, name: str) -> Job:
         job = self._jobs.get(name)
         if job is None:
@@ -147,29 +159,56 @@ def _listed(names: list[str]) -> str:
     return some if len(names) <= 3 else f"{some} and {len(names) - 3} more"
 
 
-# The jobs as far as they are durable: whoever ordered one puts it away once it is told that it has ended.
-#
-# Were that told before its record is on the disk, a controller that is killed in between would begin the job's last
-# operations again, and nobody would ask for them any more.
+# What is shown of jobs, as far as they are durable, and what they wait for.
 
 
-class KeptJobs:
-    """Listens to `execution`, after whoever writes its records; `recorded` is the number of the last one."""
+class JobViews:
+    """The jobs of `execution` as they are `durable`; what they wait for is said from what is known around them.
 
-    def __init__(self, execution: Executor, recorded: Callable[[], int]) -> None:
+    `held_up` names the active operations that cannot be completed while some resources do nothing.
+    """
+
+    def __init__(
+        self,
+        execution: Executor,
+        durable: Callable[[], Jobs],
+        tasks: TaskHandler,
+        alarms: AlarmManager,
+        is_controlled: Callable[[], bool],
+        held_up: Callable[[Collection[str]], frozenset[str]],
+        conditions: ConditionContext,
+    ) -> None:
         self._execution = execution
-        self._recorded = recorded
-        self._kept = self._newest = execution.conduct.jobs
-        self._waiting: deque[tuple[int, Jobs]] = deque()
-        execution.listeners.append(self._hear)
+        self._durable = durable
+        self._tasks, self._alarms, self._is_controlled = tasks, alarms, is_controlled
+        self._held_up, self._conditions = held_up, conditions
 
-    def up_to(self, durable: int) -> Jobs:
-        """As they are where all records up to this number are durable."""
-        while self._waiting and self._waiting[0][0] <= durable:
-            _, self._kept = self._waiting.popleft()
-        return self._kept
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        jobs = self._durable()
+        return {"by_order": jobs.by_order, "jobs": job_views(self._execution, jobs, self._around(moment))}
 
-    def _hear(self, heard: Heard) -> None:
-        if self._execution.conduct.jobs is not self._newest:
-            self._newest = self._execution.conduct.jobs
-            self._waiting.append((self._recorded(), self._newest))
+    def waits(self, moment: Timestamp) -> dict[str, list[Message]]:
+        """What jobs wait for that are to go on."""
+        self._alarms.current(moment)
+        around, told = self._around(moment), (JobState.WAITING, JobState.RUNNING)
+        jobs = [job for job in self._execution.conduct.jobs.under_way if job.state in told]
+        return {job.id: waits_for(self._execution, job, around) for job in jobs}
+
+    def _around(self, moment: Timestamp) -> Around:
+        execution, ahead = self._execution, self._execution.plan.order.ahead
+        name = ahead[0].ability if ahead and execution.conduct.jobs.under_way else None
+        waits = (
+            []
+            if name is None
+            else start_waits_for(execution, name, self._conditions.feeds, self._conditions.guards().get(name))
+        )
+        return Around(
+            moment.monotonic,
+            self._held_up,
+            self._tasks.open,
+            self._tasks.problems,
+            self._alarms.shown,
+            next_waits=tuple(waits),
+            controlled=self._is_controlled(),
+        )

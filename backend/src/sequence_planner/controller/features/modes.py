@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from collections.abc import Callable, Mapping
+
+from sequence_planner.controller.alarms.manager import AlarmManager
+from sequence_planner.controller.commands.audit import StandingNotes, Tell
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.execution import (
     Deploy,
     EnterRestart,
@@ -14,26 +17,71 @@ from sequence_planner.controller.commands.execution import (
     StartProduction,
     TakeStep,
 )
-from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.io.devices import Devices
+from sequence_planner.controller.io.links import DeviceLinks
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
+from sequence_planner.controller.views.execution import failing, goes_on, packml, service_views, standing
+from sequence_planner.controller.views.station import PackML, StationStanding
 from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
+from sequence_planner.texts.message import Message
 
 
 class Modes:
-    """Takes commands about how `execution` executes."""
+    """Takes commands about how `execution` executes, and says how the station stands.
+
+    `alarms` say what fails, `waits` what jobs wait for. `tell` hears how it stands where that has changed for good.
+    """
 
     def __init__(
-        self, execution: Executor, outside: SafeStateMonitor, devices: Devices, doubting: ConsistencyMonitor
+        self,
+        execution: Executor,
+        outside: SafeStateMonitor,
+        devices: Devices,
+        links: DeviceLinks,
+        doubting: ConsistencyMonitor,
+        alarms: AlarmManager,
+        waits: Callable[[Timestamp], Mapping[str, list[Message]]],
+        tell: Tell,
     ) -> None:
         self._execution = execution
         self._outside = outside
-        self._devices = devices
+        self._devices, self._links = devices, links
         self._doubting = doubting
+        self._alarms = alarms
+        self._waits = waits
+        self._notes = StandingNotes(tell)
+
+    @property
+    def packml(self) -> PackML:
+        """The state that PackML has for it now."""
+        return packml(self._execution) if self._devices.network.commands else PackML.RESETTING
+
+    def goes_on(self) -> bool:
+        """Return whether anything starts by itself."""
+        return goes_on(self._execution, self._outside.certain)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        execution, silent = self._execution, self._links.silent
+        commands, fail = self._devices.network.commands, failing(execution.automaton, self._alarms.shown)
+        return {
+            "mode": execution.mode,
+            "packml": self.packml,
+            "standing": standing(execution, self._outside.certain, silent) if commands else StationStanding.PREPARING,
+            "failing": [title for title in fail if title not in silent],
+            "stepping": execution.conduct.stepping,
+            "production": execution.production if commands else Production.PREPARING,
+            "out_of_service": service_views(execution.automaton, execution.conduct),
+        }
+
+    def note_standing(self, moment: Timestamp) -> None:
+        """Write down how the station stands, where that has changed for good."""
+        if self._devices.network.commands and self._notes.due(moment):
+            self._notes.look(self.packml, self._waits(moment), moment)
 
     @handles(SetMode)
     def set_mode(self, command: SetMode, moment: Timestamp) -> None:
@@ -89,12 +137,6 @@ class Modes:
             command.of, command.name, command.in_service, command.actor.name, command.reason, moment
         )
 
-    @handles(StopOperatorPlan)
-    def stop_operator_plan(self, command: StopOperatorPlan, moment: Timestamp) -> None:
-        """End what is carried out, if anything is."""
-        if self._execution.operator_plan is not None:
-            self._execution.stop_operator_plan(command.actor.name, moment)
-
     @handles(StartProduction)
     def start_production(self, command: StartProduction, moment: Timestamp) -> None:
         """Start it, where nobody else commands the devices and none would move at once."""
@@ -115,7 +157,7 @@ class Modes:
         """Let another model take over (which the process does, as this controller ends) where nothing is started."""
         execution = self._execution
         if execution.operator_plan is not None:
-            raise plan_running(execution.operator_plan)
+            raise plan_running(execution.operator_plan.title)
         if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
             detail = "Operations are executed automatically. Pause the station first."
             raise CommandRefused("in-automatic", "The station is at work", detail)
@@ -127,7 +169,7 @@ class Modes:
             detail = "Leave restart mode first; to go on is another decision."
             raise CommandRefused("in-restart", "The station is in restart mode", detail)
         if execution.operator_plan is not None:
-            raise plan_running(execution.operator_plan)
+            raise plan_running(execution.operator_plan.title)
         if situation is not None and situation.certain:
             detail = f"{self._outside.describe(situation)} Enter restart mode and see which ways lead back."
             raise CommandRefused("outside-safe-states", "The station is outside its safe states", detail)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 from pydantic import JsonValue
 
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.kinds import KEPT_BESIDE, UNJOURNALLED, UNRECORDED, Cause
 from sequence_planner.controller.features.failures import Failures
-from sequence_planner.controller.features.jobs import KeptJobs
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.output_gate import OutputGate
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
+from sequence_planner.execution.events import Heard
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Jobs
 from sequence_planner.execution.record.recorder import RunRecorder, model_digest
@@ -54,6 +57,9 @@ class Records:
         self._jobs = KeptJobs(execution, lambda: self.recorder.last)
         self._kept = 0, ""  # what was asked for and is beside the journal, up to that record
         self._was_behind = False
+        self._consequences = Consequences(execution)
+        self.unrecorded: str | None = None
+        """Why commands cannot be recorded."""
 
     @property
     def newest(self) -> int:
@@ -90,6 +96,10 @@ class Records:
         number, what = self._kept
         return what if number > self.writer.durable else None
 
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        yield from unwritten(self._consequences, self.trouble, self.unrecorded, self.beside)
+
     def note_kept(self, number: int, what: str) -> None:
         """Note that what was asked for is kept beside the journal until that has the record of this number."""
         self._kept = number, what
@@ -117,3 +127,43 @@ class Records:
         self._failures.attempt("sending commands", partial(self.gate.durable, self.writer.durable))
         if (self.trouble is not None) != self._was_behind:
             self._wake()
+
+
+def unwritten(
+    consequences: Consequences, unjournalled: str | None, unrecorded: str | None, beside: str | None
+) -> Iterator[Cause]:
+    """The causes of alarms of what cannot be written: what happens, commands, and what is only `beside` the journal."""
+    if unjournalled is not None:
+        yield UNJOURNALLED.cause("", {"why": unjournalled, "waiting": consequences.standstill()})
+    if unrecorded is not None:
+        yield UNRECORDED.cause("", {"why": unrecorded}, follows=(UNJOURNALLED.key(),))
+    if beside is not None:
+        yield KEPT_BESIDE.cause("", {"what": beside})
+
+
+# The jobs as far as they are durable: whoever ordered one puts it away once it is told that it has ended.
+#
+# Were that told before its record is on the disk, a controller that is killed in between would begin the job's last
+# operations again, and nobody would ask for them any more.
+
+
+class KeptJobs:
+    """Listens to `execution`, after whoever writes its records; `recorded` is the number of the last one."""
+
+    def __init__(self, execution: Executor, recorded: Callable[[], int]) -> None:
+        self._execution = execution
+        self._recorded = recorded
+        self._kept = self._newest = execution.conduct.jobs
+        self._waiting: deque[tuple[int, Jobs]] = deque()
+        execution.listeners.append(self._hear)
+
+    def up_to(self, durable: int) -> Jobs:
+        """As they are where all records up to this number are durable."""
+        while self._waiting and self._waiting[0][0] <= durable:
+            _, self._kept = self._waiting.popleft()
+        return self._kept
+
+    def _hear(self, heard: Heard) -> None:
+        if self._execution.conduct.jobs is not self._newest:
+            self._newest = self._execution.conduct.jobs
+            self._waiting.append((self._recorded(), self._newest))

@@ -9,45 +9,26 @@ but that people are told of it, until the task is over or somebody says that it 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from sequence_planner.automaton.automaton import Automaton, State
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.alarms.kinds import PROBLEM, Cause
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
     AcknowledgeTask,
-    ProblemKind,
     ReportProblem,
     SolveProblem,
     TaskCommand,
+    TaskProblem,
+    WaitingTask,
 )
+from sequence_planner.controller.views.station import TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
+from sequence_planner.texts.message import Argument, Message, message
 
-
-@dataclass(frozen=True)
-class WaitingTask:
-    """A task that waits for a person; `created` in seconds since the epoch."""
-
-    id: str
-    revision: int
-    ability: str
-    title: str
-    text: str
-    created: float
-
-
-@dataclass(frozen=True)
-class TaskProblem:
-    """An obstacle that keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if
-    told.
-    """
-
-    by: str
-    since: float
-    why: str
-    what: ProblemKind | None = None
+_NEXT_MOVES = 2  # coming steps that a task names as what moves next
 
 
 class TaskHandler:
@@ -122,3 +103,64 @@ class TaskHandler:
                 f"Task {id_} is at revision {task.revision}, and revision {revision} was seen. Read it again.",
             )
         return task
+
+
+class OpenTasks:
+    """Those of `tasks` that are open at `execution`, and the alarms of those that somebody cannot do.
+
+    `goes_on` says whether anything starts by itself, and `waiting` what waits for a resource.
+    """
+
+    def __init__(
+        self,
+        execution: Executor,
+        tasks: TaskHandler,
+        goes_on: Callable[[], bool],
+        waiting: Callable[[str], Message],
+    ) -> None:
+        self._execution, self._tasks = execution, tasks
+        self._goes_on, self._waiting = goes_on, waiting
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        if not self._tasks.open:
+            return {"tasks": {}}
+        abilities = self._execution.automaton.abilities
+        names = self._execution.plan.order.names if self._goes_on() else ()
+        moves = [abilities[name].title for name in names if abilities[name].human is None]
+        views = {
+            id_: TaskView(
+                revision=task.revision,
+                resource=abilities[task.ability].resource,
+                ability=task.ability,
+                title=task.title,
+                text=task.text,
+                created=task.created,
+                next_moves=moves[:_NEXT_MOVES],
+                problem=_problem(self._tasks.problems.get(id_)),
+            )
+            for id_, task in self._tasks.open.items()
+        }
+        return {"tasks": views}
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """One cause of an alarm for each."""
+        for task, problem in self._tasks.problems.items():
+            ability = self._execution.automaton.abilities[self._tasks.open[task].ability]
+            what = None if problem.what is None else message(f"problem.{problem.what}")
+            said: Argument = message("problem-both", what=what, why=problem.why) if what and problem.why else ""
+            said = said or what or problem.why
+            yield PROBLEM.cause(
+                task,
+                {
+                    "by": problem.by,
+                    "ability": message("quoted", title=ability.title),
+                    "what": message("problem-said", said=said) if said else "",
+                    "waiting": self._waiting(ability.resource),
+                },
+                resources=[ability.resource],
+            )
+
+
+def _problem(problem: TaskProblem | None) -> TaskProblemView | None:
+    return None if problem is None else TaskProblemView.model_validate(problem, from_attributes=True)

@@ -12,29 +12,54 @@ from pydantic import ValidationError
 
 from sequence_planner.automaton.automaton import State
 from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.controller.io.requests import RequestMaker
 from sequence_planner.core.data_models import in_a_line
+from sequence_planner.language.types import Value
+from sequence_planner.pipelines.chain_runtime import RunningOutgoing
 from sequence_planner.pipelines.graph import (
     STATUS_FIELD,
     STATUS_TYPE,
     ActionUse,
     GoalState,
     IncomingPipeline,
+    OutgoingPipeline,
     PipelineView,
     ServiceUse,
     StationPipelines,
 )
-from sequence_planner.ros.actions import (
-    AcceptedGoal,
-    ActionClient,
-    ActionNames,
-    GoalRejectedError,
-    GoalStatus,
-    Values,
-)
+from sequence_planner.ros.actions import AcceptedGoal, ActionClient, ActionNames, GoalRejectedError, GoalStatus, Values
 from sequence_planner.ros.transport import NetworkEndpoint, Sample, Transport, TransportError
 from sequence_planner.ros.types.errors import MalformedMessageError, MessageValueError
 from sequence_planner.ros.types.messages import MessageRegistry
+
+# Requests and goals from the state, as outgoing messages are made.
+
+
+class RequestMaker:
+    """Makes one message each time it is asked, at once or when the stages let it through."""
+
+    def __init__(self, pipeline: OutgoingPipeline) -> None:
+        self._pipeline = pipeline
+        self.running = RunningOutgoing(pipeline)
+        self._said: tuple[Value | None, ...] | None = None
+
+    def begin(self) -> None:
+        """A message is wanted: `next_message` makes it, now or later."""
+        self._said = None
+
+    def next_message(self, state: State, now: float) -> dict[str, object] | None:
+        """The fields of the message that is wanted; None when stages hold it back, until they do not."""
+        said = tuple([state[name] for name in self._pipeline.variables])
+        if said != self._said:
+            self._said = said
+            return self.running.take(state, now)
+        due = self.running.chain.due
+        made = list(self.running.wake(now)) if due is not None and due <= now else []
+        return made[-1] if made else None
+
+    def close(self) -> None:
+        """End what stages have started beside. May be repeated."""
+        self.running.chain.close()
+
 
 # Decisions about the calls of a service: for each rise of an output, every so often, and one at a time.
 #
@@ -203,7 +228,7 @@ class GoalClient:
     def heed(self, state: State, now: float) -> None:
         """The state is so now: send a goal or cancel it, if that is wanted."""
         self._do(self._course.heed(state[self._use.when] is True))
-        if self._making and (message := self.maker.message(state, now)) is not None:
+        if self._making and (message := self.maker.next_message(state, now)) is not None:
             self._making = False
             self._begin(self._carry_out(message))
 
@@ -349,7 +374,7 @@ class ServiceClient:
         if not self._making:
             self.maker.begin()
             self._making = True
-        message = self.maker.message(state, now)
+        message = self.maker.next_message(state, now)
         if message is None:
             return
         self._making = False

@@ -8,21 +8,19 @@ from collections.abc import Callable, Container, Iterator, Sequence
 import structlog
 
 from sequence_planner.automaton.automaton import State
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.alarms.kinds import NOT_EMULATED, Cause
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inbox, Inputs
-from sequence_planner.controller.io.monitor import Observing, record_view
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.io.overrides import Overrides
-from sequence_planner.controller.views.pipelines import FlowsView, RecordView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.pipelines.graph import PipelineView
 from sequence_planner.ros.qos import QualityEvent
 from sequence_planner.ros.transport import Sample, TellsServices, Transport
 from sequence_planner.simulation.manual_interface import NODE as EMULATED_DEVICES
 from sequence_planner.station import ReadyStation
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import as_it_was, message
 
 LOG = structlog.get_logger(__name__)
 
@@ -42,7 +40,8 @@ class Devices:
         self.clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
         self.commander = Outputs(pipelines.outgoing, registry, transport)
         self.overrides = Overrides(pipelines, self.feeds, self.commander, self.clients)
-        self._observing = Observing()
+        self.unemulated: Sequence[str] = ()
+        """Why there are no emulated devices though there should be."""
         self._next_graph = 0.0
         self._awaited = frozenset(self.feeds.expected)
         transport.watch(self._hear_quality)
@@ -119,26 +118,14 @@ class Devices:
         owed = [message("waits.command", topic=topic) for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
-    def flows(self, among: Container[str] | None = None) -> FlowsView:
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        if self.unemulated:
+            parts = [*map(as_it_was, self.unemulated)]
+            yield NOT_EMULATED.cause("", {"why": self.unemulated[0]}, parts=parts, past_parts=parts)
+
+    def traffic(self, among: Container[str] | None) -> dict[str, PipelineView]:
         """Return what has passed the pipelines, or those `among` these."""
-        return self._observing.view(self._observed(among), Timestamp.now())
-
-    def record(self, pipeline: str) -> RecordView:
-        """The last record of a pipeline. Raises `CommandRefused` where there is none that can be told."""
-        found = self._observed({pipeline}).get(pipeline)
-        if found is None:
-            raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
-        try:
-            record = record_view(found, Timestamp.now())
-        except ValueError as error:
-            detail = f"The last record of `{pipeline}` is too large to be told: {error}."
-            raise CommandRefused("record-too-large", "The record is too large", detail, 422) from None
-        if record is None:
-            detail = f"Nothing has passed `{pipeline}` since the controller began. Try again when something has."
-            raise CommandRefused("no-record", "There is no record", detail, 409)
-        return record
-
-    def _observed(self, among: Container[str] | None) -> dict[str, PipelineView]:
         outgoing = self.commander.observed(among) | self.clients.observed(among)
         return self.feeds.observed(among) | outgoing
 

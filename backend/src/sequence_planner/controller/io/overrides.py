@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.execution import ClearOverride, SetOverride
 from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inputs

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import Final
 
 import structlog
 
+from sequence_planner.controller.alarms.kinds import RESTLESS, Cause
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.features.tasks import TaskHandler
@@ -21,12 +23,13 @@ from sequence_planner.ros.transport import Sample
 
 LOG = structlog.get_logger(__name__)
 
+TICKS: Final = (0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 1.0)  # seconds
 MOST_TICKS = 100  # in a row without anything new; then the station is taken to be restless
 
 
 class Ticker:
-    """Takes the ticks of `execution` that are due; `took` is how long each was, and `wake` is
-    called when one is due at once.
+    """Takes the ticks of `execution` that are due; `took` is how long each was, and `wake` is called when one is due at
+    once.
 
     A tick that raises has not happened, and is tried again at the next look at the clock.
     """
@@ -38,11 +41,11 @@ class Ticker:
         tasks: TaskHandler,
         records: Records,
         failures: Failures,
-        took: Distribution,
         wake: Callable[[], None],
     ) -> None:
         self._execution, self._devices, self._tasks, self._records = execution, devices, tasks, records
-        self._failures, self._took, self._wake = failures, took, wake
+        self._failures, self._wake = failures, wake
+        self.took = Distribution(TICKS)
         self._measured: dict[str, Value | None] = {}
         self._again = False
         self._due = True  # a tick is wanted whatever the measurements say
@@ -71,6 +74,11 @@ class Ticker:
             self._attempt(part, moment, part[-1].received)
         self._attempt((), moment, moment.monotonic)
 
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        if self.restless:
+            yield RESTLESS.cause("", {"abilities": ", ".join(self.restless)})
+
     def _attempt(self, samples: Sequence[Sample], moment: Timestamp, monotonic: float) -> None:
         self._failures.attempt("a tick", lambda: self._tick(samples, moment, monotonic))
 
@@ -89,7 +97,7 @@ class Ticker:
         self._due = True  # until it is done
         began = time.perf_counter()
         outcome = execution.tick(measured, moment, obstacles, silent)
-        self._took.note(time.perf_counter() - began)
+        self.took.note(time.perf_counter() - began)
         self._due = outcome.changed  # what a tick changed can make another possible at once
         self._again = self._again or self._due
         self._in_a_row = self._in_a_row + 1 if outcome.changed and not news else 0

@@ -2,50 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 
 from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
-from sequence_planner.controller.commands.command import Command
+from sequence_planner.controller.commands.bus import Handler
 from sequence_planner.controller.features.approvals import Approvals
 from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.forces import Forces
 from sequence_planner.controller.planner_client import AdvisorClient
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
-from sequence_planner.controller.recovery.explain import ConditionContext
+from sequence_planner.controller.recovery.explain import ConditionContext, TellsBelief
 from sequence_planner.controller.recovery.proposals import Offers
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.recovery.trials import Trials
 from sequence_planner.controller.recovery.why_not import WhyNot
-from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
-
-
-@dataclass(frozen=True)
-class Recovery:
-    """The features, and who answers why something does not start."""
-
-    corrections: Corrections
-    offers: Offers
-    trials: Trials
-    forces: Forces
-    approvals: Approvals
-    why_not: WhyNot
+from sequence_planner.synthesis.guards import SupervisorGuard
 
 
 def build_recovery(
     execution: Executor,
     adviser: AdvisorClient,
-    beliefs: Beliefs,
+    beliefs: TellsBelief,
     consistency: ConsistencyMonitor,
     still: StallDetector,
     in_control: ControlLock,
-    around: ConditionContext,
+    feeds: Mapping[str, str],
+    since: Callable[[str], float | None],
+    guards: Callable[[], Mapping[str, SupervisorGuard]],
     real_devices: Callable[[], Sequence[str]],
-    perform: Callable[[Command, Timestamp], None],
-) -> Recovery:
-    """Build them. `perform` carries out what two people have agreed on."""
+    perform: Handler,
+) -> tuple[ConditionContext, Forces, Approvals, tuple[object, ...]]:
+    """Build what explanations draw on, the features that build.py names, and all others.
+
+    `perform` carries out what two people have agreed on.
+    """
+    around = ConditionContext(feeds, since, beliefs, guards)
     forces = Forces(execution)
 
     def require_feasible(command: ApprovedCommand) -> None:
@@ -55,12 +48,7 @@ def build_recovery(
             corrections.check(command)
 
     approvals = Approvals(execution, in_control, require_feasible, perform)
-    corrections = Corrections(execution, adviser, beliefs, consistency, approvals.require_one)
-    return Recovery(
-        corrections=corrections,
-        offers=Offers(execution, adviser, corrections, consistency.impossible, still),
-        trials=Trials(execution, around, real_devices),
-        forces=forces,
-        approvals=approvals,
-        why_not=WhyNot(execution, around, adviser),
-    )
+    corrections = Corrections(execution, adviser.answer, beliefs, consistency, approvals.require_one)
+    offers = Offers(execution, adviser, corrections.correct, consistency.impossible, still)
+    others = (corrections, offers, Trials(execution, around, real_devices), WhyNot(execution, around, adviser))
+    return around, forces, approvals, others

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Protocol
+from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
-from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.dependencies import looked_at, read_variables
 from sequence_planner.automaton.tick import record_activity, supervised_start, update_operations
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused, GivenValue
+from sequence_planner.controller.commands.command import CommandRefused, GivenValue, answers, handles
+from sequence_planner.controller.commands.queries import AskCorrection
 from sequence_planner.controller.commands.recovery import (
     ConfirmEstimates,
     CorrectEstimates,
     DecideOutputs,
     UndoCorrection,
 )
-from sequence_planner.controller.recovery.consistency import Beliefs, ConsistencyMonitor
+from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
+from sequence_planner.controller.recovery.explain import TellsBelief
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.details import CorrectedView, CorrectionPreview
 from sequence_planner.controller.views.station import LastCorrectionView, SpecificationView
@@ -28,7 +28,6 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import suggestion
-from sequence_planner.language.syntax import Expression
 from sequence_planner.language.types import Value, contains
 from sequence_planner.planning.problem import Contract, Goal, PlanAnswer, PlanRequest, Verdict, goal_of
 from sequence_planner.planning.recovery_path import violated
@@ -47,27 +46,54 @@ _WHY_NONE = {
 }
 
 
-class PlansOnRequest(Protocol):
-    """The planner of what people ask for, whoever that is."""
-
-    async def answer(self, request: PlanRequest, deadline: float) -> PlanAnswer:
-        """Return what is found within so many seconds. Raises `CommandRefused`."""
-        ...
+def _specification(automaton: Automaton, name: str) -> SpecificationView:
+    return SpecificationView(name=name, title=automaton.specifications[name].title)
 
 
-class Previewing:
-    """Looks at what `execution` would be like."""
+# Corrections of what is believed, and what a person decides about outputs that came back.
+#
+# A correction writes estimates and nothing else. It is shown with all that follows before it is made, is refused when
+# the state has moved since, and can be taken back in one step.
+
+
+class Corrections:
+    """Takes corrections of the estimates of `execution`; `require_one` refuses what a second person has to approve."""
 
     def __init__(
-        self, execution: Executor, adviser: PlansOnRequest, beliefs: Beliefs, doubting: ConsistencyMonitor
+        self,
+        execution: Executor,
+        plan: Callable[[PlanRequest, float], Awaitable[PlanAnswer]],
+        beliefs: TellsBelief,
+        doubting: ConsistencyMonitor,
+        require_one: Callable[[Iterable[str]], None],
     ) -> None:
         self._execution = execution
-        self._adviser = adviser
-        self._beliefs = beliefs
+        self._require_one = require_one
         self._doubting = doubting
+        self._plan, self._beliefs = plan, beliefs
+        self._last: LastCorrectionView | None = None
+        self._stayed = False  # what was corrected is so ever since
+        self._answered_before = frozenset[str]()  # what somebody had said of these before the last correction
+        execution.listeners.append(self._hear)
 
-    async def preview(self, values: Mapping[str, Value], obstacle: str | None) -> CorrectionPreview:
-        """All of it. Without a planner it says why there is no plan, and the rest all the same."""
+    @property
+    def last(self) -> LastCorrectionView | None:
+        """The last correction; None if there was none, or it was taken back."""
+        if self._last is None:
+            return None
+        return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"last_correction": self.last}
+
+    @answers(AskCorrection)
+    async def preview(self, query: AskCorrection) -> CorrectionPreview:
+        """Return what the correction would bring about. Raises `CommandRefused`.
+
+        Without a planner it says why there is no plan, and the rest all the same.
+        """
+        refusal, values = correcting_refused(self._execution), self._estimates(query.values)
         execution, automaton, revision = self._execution, self._execution.automaton, self._execution.revision
         now, then = execution.state, execution.corrected(values)
         active = update_operations(automaton, then, execution.active)
@@ -95,7 +121,7 @@ class Previewing:
             left_out=[],
             reason="",
             reason_message=None,
-            obstacle=obstacle,
+            obstacle=None if refusal is None else refusal.detail,
         )
         goals = self._goals(active)
         if not goals:
@@ -109,7 +135,7 @@ class Previewing:
             state, goals, deadline=PLANNED_WITHIN, contract=Contract.FAST, circumstances=circumstances
         )
         try:
-            answer = await self._adviser.answer(request, PLANNED_WITHIN + WAITING)
+            answer = await self._plan(request, PLANNED_WITHIN + WAITING)
         except CommandRefused as refused:
             return _why(message("preview.refused", title=refused.title, detail=refused.detail))
         if answer.plan is None:
@@ -142,7 +168,7 @@ class Previewing:
     def _related(self, name: str) -> Iterator[str]:
         """Yield what is measured that abilities look at before they write the estimate."""
         automaton, state = self._execution.automaton, self._execution.state
-        guards = [guard for ability in automaton.abilities.values() for guard in _guards(ability, name)]
+        guards = [guard for ability in automaton.abilities.values() for guard in looked_at(ability, name)]
         read = read_variables(automaton, guards)
         for measured in [each for each in automaton.names(Kind.MEASURED) if each in read][:MOST_RELATED]:
             value = state[measured]
@@ -150,71 +176,6 @@ class Previewing:
                 yield message("value.unknown", name=measured)
             else:
                 yield value_text(automaton, measured, value)
-
-
-def _why(reason: Message) -> dict[str, object]:
-    return {"reason": str(reason), "reason_message": reason}
-
-
-def _guards(ability: Ability, name: str) -> Iterator[Expression]:
-    """Yield what the ability looks at when it writes the variable."""
-    starts = [action for action in ability.start_actions if target(action) == name]
-    finishes = [action for action in ability.finish_actions if target(action) == name]
-    if starts:
-        yield from (ability.enabled, ability.start_guard)
-    if finishes and ability.finish_guard is not None:
-        yield ability.finish_guard
-    for action in (*starts, *finishes):
-        yield action.value
-        if action.condition is not None:
-            yield action.condition
-
-
-def _specification(automaton: Automaton, name: str) -> SpecificationView:
-    return SpecificationView(name=name, title=automaton.specifications[name].title)
-
-
-# Corrections of what is believed, and what a person decides about outputs that came back.
-#
-# A correction writes estimates and nothing else. It is shown with all that follows before it is made, is refused when
-# the state has moved since, and can be taken back in one step.
-
-
-class Corrections:
-    """Takes corrections of the estimates of `execution`; `require_one` refuses what a second person has to approve."""
-
-    def __init__(
-        self,
-        execution: Executor,
-        adviser: PlansOnRequest,
-        beliefs: Beliefs,
-        doubting: ConsistencyMonitor,
-        require_one: Callable[[Iterable[str]], None],
-    ) -> None:
-        self._execution = execution
-        self._require_one = require_one
-        self._doubting = doubting
-        self._previewing = Previewing(execution, adviser, beliefs, doubting)
-        self._last: LastCorrectionView | None = None
-        self._stayed = False  # what was corrected is so ever since
-        self._answered_before = frozenset[str]()  # what somebody had said of these before the last correction
-        execution.listeners.append(self._hear)
-
-    @property
-    def last(self) -> LastCorrectionView | None:
-        """The last correction; None if there was none, or it was taken back."""
-        if self._last is None:
-            return None
-        return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
-
-    def view_part(self, moment: Timestamp) -> dict[str, object]:
-        """Its part of the view."""
-        return {"last_correction": self.last}
-
-    async def preview(self, values: Mapping[str, GivenValue]) -> CorrectionPreview:
-        """Return what the correction would bring about. Raises `CommandRefused`."""
-        obstacle = correcting_refused(self._execution)
-        return await self._previewing.preview(self._estimates(values), None if obstacle is None else obstacle.detail)
 
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""
@@ -344,3 +305,7 @@ def _other_kind(name: str, is_: Kind, wanted: Kind) -> CommandRefused:
 def _moved() -> CommandRefused:
     detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
     return CommandRefused("stale-revision", "The state has moved", detail)
+
+
+def _why(reason: Message) -> dict[str, object]:
+    return {"reason": str(reason), "reason_message": reason}

@@ -17,15 +17,19 @@ from pydantic import JsonValue
 
 from sequence_planner.automaton.automaton import Ability, Kind, State
 from sequence_planner.automaton.reactions import Reactions
+from sequence_planner.controller.alarms.kinds import BY_HAND, Cause
+from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
+from sequence_planner.language.printer import print_value
 from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.graph import GOAL_ON_ITS_WAY, StationPipelines
+from sequence_planner.texts.message import Message, message
 
-KIND: Final = "by-hand"  # of the records
+KIND: Final = BY_HAND.name  # of the records
 LATENCY: Final = 2.0  # seconds for which a device may act on what it was told before, and that be on its way
 STAYS: Final = 120.0  # seconds for which a notice stays after the station has gone on
 LONGEST: Final = 900.0  # seconds for which it stays at most
@@ -82,6 +86,29 @@ class ByHand:
         """Return what people are told of now, the last of each resource."""
         self._moved = {name: moved for name, moved in self._moved.items() if moved.lasts(monotonic)}
         return list(self._moved.values())
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """One cause of an alarm for each resource that was last moved by hand."""
+        automaton = self._execution.automaton
+        for moved in self.notices(moment.monotonic):
+            values = [
+                message("by-hand.value", value=value_text(automaton, name, after), before=print_value(before))
+                for name, (before, after) in moved.values.items()
+            ]
+            resource = automaton.resources.get(moved.resource, moved.resource)
+            yield BY_HAND.cause(
+                moved.resource,
+                {"resource": resource, "values": values, "went_on": self._how(moved)},
+                resources=[moved.resource],
+            )
+
+    def _how(self, moved: Moved) -> Message:
+        if moved.by is None:
+            return message("by-hand.nothing")
+        title = message("quoted", title=self._execution.automaton.abilities[moved.by].title)
+        if moved.how is WentOn.EXECUTES:
+            return message("by-hand.executes", ability=title)
+        return message("by-hand.finished" if moved.how is WentOn.FINISHED else "by-hand.started", ability=title)
 
     def _hear(self, heard: Heard) -> None:
         happening, outcome = heard.happening, heard.outcome

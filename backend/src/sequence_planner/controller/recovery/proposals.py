@@ -9,26 +9,23 @@ from __future__ import annotations
 import asyncio
 import itertools
 import secrets
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, answers, handles
+from sequence_planner.controller.commands.queries import AskAdvice, AskGoal, AskReset
 from sequence_planner.controller.commands.recovery import CorrectEstimates, ExecuteOperatorPlan
 from sequence_planner.controller.io.inputs import LastKnown
-from sequence_planner.controller.planner_client import AIMED_WITHIN, WAITING, AdvisorClient, aim
+from sequence_planner.controller.planner_client import AIMED_WITHIN, GOAL, WAITING, AdvisorClient, GoalPlan, aim
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
 from sequence_planner.controller.views.wording import (
     diagnosis_view,
-    no_plan,
     offer_title,
     offer_view,
     plan_running,
     read_predicate,
     refusal_of,
-    require_confirmation,
 )
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
@@ -48,14 +45,6 @@ LONGER = 5.0  # seconds for advice where in less nothing was found but what a pe
 MOST_KEPT = 64  # offers; older ones are gone
 
 
-class CorrectionDesk(Protocol):
-    """The one who makes corrections, whoever that is."""
-
-    def correct(self, command: CorrectEstimates, moment: Timestamp) -> None:
-        """Make it. Raises `CommandRefused`; nothing has changed then."""
-        ...
-
-
 @dataclass(frozen=True)
 class _Kept:
     offer: RecoveryProposal
@@ -69,7 +58,7 @@ class _Asked:
 
 
 class Offers:
-    """Asks for offers about `execution`, and carries out those that are taken.
+    """Asks for offers about `execution`, and carries out those that are taken; `correct` makes their corrections.
 
     `impossible` says which values of estimates cannot go together with which of other variables, and `still` which
     devices do nothing: what alarms tell, nobody counts on.
@@ -79,13 +68,13 @@ class Offers:
         self,
         execution: Executor,
         adviser: AdvisorClient,
-        corrections: CorrectionDesk,
+        correct: Callable[[CorrectEstimates, Timestamp], None],
         impossible: Callable[[], frozenset[Pairing]],
         still: StallDetector,
     ) -> None:
         self._execution = execution
         self._adviser = adviser
-        self._corrections = corrections
+        self._correct = correct
         self._impossible = impossible
         self._last_known = LastKnown(execution)
         self._still = still
@@ -95,7 +84,8 @@ class Offers:
         self._asked: _Asked | None = None
         self._advised: tuple[int, AdviceRequest, AdviceView] | None = None
 
-    async def advice(self) -> AdviceView:
+    @answers(AskAdvice)
+    async def advice(self, query: AskAdvice) -> AdviceView:
         """Ways on from the present state. Raises `CommandRefused`."""
         self._require_no_operator_plan()
         execution, revision = self._execution, self._execution.revision
@@ -140,21 +130,23 @@ class Offers:
         self._advised = revision, request, view
         return view
 
-    async def goal(self, predicate: str) -> OfferView:
+    @answers(AskGoal)
+    async def goal(self, query: AskGoal) -> OfferView:
         """A plan to whatever an engineer wants to hold. Raises `CommandRefused`."""
-        target = read_predicate(self._execution.automaton, predicate)
+        target = read_predicate(self._execution.automaton, query.predicate)
         if holds(target, self._execution.state):
             detail = "It holds already: nothing has to be done for it."
             raise CommandRefused("goal-holds", "The goal holds already", detail)
         return await self._offered(target, None)
 
-    async def reset(self, operation: str) -> OfferView:
+    @answers(AskReset)
+    async def reset(self, query: AskReset) -> OfferView:
         """A plan to the precondition of an operation. Raises `CommandRefused`."""
-        found = self._execution.automaton.operations.get(operation)
+        found = self._execution.automaton.operations.get(query.operation)
         if found is None:
-            detail = f"The station has no operation `{operation}`. Look at those it has."
+            detail = f"The station has no operation `{query.operation}`. Look at those it has."
             raise CommandRefused("unknown-operation", "There is no such operation", detail, 404)
-        return await self._offered(found.precondition, operation)
+        return await self._offered(found.precondition, query.operation)
 
     async def _offered(self, target: Expression, operation: str | None) -> OfferView:
         self._require_no_operator_plan()
@@ -171,7 +163,7 @@ class Offers:
         )
         aimed = await aim(self._adviser, request)
         if aimed.offer is None:
-            raise no_plan(aimed, self._unused)
+            raise _no_plan(aimed, self._unused)
         (view,) = self._keep((aimed.offer,), revision)
         return view
 
@@ -187,13 +179,13 @@ class Offers:
             raise CommandRefused("stale-revision", "The state has moved", detail)
         if (refusal := refusal_of(offer, execution)) is not None:
             raise refusal
-        require_confirmation(offer, command)
+        _require_confirmation(offer, command)
         if offer.corrections:
             values = {change.name: change.new for change in offer.corrections}
             correcting = CorrectEstimates(
                 actor=command.actor, reason=command.reason, values=values, revision=kept.revision
             )
-            self._corrections.correct(correcting, moment)
+            self._correct(correcting, moment)
         if offer.errand is not None:
             execution.start_operator_plan(self._operator_plan(offer, command, moment), moment)
 
@@ -228,7 +220,7 @@ class Offers:
 
     def _require_no_operator_plan(self) -> None:
         if self._execution.operator_plan is not None:
-            raise plan_running(self._execution.operator_plan)
+            raise plan_running(self._execution.operator_plan.title)
 
     @property
     def _unused(self) -> frozenset[str]:
@@ -265,3 +257,30 @@ def _waiting_goals(execution: Executor) -> Goals:
 def violated_goals(execution: Executor) -> Goals:
     """The goals of active operations whose formulas were violated."""
     return execution.pursued.select(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)
+
+
+def _no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
+    """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
+    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
+    because = "; ".join(member for member in members if member != f"the goal {GOAL}")
+    if because:
+        detail = f"There is no plan as long as all of this is so: {because}."
+    elif aimed.proven:
+        detail = "There is no plan at all from the present state: that is proven."
+    else:
+        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
+    return CommandRefused("no-plan", "There is no plan", detail)
+
+
+def _require_confirmation(offer: RecoveryProposal, command: ExecuteOperatorPlan) -> None:
+    """Raises `CommandRefused` unless the command repeats what the offer contains."""
+    starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
+    corrections = {change.name: change.new for change in offer.corrections}
+    if command.starts != starts or not _same(command.corrections, corrections):
+        detail = "What was confirmed is not what the offer contains. Look at the offer again, then confirm that."
+        raise CommandRefused("not-confirmed", "Something else was confirmed", detail)
+
+
+def _same(one: Mapping[str, object], other: Mapping[str, object]) -> bool:
+    """Return whether they are equal, where true is not 1."""
+    return one == other and all(type(one[name]) is type(other[name]) for name in one)

@@ -5,11 +5,15 @@ Pure, as `executor` is. Nothing is started because of it: it only says what ther
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.kinds import UNSAFE_STATE, Cause
+from sequence_planner.controller.views.station import DifferenceView, SpecificationView, WayBackStepView, WayBackView
+from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.syntax import Comparison, Constant, Expression, Not, Variable, variables
@@ -59,22 +63,30 @@ def leaves(safe: StateSet, before: State, after: State) -> bool:
 
 
 class SafeStateMonitor:
-    """Looks at the state of `execution`, asks for a way back where one is wanted, and remembers the last answer."""
+    """Looks at the state of `execution`, asks for a way back where one is wanted, and remembers the last answer.
 
-    def __init__(self, execution: Executor) -> None:
+    `feeds` names the topic behind each measured variable.
+    """
+
+    def __init__(self, execution: Executor, feeds: Mapping[str, str] | None = None) -> None:
         self._execution = execution
+        self._feeds = {} if feeds is None else feeds
+        self._consequences = Consequences(execution)
         self._deciding = deciding(execution.automaton, execution.supervisor.safe)
-        self._seen: tuple[tuple[tuple[Value | None, ...], frozenset[str]], SafetyStatus | None] | None = None
+        self._looked_at: tuple[State | None, object] = None, None
+        self._seen: tuple[tuple[tuple[Value | None, ...], frozenset[str]] | None, SafetyStatus | None] = None, None
         self._asked: tuple[tuple[Value | None, ...], Circumstances] | None = None
         self._answer: tuple[tuple[Value | None, ...], WayBackAnswer | str] | None = None
 
     @property
     def situation(self) -> SafetyStatus | None:
         """The faults that there are now; None in a state that counts as safe."""
-        state = self._execution.state
-        key = (self._key(state), frozenset(self._execution.conduct.answers))
-        if self._seen is None or self._seen[0] != key:
-            self._seen = (key, None if self._execution.safe else self._look(state))
+        state, answers = self._execution.state, self._execution.conduct.answers
+        if self._looked_at[0] is not state or self._looked_at[1] is not answers:
+            self._looked_at = state, answers
+            key = (self._key(state), frozenset(answers))
+            if key != self._seen[0]:
+                self._seen = (key, None if self._execution.safe else self._look(state))
         return self._seen[1]
 
     @property
@@ -92,8 +104,10 @@ class SafeStateMonitor:
 
     def request(self, deadline: float) -> WayBackRequest | None:
         """Return what to ask the planner now; None when there is nothing to ask or it would answer the same again."""
+        if not self.certain:
+            return None
         key = (self._key(self._execution.state), self._execution.circumstances)
-        if key == self._asked or self.situation is None or not self.situation.certain:
+        if key == self._asked:
             return None
         self._asked = key
         return WayBackRequest(dict(self._execution.state), deadline, circumstances=self._execution.circumstances)
@@ -151,6 +165,51 @@ class SafeStateMonitor:
             return self._no_way(answer.searched)
         return message("way.choose") if answer.way.starts else self._by_itself(answer.way)
 
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"way_back": self.way_back_view()}
+
+    def way_back_view(self) -> WayBackView | None:
+        """The way back as it is shown; None while the state is safe."""
+        situation, automaton = self.situation, self._execution.automaton
+        if situation is None:
+            return None
+
+        def named(specifications: tuple[str, ...]) -> list[SpecificationView]:
+            return [SpecificationView(name=name, title=automaton.specifications[name].title) for name in specifications]
+
+        awaits = sorted({self._feeds.get(name, name) for name in situation.awaited})
+        answer = self.answer if situation.certain else None
+        found = answer if isinstance(answer, WayBackAnswer) else None
+        way = found.way if found is not None else None
+        reason = self.way() if situation.certain else message("unsafe.depends", topics=", ".join(awaits))
+        return WayBackView(
+            violated=named(situation.violated),
+            threatened=named(found.threatened) if found is not None else [],
+            differences=[DifferenceView(name=d.name, now=d.now, safe=d.safe) for d in situation.differences],
+            awaits=awaits,
+            ticks=len(way.ticks) if way is not None else None,
+            steps=_steps(automaton, way) if way is not None else [],
+            breaks=named(way.breaks) if way is not None else [],
+            reason=reason,
+            reason_message=reason,
+        )
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        situation = self.situation
+        # What is only possible with values that are unknown has an alarm of its own: the topic is silent.
+        if situation is not None and situation.certain:
+            yield UNSAFE_STATE.cause(
+                "",
+                {
+                    "what": self.describe(situation),
+                    "what_past": self.past(situation),
+                    "waiting": self._consequences.standstill(),
+                    "way": self.way(),
+                },
+            )
+
     def _no_way(self, searched: int) -> Message:
         unknown = self.situation.awaited if self.situation is not None else ()
         far = message("way.within", ticks=searched) if searched else message("way.in-time")
@@ -202,3 +261,8 @@ def _named(automaton: Automaton, specifications: Iterable[str]) -> list[Item]:
         message("unsafe.specification", title=automaton.specifications[name].title, name=name)
         for name in specifications
     ]
+
+
+def _steps(automaton: Automaton, way: RecoveryPath) -> list[WayBackStepView]:
+    abilities = [(tick, automaton.abilities[name]) for tick, name in way.starts]
+    return [WayBackStepView(tick=tick, ability=a.name, title=a.title, resource=a.resource) for tick, a in abilities]

@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State
+from sequence_planner.automaton.automaton import Ability, Effect, State
+from sequence_planner.automaton.dependencies import reactions
 from sequence_planner.automaton.tick import effect_writes
-from sequence_planner.controller.commands.bus import handles
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import CommandRefused, answers, handles
+from sequence_planner.controller.commands.queries import AskDefinition
 from sequence_planner.controller.commands.recovery import TryAbility
 from sequence_planner.controller.recovery.explain import ConditionContext, obstacles, of_ability
+from sequence_planner.controller.views.automaton_diagram import Drawing
+from sequence_planner.controller.views.details import AbilityDefinitionView, TrialView, TriedReactionView
 from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard, OperatorPlanStarted, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import LastOperatorPlan, OperatorPlan, OperatorPlanKind
+from sequence_planner.execution.state import LastOperatorPlan, OperatorPlan
 from sequence_planner.execution.vocabulary import Mode, Production
-from sequence_planner.language.syntax import TRUE
-from sequence_planner.language.types import Value
-from sequence_planner.planning.problem import Plan, PlanTick
 from sequence_planner.texts.message import Message, message
 
 # What has come of the last trial of an ability: its run from the start to the end, and the reactions of its device.
@@ -32,7 +32,7 @@ class ExpectedEffect:
     effect: Effect
     due: Timestamp | None = None
     came: Timestamp | None = None
-    lacking: dict[str, Value] = field(default_factory=dict)
+    lacking: State = field(default_factory=dict)
 
     def look(self, state: State, now: Timestamp) -> None:
         """Take note of a state; what comes one variable after the other is one reaction."""
@@ -108,12 +108,6 @@ class TrialWatch:
             reaction.look(state, now)
 
 
-def reactions(automaton: Automaton, ability: str) -> list[Effect]:
-    """The effects that are written with an ability."""
-    effects = {effect.name: effect for effect in automaton.effects}
-    return [effects[name] for name in automaton.reactions.get(ability, ())]
-
-
 # Trying an ability: one run of it alone, under the same conditions as ever.
 #
 # It is an operator plan, so operations wait for it, and the guards and the supervisor are as strict as in production.
@@ -128,27 +122,48 @@ class Trials:
     ) -> None:
         self._execution = execution
         self._around = surroundings
+        self._watch = TrialWatch(execution)
         self.real_devices = real_devices
 
     @handles(TryAbility)
     def begin(self, command: TryAbility, moment: Timestamp) -> None:
         """Have it started in the next tick."""
-        ability = self._execution.automaton.abilities.get(command.ability)
-        if ability is None:
-            detail = f"The station has no ability `{command.ability}`. Look at those it has."
-            raise CommandRefused("unknown-ability", "There is no such ability", detail, 404)
+        ability = self._find(command.ability)
         if (refusal := self.refusal(ability)) is not None:
             raise refusal
         if not command.real_devices and (there := self.real_devices()):
             detail = f"{'; '.join(there)}. Confirm that real devices may move."
             raise CommandRefused("real-devices", "There are real devices", detail)
-        self._execution.start_operator_plan(_operator_plan(ability, command, moment), moment)
+        title = message("offer.try", ability=ability.title)
+        trial = OperatorPlan.trial(ability, title, command.actor.name, command.reason or "", moment)
+        self._execution.start_operator_plan(trial, moment)
+
+    @answers(AskDefinition)
+    def definition(self, query: AskDefinition) -> AbilityDefinitionView:
+        """How an ability is defined, what of that holds now, and how its last trial went. Raises `CommandRefused`."""
+        execution, ability = self._execution, self._find(query.ability)
+        refusal, trial = self.refusal(ability), self._watch.last
+        drawing = Drawing(execution.automaton, execution.state, self._around.guards(), execution.supervisor)
+        return AbilityDefinitionView(
+            **dict(drawing.of(ability)),
+            revision=execution.revision,
+            obstacle=None if refusal is None else refusal.detail,
+            real_devices=list(self.real_devices()),
+            trial=None if trial is None or trial.ability is not ability else _trial(trial),
+        )
+
+    def _find(self, name: str) -> Ability:
+        ability = self._execution.automaton.abilities.get(name)
+        if ability is None:
+            detail = f"The station has no ability `{name}`. Look at those it has."
+            raise CommandRefused("unknown-ability", "There is no such ability", detail, 404)
+        return ability
 
     def refusal(self, ability: Ability) -> CommandRefused | None:
         """Return why it cannot be tried now; None when it can."""
         execution = self._execution
         if execution.operator_plan is not None:
-            return plan_running(execution.operator_plan)
+            return plan_running(execution.operator_plan.title)
         if execution.production is not Production.STARTED:
             detail = "No command is sent before production is started. Pause, then start production, then try it."
             return CommandRefused("production-not-started", "Production waits", detail)
@@ -169,14 +184,23 @@ class Trials:
         yield from (each.text for each in of_ability(execution, ability, self._around.feeds, guard))
 
 
-def _operator_plan(ability: Ability, command: TryAbility, moment: Timestamp) -> OperatorPlan:
-    return OperatorPlan(
-        kind=OperatorPlanKind.TRIAL,
-        title=message("offer.try", ability=ability.title),
-        plan=Plan((PlanTick((), (ability.name,)), PlanTick((), ())), minimal_ticks=False, minimal_starts=True),
-        goal=TRUE if ability.finish_guard is None else ability.finish_guard,
-        by=command.actor.name,
-        why=command.reason or "",
-        taken=moment,
-        ability=ability.name,
+def _trial(trial: AbilityTrial) -> TrialView:
+    operator_plan, end = trial.operator_plan, trial.end
+    return TrialView(
+        by=operator_plan.by,
+        reason=operator_plan.why,
+        accepted=operator_plan.taken.epoch,
+        started=_epoch(trial.started),
+        executing=_epoch(trial.executing),
+        ended=None if end is None else end.ended.epoch,
+        done=end is not None and end.done,
+        why="" if end is None else end.why,
+        reactions=[
+            TriedReactionView(name=each.effect.name, due=_epoch(each.due), came=_epoch(each.came))
+            for each in trial.reactions
+        ],
     )
+
+
+def _epoch(moment: Timestamp | None) -> float | None:
+    return None if moment is None else moment.epoch

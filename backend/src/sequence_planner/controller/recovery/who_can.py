@@ -16,13 +16,8 @@ from functools import partial
 import structlog
 
 from sequence_planner.automaton.automaton import Automaton, State
-from sequence_planner.controller.views.station import (
-    AbsenceReason,
-    AbsenceView,
-    DoableView,
-    NobodyView,
-    WhoCanView,
-)
+from sequence_planner.controller.views.station import AbsenceReason, AbsenceView, DoableView, NobodyView, WhoCanView
+from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.evaluator import evaluate
@@ -161,6 +156,10 @@ class WhoCan:
         look = _Look(execution.automaton, execution.state, execution.active, tuple(self._wanted()), absent, silent)
         self._run(partial(self._timed, look), partial(self._take, absent))
         self._next = monotonic + max(_AT_MOST_EVERY, _SHARE * self._took)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"who_can": self.found}
 
     def _timed(self, look: _Look) -> tuple[Found, float]:
         before = self._clock()

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.automaton import Operation
-from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.commands.queries import AskWhyNot
+from sequence_planner.controller.commands.command import CommandRefused, answers
+from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.planner_client import AIMED_WITHIN, AdvisorClient, aim
 from sequence_planner.controller.recovery.explain import (
     BlockingCondition,
@@ -23,8 +23,6 @@ from sequence_planner.controller.recovery.explain import (
 )
 from sequence_planner.controller.views.details import WhyNotView
 from sequence_planner.controller.views.jobs import why_idle
-from sequence_planner.controller.views.proposals import PlanPreviewView
-from sequence_planner.controller.views.station import DiagnosisView
 from sequence_planner.controller.views.wording import diagnosis_view, plan_preview, read_predicate, title_text
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
@@ -45,18 +43,10 @@ class WhyNot:
         self._adviser = adviser
         self._involving = Involving(execution, surroundings)
 
-    async def answer(self, ask: AskWhyNot) -> WhyNotView:
-        """Return what is in the way. Raises `CommandRefused` for what the station does not have."""
-        match ask.of:
-            case "ability":
-                return self._ability(ask.name)
-            case "operation":
-                return self._operation(ask.name)
-            case "goal":
-                return await self._goal(ask.name)
-
-    def _ability(self, name: str) -> WhyNotView:
-        execution = self._execution
+    @answers(AskAbilityBlockers)
+    def ability(self, query: AskAbilityBlockers) -> WhyNotView:
+        """Return what is in the way of an ability. Raises `CommandRefused` for one that the station does not have."""
+        execution, name = self._execution, query.name
         ability = execution.automaton.abilities.get(name)
         if ability is None:
             raise _unknown("ability", name)
@@ -88,14 +78,21 @@ class WhyNot:
         elif not self._execution.may_go_on(name):
             yield BlockingCondition(HindranceKind.PLAN, right_moment(self._execution))
 
-    def _operation(self, name: str) -> WhyNotView:
-        execution = self._execution
+    @answers(AskOperationBlockers)
+    def operation(self, query: AskOperationBlockers) -> WhyNotView:
+        """Return what is in the way of an operation. Raises `CommandRefused` for one that the station does not have."""
+        execution, name = self._execution, query.name
         operation = execution.automaton.operations.get(name)
         if operation is None:
             raise _unknown("operation", name)
         if name in execution.active:
             lacking = list(self._lacking(operation.goal))
-            return self._view("operation", name, operation.title, self._progress(operation), lacking, self._reasons())
+            view = self._view("operation", name, operation.title, self._progress(operation), lacking)
+            diagnosis = execution.plan.diagnosis
+            if diagnosis is None:
+                return view
+            reasons = diagnosis_view(diagnosis, self._unused, execution.conduct.answers)
+            return view.model_copy(update={"reasons": reasons})
         lacking = list(self._inactive(operation))
         undone = {each.expression for each in lacking}
         lacking += [each for each in self._lacking(operation.precondition) if each.expression not in undone]
@@ -138,13 +135,10 @@ class WhyNot:
         """The resources that are out of service."""
         return self._execution.conduct.out_of(ServiceKind.RESOURCE)
 
-    def _reasons(self) -> DiagnosisView | None:
-        diagnosis = self._execution.plan.diagnosis
-        answers = self._execution.conduct.answers
-        return None if diagnosis is None else diagnosis_view(diagnosis, self._unused, answers)
-
-    async def _goal(self, text: str) -> WhyNotView:
-        execution = self._execution
+    @answers(AskGoalBlockers)
+    async def goal(self, query: AskGoalBlockers) -> WhyNotView:
+        """Return what is in the way of a predicate. Raises `CommandRefused` for one that cannot be read."""
+        execution, text = self._execution, query.predicate
         goal = read_predicate(execution.automaton, text)
         lacking = list(self._lacking(goal))
         if not lacking:
@@ -166,8 +160,8 @@ class WhyNot:
             return _more(view, message("blocked.reached", starts=len(plan.steps)), plan=plan)
         if aimed.proven:
             answers = execution.conduct.answers
-            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
-            return _more(view, message("blocked.proven"), reasons=reasons)
+            found = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
+            return _more(view, message("blocked.proven"), reasons=found)
         return _more(view, message("blocked.not-found"))
 
     def _lacking(self, condition: Expression) -> Iterable[BlockingCondition]:
@@ -185,7 +179,6 @@ class WhyNot:
         title: str,
         summary: Message,
         found: Iterable[BlockingCondition],
-        reasons: DiagnosisView | None = None,
     ) -> WhyNotView:
         return WhyNotView(
             of=of,
@@ -196,7 +189,7 @@ class WhyNot:
             summary_message=summary,
             conditions=[self._involving.condition(each) for each in found],
             plan=None,
-            reasons=reasons,
+            reasons=None,
         )
 
 
@@ -206,12 +199,9 @@ def _summary(found: list[BlockingCondition]) -> Message:
     return message("blocked.several", count=len(found))
 
 
-def _more(
-    view: WhyNotView, text: Message, plan: PlanPreviewView | None = None, reasons: DiagnosisView | None = None
-) -> WhyNotView:
+def _more(view: WhyNotView, text: Message, **found: object) -> WhyNotView:
     summary = message("sentences", first=view.summary_message, second=text)
-    told = {"summary": str(summary), "summary_message": summary}
-    return view.model_copy(update={**told, "plan": plan, "reasons": reasons})
+    return view.model_copy(update={"summary": str(summary), "summary_message": summary, **found})
 
 
 def _unknown(kind: str, name: str) -> CommandRefused:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State, target
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State, WorkMaster, target
+from sequence_planner.automaton.dependencies import reactions, read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import start, writes
-from sequence_planner.controller.recovery.trials import reactions
 from sequence_planner.controller.views.details import (
     AbilityActionView,
     AutomatonView,
@@ -17,6 +17,10 @@ from sequence_planner.controller.views.details import (
     ReadValueView,
     SupervisedView,
     TimeoutsView,
+    WorkAbilityView,
+    WorkMastersView,
+    WorkMasterView,
+    WorkOperationView,
     WrittenPlaceView,
 )
 from sequence_planner.controller.views.station import SpecificationView
@@ -146,3 +150,39 @@ def _arguments(name: str) -> list[str]:
 
 def _truth(value: object) -> bool | None:
     return value if isinstance(value, bool) else None
+
+
+# What jobs consist of.
+
+
+def work_masters_view(automaton: Automaton) -> WorkMastersView:
+    """All work masters of a station, and what its abilities write."""
+    return WorkMastersView(
+        work_masters={name: _master(automaton, master) for name, master in automaton.work_masters.items()},
+        abilities={name: _ability(automaton, ability) for name, ability in automaton.abilities.items()},
+    )
+
+
+def _master(automaton: Automaton, master: WorkMaster) -> WorkMasterView:
+    return WorkMasterView(
+        title=master.title,
+        brings=[print_assignment(action) for action in master.brings],
+        brought=sorted({target(action) for action in master.brings}),
+        operations={name: _operation(automaton, name, after) for name, after in master.operations.items()},
+        alternatives=[[sorted(branch) for branch in branches] for branches in master.alternatives],
+        arbitrary=[[sorted(branch) for branch in branches] for branches in master.arbitrary],
+    )
+
+
+def _operation(automaton: Automaton, name: str, after: frozenset[str]) -> WorkOperationView:
+    operation = automaton.operations[name]
+    read = read_variables(automaton, (operation.goal,))
+    return WorkOperationView(title=operation.title, after=sorted(after), goal_reads=sorted(read))
+
+
+def _ability(automaton: Automaton, ability: Ability) -> WorkAbilityView:
+    actions = [*ability.start_actions, *ability.finish_actions, *ability.cancel_actions]
+    for effect in reactions(automaton, ability.name):
+        actions += effect.actions
+    written = sorted({target(action) for action in actions})
+    return WorkAbilityView(title=ability.title, writes=written, instant=ability.finish_guard is None)

@@ -1,30 +1,24 @@
-"""Views of how a station executes: its PackML state, what is carried out, forced, out of service, and its way back."""
+"""Views of how a station executes: its PackML state, what is carried out, forced, and out of service."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.views.station import (
     AlarmView,
-    DifferenceView,
     ForceView,
     LastOperatorPlanView,
     OperatorPlanView,
     PackML,
     ServiceView,
-    SpecificationView,
     StationStanding,
-    WayBackStepView,
-    WayBackView,
 )
 from sequence_planner.controller.views.wording import end_text, ended_text, title_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import ExecutionState
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production, ServiceKind
-from sequence_planner.planning.problem import RecoveryPath, WayBackAnswer
-from sequence_planner.texts.message import as_it_was, message
+from sequence_planner.texts.message import as_it_was
 
 _ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
 
@@ -72,16 +66,19 @@ def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
     return [title for name, title in automaton.resources.items() if name in found]
 
 
-def standing(execution: Executor, outside: SafeStateMonitor, silent: Collection[str]) -> StationStanding:
-    """Return whether anything starts by itself, while these resources are `silent`."""
-    situation = outside.situation
+def goes_on(execution: Executor, outside: bool) -> bool:
+    """Return whether anything starts by itself; nothing does certainly `outside` the safe states."""
+    may = execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC
+    return may and not execution.obstacles and not outside
+
+
+def standing(execution: Executor, outside: bool, silent: Collection[str]) -> StationStanding:
+    """Return how it stands, while these resources are `silent`."""
+    if goes_on(execution, outside):
+        return StationStanding.SILENT if silent else StationStanding.WORKING
     if execution.production is not Production.STARTED:
         return StationStanding.WAITING
-    if execution.mode is not Mode.AUTOMATIC:
-        return _STANDING[execution.mode]
-    if execution.obstacles or (situation is not None and situation.certain):
-        return StationStanding.STOPPED
-    return StationStanding.SILENT if silent else StationStanding.WORKING
+    return _STANDING.get(execution.mode, StationStanding.STOPPED)
 
 
 def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
@@ -146,39 +143,3 @@ def _title(automaton: Automaton, of: ServiceKind, name: str) -> str:
     if of is ServiceKind.RESOURCE:
         return automaton.resources[name]
     return (automaton.abilities if of is ServiceKind.ABILITY else automaton.operations)[name].title
-
-
-# What is shown of a station outside its safe states.
-
-
-def way_back(automaton: Automaton, outside: SafeStateMonitor, feeds: Mapping[str, str]) -> WayBackView | None:
-    """None while the state is safe. `feeds` names the topic behind each measured variable."""
-    situation = outside.situation
-    if situation is None:
-        return None
-
-    def named(specifications: tuple[str, ...]) -> list[SpecificationView]:
-        return [SpecificationView(name=name, title=automaton.specifications[name].title) for name in specifications]
-
-    awaits = sorted({feeds.get(name, name) for name in situation.awaited})
-    answer = outside.answer if situation.certain else None
-    found = answer if isinstance(answer, WayBackAnswer) else None
-    way = found.way if found is not None else None
-    depends = message("unsafe.depends", topics=", ".join(awaits))
-    reason = outside.way() if situation.certain else depends
-    return WayBackView(
-        violated=named(situation.violated),
-        threatened=named(found.threatened) if found is not None else [],
-        differences=[DifferenceView(name=d.name, now=d.now, safe=d.safe) for d in situation.differences],
-        awaits=awaits,
-        ticks=len(way.ticks) if way is not None else None,
-        steps=_steps(automaton, way) if way is not None else [],
-        breaks=named(way.breaks) if way is not None else [],
-        reason=reason,
-        reason_message=reason,
-    )
-
-
-def _steps(automaton: Automaton, way: RecoveryPath) -> list[WayBackStepView]:
-    abilities = [(tick, automaton.abilities[name]) for tick, name in way.starts]
-    return [WayBackStepView(tick=tick, ability=a.name, title=a.title, resource=a.resource) for tick, a in abilities]

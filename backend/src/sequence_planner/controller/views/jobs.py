@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.controller.features.tasks import TaskProblem, WaitingTask
+from sequence_planner.controller.commands.tasks import TaskProblem, WaitingTask
 from sequence_planner.controller.recovery.explain import of_station
 from sequence_planner.controller.views.station import AlarmView, JobStepState, JobStepView, JobView, Priority
 from sequence_planner.controller.views.wording import reason_text, title_text

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
-from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan
-from sequence_planner.controller.planner_client import GOAL, GoalPlan
-from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.views.proposals import (
     EffortView,
     OfferView,
@@ -18,20 +16,11 @@ from sequence_planner.controller.views.proposals import (
 )
 from sequence_planner.controller.views.station import DiagnosisView, SpecificationView
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import OperatorPlan
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.resolver import NameScope, resolve_predicate
-from sequence_planner.language.syntax import (
-    TRUE,
-    Comparison,
-    Constant,
-    Expression,
-    ExpressionError,
-    Not,
-    Variable,
-)
+from sequence_planner.language.syntax import TRUE, Comparison, Constant, Expression, ExpressionError, Not, Variable
 from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
@@ -218,7 +207,7 @@ def _changes(changes: Iterable[ValueChange]) -> list[ValueChangeView]:
 def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused | None:
     """Return why an offer for the present state cannot be taken now; None when it can."""
     if execution.operator_plan is not None:
-        return plan_running(execution.operator_plan)
+        return plan_running(execution.operator_plan.title)
     if offer.physical or offer.online or offer.in_service:
         detail = "Something has to be done at the station first. Do that, then ask again."
         return CommandRefused("manual-step-required", "Something has to be done first", detail)
@@ -236,7 +225,7 @@ def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused |
 def correcting_refused(execution: Executor) -> CommandRefused | None:
     """Return why no correction can be made now; None when one can."""
     if execution.operator_plan is not None:
-        return plan_running(execution.operator_plan)
+        return plan_running(execution.operator_plan.title)
     if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
         detail = "Corrections are made in restart mode, or before production is started. Enter restart mode first."
         return CommandRefused("not-in-restart", "The mode is another one", detail)
@@ -253,37 +242,10 @@ def _wrong_mode(offer: RecoveryProposal, mode: Mode) -> CommandRefused | None:
     return CommandRefused("wrong-mode", "The mode is another one", detail)
 
 
-def require_confirmation(offer: RecoveryProposal, command: ExecuteOperatorPlan) -> None:
-    """Raises `CommandRefused` unless the command repeats what the offer contains."""
-    starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
-    corrections = {change.name: change.new for change in offer.corrections}
-    if command.starts != starts or not _same(command.corrections, corrections):
-        detail = "What was confirmed is not what the offer contains. Look at the offer again, then confirm that."
-        raise CommandRefused("not-confirmed", "Something else was confirmed", detail)
-
-
-def _same(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
-    """Return whether they are equal, where true is not 1."""
-    return one == other and all(type(one[name]) is type(other[name]) for name in one)
-
-
-def plan_running(operator_plan: OperatorPlan) -> CommandRefused:
+def plan_running(title: str) -> CommandRefused:
     """Nothing is offered beside an operator plan: the state moves with it."""
-    detail = f"{operator_plan.title} is being carried out. Wait for its end, or stop it."
+    detail = f"{title} is being carried out. Wait for its end, or stop it."
     return CommandRefused("plan-running", "Something else is being carried out", detail)
-
-
-def no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
-    """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
-    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
-    because = "; ".join(member for member in members if member != f"the goal {GOAL}")
-    if because:
-        detail = f"There is no plan as long as all of this is so: {because}."
-    elif aimed.proven:
-        detail = "There is no plan at all from the present state: that is proven."
-    else:
-        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
-    return CommandRefused("no-plan", "There is no plan", detail)
 
 
 # Predicates that come with a request, in the model's language.

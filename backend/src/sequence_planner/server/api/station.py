@@ -6,8 +6,13 @@ the controller is silent the answer is 503.
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from fastapi import Query, WebSocket
+
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.auth.roles import Role, Scope
+from sequence_planner.controller.views.details import NetworkView
 from sequence_planner.controller.views.part import ControlView
 from sequence_planner.controller.views.station import (
     AbilityView,
@@ -36,8 +41,11 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import AnswerModel, LiveView
+from sequence_planner.server.dependencies import AnswerModel, Controller, LiveView
+from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
+from sequence_planner.server.stream.broadcast import FlowsFeed, NetworkFeed
+from sequence_planner.server.stream.endpoints import serve
 
 router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
@@ -201,3 +209,40 @@ async def analysis(view: LiveView) -> AnalysisAnswer:
 async def alarms(view: LiveView) -> AlarmsAnswer:
     """Alarms that want a person's attention now."""
     return AlarmsAnswer(tick=view.tick, time=view.time, alarms=view.alarms)
+
+
+# The ROS graph, read once or as it changes.
+
+ros_router = interface("/ros", tags=["ros"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+
+
+@ros_router.get("/graph")
+async def ros_graph(view: LiveView, client: Controller) -> NetworkView:
+    """All nodes, topics, services and actions that the station's transport knows, and how the station meets them.
+
+    503 until the station is prepared and has joined the network.
+    """
+    if client.network is None:
+        detail = "The station is being prepared and has not joined the network. Try again in a moment."
+        raise ProblemFound(503, "preparing", "The station is being prepared", detail)
+    return client.network
+
+
+@ros_router.websocket("/stream")
+async def ros_stream(websocket: WebSocket) -> None:
+    """Serve one client: the graph, and again whenever it has changed."""
+    show: NetworkFeed = websocket.app.state.network_show
+    await serve(websocket, show.latest)
+
+
+# What passes the pipelines, as it goes on.
+
+# Pipelines by name, repeated as in `?pipeline=/robot/state&pipeline=robot.holding`.
+Names = Annotated[list[Annotated[str, Query(max_length=500)]] | None, Query(max_length=200)]
+
+
+@router.websocket("/pipelines/stream")
+async def pipelines_stream(websocket: WebSocket, pipeline: Names = None) -> None:
+    """Serve one client: what has passed each edge of the pipelines that are named, or of all, twice a second."""
+    show: FlowsFeed = websocket.app.state.flows_show
+    await serve(websocket, show.of(None if pipeline is None else frozenset(pipeline)))

@@ -1,11 +1,12 @@
-"""Alarms of what is outside: devices that are not heard, not reached, or not understood."""
+"""The links to devices: which are heard, reached and understood, and the alarms of those that are not."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
 
-from sequence_planner.controller.alarms.alarm import Consequences
+from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import (
     COMMAND,
     MANY_SILENT,
@@ -21,6 +22,7 @@ from sequence_planner.controller.io.inputs import InputError, InputErrors, Input
 from sequence_planner.controller.io.network import NetworkWatch
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.recovery.who_can import WhoCan
+from sequence_planner.controller.views.station import ResourceView, TopicView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
@@ -31,23 +33,33 @@ STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile:
 _MOST = 3  # so many devices, and half of all, fall silent at once only for one reason; or both of two
 
 
-class DeviceAlarms:
+class DeviceLinks:
     """Looks at the links between `execution` and its devices."""
 
     def __init__(
-        self, execution: Executor, feeds: Inputs, network: NetworkWatch, commander: Outputs, who_can: WhoCan
+        self,
+        execution: Executor,
+        feeds: Inputs,
+        network: NetworkWatch,
+        commander: Outputs,
+        who_can: WhoCan,
+        consequences: Consequences,
     ) -> None:
         self._execution = execution
-        self._consequences = Consequences(execution, who_can)
+        self._who_can = who_can
+        self._consequences = consequences
         self._feeds = feeds
         self._network = network
         self._commander = commander
         self._began: float | None = None
-        # Resources whose silence is too young to be told.
         self.untold: Collection[str] = frozenset(execution.automaton.resources)
+        """The resources whose silence is too young to be told."""
+        self.silent: Sequence[str] = ()
+        """The titles of the resources that are in use and not heard, as they were shown last."""
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """All that there are now. That a resource is silent which is out of service is nothing to be told."""
+        self._who_can.look(self.untold, moment.monotonic)
         unused = self._execution.conduct.out_of(ServiceKind.RESOURCE)
         self._began = moment.monotonic if self._began is None else self._began
         yield from self._silences(moment.monotonic, unused)
@@ -57,6 +69,49 @@ class DeviceAlarms:
         for place, cause, report in self._feeds.reports.current(moment.monotonic):
             yield self._made_no_sense(place, cause, report, moment)
         yield from self._defaults(self._commander.reports, moment)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        resources, unused = self._resources(moment.monotonic), self._execution.conduct.out_of(ServiceKind.RESOURCE)
+        self.silent = [each.title for name, each in resources.items() if not each.online and name not in unused]
+        return {"resources": resources, "topics": self._topics(moment), "silent": self.silent}
+
+    def _resources(self, monotonic: float) -> dict[str, ResourceView]:
+        awaited: dict[str, list[str]] = {name: [] for name in self._execution.automaton.resources}
+        for topic in self._feeds.awaited(monotonic):
+            awaited[self._feeds.resource_of(topic)].append(topic)
+        return {
+            name: ResourceView(title=title, online=not awaited[name], awaited_topics=awaited[name])
+            for name, title in self._execution.automaton.resources.items()
+        }
+
+    def _topics(self, moment: Timestamp) -> dict[str, TopicView]:
+        views = {}
+        for name, feed in self._feeds.topics.items():
+            views[name] = TopicView(
+                type=feed.pipeline.topic.type_name,
+                direction="in",
+                resource=feed.pipeline.topic.resource,
+                last=moment.epoch_of(feed.last),
+                messages=feed.messages,
+                deadline=feed.pipeline.deadline,
+                fresh=feed.fresh(moment.monotonic),
+                peers=self._network.peers[name],
+                **_trouble(self._network.troubles.get(name) or feed.trouble),
+            )
+        for name, command in self._commander.topics.items():
+            views[name] = TopicView(
+                type=command.pipeline.topic.type_name,
+                direction="out",
+                resource=command.pipeline.topic.resource,
+                last=moment.epoch_of(command.last),
+                messages=command.messages,
+                deadline=None,
+                fresh=command.last is not None,
+                peers=self._network.peers[name],
+                **_trouble(self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed),
+            )
+        return views
 
     def _silences(self, monotonic: float, unused: Collection[str]) -> Iterator[Cause]:
         """Of each silent resource one, however many of its topics are; and one of many silent resources.
@@ -254,3 +309,7 @@ def _counted(place: str, report: InputError, moment: Timestamp) -> Message:
         first, last = span
         times = message("message.times", count=report.count, first=first, last=last)
     return message("message.said", topic=place, report=report.text, times=times)
+
+
+def _trouble(trouble: str | None) -> dict[str, Any]:
+    return {"trouble": trouble, "trouble_message": None if trouble is None else as_it_was(trouble)}

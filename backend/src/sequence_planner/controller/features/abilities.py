@@ -1,75 +1,75 @@
-"""Alarms of what is done: plans that are missing, abilities that are late or given up, formulas that were violated."""
+"""Abilities: what each does now, and the alarms of those that are late, given up, or in conflict."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
 from sequence_planner.automaton.automaton import Ability
-from sequence_planner.controller.alarms.alarm import Consequences
-from sequence_planner.controller.alarms.kinds import (
-    ERRAND_WAITS,
-    GIVEN_UP,
-    LEFT_OUT,
-    LOCAL,
-    MANY_SILENT,
-    NEVER_HEARD,
-    NO_PLAN,
-    OVERDUE,
-    PLANNER,
-    SILENT,
-    STILL,
-    TRIED,
-    UNDECIDED,
-    Cause,
-)
+from sequence_planner.automaton.dependencies import is_along
+from sequence_planner.controller.alarms.consequences import Consequences
+from sequence_planner.controller.alarms.kinds import CONFLICT, GIVEN_UP, OVERDUE, STILL, TRIED, Cause, silences
 from sequence_planner.controller.io.inputs import Inputs
-from sequence_planner.controller.recovery.explain import idle_since, waits_for
-from sequence_planner.controller.recovery.side_effects import is_along
 from sequence_planner.controller.recovery.stalls import StallDetector
-from sequence_planner.controller.recovery.who_can import WhoCan
-from sequence_planner.controller.views.wording import end_text, reason_text, title_text, value_text
+from sequence_planner.controller.views.station import AbilityView
+from sequence_planner.controller.views.wording import value_text
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.plan_tracker import formula_of, why_none
-from sequence_planner.execution.state import OutOfService
 from sequence_planner.execution.timeouts import in_the_past, overdue
-from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
+from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.syntax import variables
-from sequence_planner.planning.problem import PlanAnswer, Verdict
 from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
-START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
-END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
 
-
-class PlanAlarms:
+class Abilities:
     """Looks at what `execution` does, and at which devices are `still`; `feeds` say which resources tell a measured
     variable.
     """
 
-    def __init__(self, execution: Executor, feeds: Inputs, still: StallDetector, who_can: WhoCan) -> None:
+    def __init__(self, execution: Executor, feeds: Inputs, still: StallDetector, consequences: Consequences) -> None:
         self._execution = execution
         self._told_still: frozenset[str] = frozenset()
-        self._consequences = Consequences(execution, who_can)
+        self._consequences = consequences
         self._still = still
-        self._feeds = feeds
         self._tellers = {
             name: frozenset(feeds.resource_of(topic) for topic in topics) for name, topics in feeds.sources.items()
         }
+        self._conflicts: set[tuple[str, str, str]] = set()
 
-    def causes(self, planner_trouble: str | None, monotonic: float, untold: Collection[str] = ()) -> Iterator[Cause]:
-        """All that there are now. What comes of it that the `untold` are silent is told no sooner than that."""
-        yield from self._late(monotonic)
-        yield from self._standing_still(monotonic)
+    def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
+        """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
+        gone_on = {*outcome.finished, *outcome.started}
+        self._conflicts = {c for c in self._conflicts if gone_on.isdisjoint(c[:2])} | set(outcome.conflicts)
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        running = {
+            step.ability: None if step.started is None else step.started.epoch
+            for step in self._execution.plan.order.running
+        }
+        state = self._execution.state
+        views = {
+            ability.name: AbilityView(
+                resource=ability.resource,
+                title=ability.title,
+                human=ability.human is not None,
+                restart=ability.restart,
+                enabled=_truth(state[ability.flag("enabled")]),
+                executing=_truth(state[ability.flag("executing")]),
+                finished=_truth(state[ability.flag("finished")]),
+                running_since=running.get(ability.name),
+            )
+            for ability in self._execution.automaton.abilities.values()
+        }
+        return {"abilities": views}
+
+    def causes(self, moment: Timestamp) -> Iterator[Cause]:
+        """The causes of alarms that there are now."""
+        yield from self._late(moment.monotonic)
+        yield from self._standing_still(moment.monotonic)
         yield from self._given_up()
         yield from self._called_off()
-        yield from self._waiting_operator_plan(monotonic)
-        if planner_trouble is not None:
-            waiting = self._consequences.waiting(self._execution.active)
-            yield PLANNER.cause("", {"trouble": planner_trouble, "waiting": waiting})
-        elif self._execution.production is Production.STARTED:  # that there is no plan has no other cause
-            yield from self._violated()
-            if self._execution.conduct.silent.isdisjoint(untold):
-                yield from self._missing()
+        yield from self._in_conflict()
 
     def _late(self, monotonic: float) -> Iterator[Cause]:
         """Abilities that take longer than they may; those that are planned anew then are called off instead."""
@@ -157,12 +157,10 @@ class PlanAlarms:
 
     def _given_up(self) -> Iterator[Cause]:
         """Of each resource one: what it could not do, and is not asked for any more."""
-        given_up: dict[str, list[OutOfService]] = {}
-        for (of, name), each in self._execution.conduct.service.items():
-            if of is ServiceKind.ABILITY and each.by is None:
-                given_up.setdefault(self._execution.automaton.abilities[name].resource, []).append(each)
-        for resource, gone in given_up.items():
-            abilities = self._execution.automaton.abilities
+        abilities, service = self._execution.automaton.abilities, self._execution.conduct.service
+        given_up = [each for (of, _), each in service.items() if of is ServiceKind.ABILITY and each.by is None]
+        for resource in dict.fromkeys(abilities[each.name].resource for each in given_up):
+            gone = [each for each in given_up if abilities[each.name].resource == resource]
             titles = [abilities[each.name].title for each in gone]
             texts = [
                 message("given-up.failure", ability=title, why=as_it_was(each.why, "late."))
@@ -208,99 +206,31 @@ class PlanAlarms:
                 resources=[ability.resource],
             )
 
-    def _waiting_operator_plan(self, monotonic: float) -> Iterator[Cause]:
-        """Yield what a person has taken, and does not go on."""
-        execution, operator_plan = self._execution, self._execution.operator_plan
-        if (
-            operator_plan is None
-            or operator_plan.ability is not None
-            or (since := idle_since(execution, operator_plan)) is None
-        ):
-            return
-        ahead, waited = execution.plan.order.ahead, monotonic - since
-        if waited <= (START_WITHIN if ahead else END_WITHIN):
-            return
-        if ahead:
-            title = execution.automaton.abilities[ahead[0].ability].title
-            waits = waits_for(execution, ahead[0].ability, self._feeds.heard_on)
-            conditions: Argument = waits or message("errand-waits.nothing-known")
-            what = message("errand-waits.start", ability=title, seconds=START_WITHIN, conditions=conditions)
-        else:
-            condition = end_text(operator_plan.goal, operator_plan.into_safe)
-            inside = [message("errand-waits.safe")] if operator_plan.into_safe else []
-            what = message(
-                "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]
-            )
-        yield ERRAND_WAITS.cause(
-            "",
-            {"what": what, "title": message("quoted", title=title_text(operator_plan.title)), "by": operator_plan.by},
-        )
-
-    def _violated(self) -> Iterator[Cause]:
-        for name, since in self._execution.pursued.violated.items():
-            active, operation = name in self._execution.active, self._execution.automaton.operations[name]
-            yield LOCAL.cause(
-                f"{name}:{since.epoch}",
+    def _in_conflict(self) -> Iterator[Cause]:
+        abilities = self._execution.automaton.abilities
+        for one, other, variable in sorted(self._conflicts):
+            yield CONFLICT.cause(
+                f"{one}:{other}:{variable}",
                 {
-                    "formula": formula_of(self._execution.automaton, name),
-                    "operation": operation.title,
-                    "consequence": message("local.not-planned") if active else message("local.reached"),
-                    "action": message("local.by-hand") if active else message("local.check"),
+                    "one": one,
+                    "other": other,
+                    "variable": variable,
+                    "consequence": self._consequences.of_values({variable}),
                 },
+                resources=dict.fromkeys(abilities[name].resource for name in (one, other) if name in abilities),
             )
 
-    def _missing(self) -> Iterator[Cause]:
-        execution = self._execution
-        plan, follows = execution.plan, self._silences(None)
-        if not execution.conduct.executes_operations:
-            return
-        if plan.status is PlanStatus.NONE and (follows or not execution.blind):
-            waiting = self._consequences.waiting(execution.active)
-            yield NO_PLAN.cause(
-                "", {"why": self._why_none(), "waiting": waiting, "action": self._needed()}, follows=follows
-            )
-        elif plan.status is not PlanStatus.NONE and plan.answer is not None:
-            yield from self._left_out(plan.answer, follows)
-
-    def _why_none(self) -> Message:
-        plan = self._execution.plan
-        if plan.answer is None or plan.reason not in (why_none(plan.answer, blind) for blind in (False, True)):
-            return message("no-plan.other", reason=reason_text(plan.reason))
-        if plan.reason == why_none(plan.answer, blind=True):
-            return message("no-plan.unknown", reason=reason_text(plan.reason))
-        if plan.answer.verdict is Verdict.NONE_AT_ALL:
-            return message("no-plan.none", reason=reason_text(plan.reason))
-        return message("no-plan.found", reason=reason_text(plan.reason))
-
-    def _needed(self) -> Message:
-        """Say what to do where there is no plan: what is out of service may be all that is missing."""
-        automaton, service = self._execution.automaton, self._execution.conduct.service
-        resources = [automaton.resources[name] for of, name in service if of is ServiceKind.RESOURCE]
-        abilities = [automaton.abilities[name].title for of, name in service if of is ServiceKind.ABILITY]
-        out = [*sorted(resources), *sorted(abilities)]
-        return message("no-plan.put-back", titles=out) if out else message("no-plan.look")
-
-    def _left_out(self, answer: PlanAnswer, follows: tuple[str, ...]) -> Iterator[Cause]:
-        """The active operations that the plan does not reach: because it cannot, and because nobody knows."""
-        operations, active = self._execution.automaton.operations, self._execution.active
-        undecided = [name for name in answer.undecided if name in active]
-        excluded = [name for name in answer.left_out if name in active and name not in answer.undecided]
-        for kind, names in ((LEFT_OUT, excluded), (UNDECIDED, undecided)):
-            if names:
-                titles = ", ".join(operations[name].title for name in names)
-                waiting = self._consequences.waiting(names)
-                yield kind.cause("", {"operations": titles, "waiting": waiting}, follows=follows)
-
-    def _silences(self, ability: Ability | None) -> tuple[str, ...]:
-        """The silences from which it can follow that an ability is late, or without one that there is no plan."""
-        silent = self._execution.conduct.silent
-        if ability is not None:
-            awaited = frozenset[str]().union(*(self._tellers.get(name, ()) for name in _deciding(ability)))
-            silent = silent & (awaited | {ability.resource})
-        return (MANY_SILENT.key(), NEVER_HEARD.key(), *map(SILENT.key, sorted(silent))) if silent else ()
+    def _silences(self, ability: Ability) -> tuple[str, ...]:
+        """The silences from which it can follow that an ability is late."""
+        awaited = frozenset[str]().union(*(self._tellers.get(name, ()) for name in _deciding(ability)))
+        return silences(self._execution.conduct.silent & (awaited | {ability.resource}))
 
 
 def _deciding(ability: Ability) -> set[str]:
     """The variables that decide whether the ability is under way, and whether it has finished."""
     guard = ability.executing if ability.finish_guard is None else ability.finish_guard
     return {*variables(ability.executing), *variables(guard)}
+
+
+def _truth(value: object) -> bool | None:
+    return value if isinstance(value, bool) else None

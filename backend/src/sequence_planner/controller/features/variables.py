@@ -1,0 +1,239 @@
+"""Variables: since when each has its value, and why each estimate is believed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from pydantic import JsonValue, ValidationError
+
+from sequence_planner.automaton.automaton import Ability, Kind, reads, target
+from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.controller.views.station import BeliefView, VariableKind, VariableView
+from sequence_planner.controller.views.wording import value_text
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.execution.events import CalledOff, Confirmed, Corrected, Heard, ModeChanged, Ticked, TickOutcome
+from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.jobs import Job
+from sequence_planner.execution.state import InitialState
+from sequence_planner.language.syntax import Assignment, Expression, conjunction, variables
+from sequence_planner.language.types import Value
+
+# Why each estimated variable is believed to have its value: who wrote it, when, from which evidence.
+#
+# Nothing measures an estimate, so all that can be said for it is what was measured when it was written. What a person
+# forces is no evidence, and what came back after a restart of the controller nobody has seen to be still true.
+
+MODEL = "the model"  # writes what is so in the beginning
+JOURNAL = "the journal"  # of what came back when nobody knows any more who wrote it
+
+KIND = "beliefs"  # of the records of beliefs, as they are from then on: the first has all, and others what has changed
+Tell = Callable[[Mapping[str, JsonValue]], None]
+
+
+class Beliefs:
+    """Listens to `execution`. `tell` hears of all beliefs when the first has changed, and then of each that has;
+    `before` came back.
+    """
+
+    def __init__(
+        self,
+        execution: Executor,
+        beginning: InitialState | None = None,
+        before: Mapping[str, BeliefView] | None = None,
+        tell: Tell = lambda beliefs: None,
+    ) -> None:
+        self._execution = execution
+        self._automaton = execution.automaton
+        self._estimates = frozenset(execution.automaton.names(Kind.ESTIMATED))
+        self._tell = tell
+        self._has_told = False
+        self._beliefs = {name: _first(name, beginning, before or {}) for name in sorted(self._estimates)}
+        execution.listeners.append(self.hear)
+
+    def of(self, name: str) -> BeliefView:
+        """Return why an estimate is believed."""
+        return self._beliefs[name]
+
+    def document(self) -> dict[str, JsonValue]:
+        """All beliefs, as a record has them."""
+        return _document(self._beliefs)
+
+    @property
+    def unconfirmed(self) -> bool:
+        """True if there are estimates of which nobody has seen whether they are still true."""
+        return any(belief.unconfirmed_since is not None for belief in self._beliefs.values())
+
+    def hear(self, heard: Heard) -> None:
+        """Take note of what has written estimates."""
+        before = dict(self._beliefs)
+        match heard.happening:
+            case Ticked(now=now) if heard.outcome is not None:
+                self._ticked(heard, heard.outcome, now)
+            case Corrected(values=names, by=by, now=now, taken_back=unseen):
+                for name in self._estimates.intersection(names):
+                    self._beliefs[name] = _unmeasured(by, now) if name in unseen else _seen(by, now)
+            case Confirmed(names=names, by=by, now=now):
+                for name in self._estimates.intersection(names):
+                    self._beliefs[name] = _seen(by, now)
+            case ModeChanged(by=by, now=now) | CalledOff(by=by, now=now):
+                for name in self._changed(heard):
+                    self._beliefs[name] = _unmeasured(by, now)
+        changed = {name: belief for name, belief in self._beliefs.items() if belief != before[name]}
+        if changed:
+            all_, self._has_told = not self._has_told, True
+            self._tell(self.document() if all_ else _document(changed))
+
+    def _ticked(self, heard: Heard, outcome: TickOutcome, now: Timestamp) -> None:
+        """In their order: what a new product brought, who finished, who was called off, who started."""
+        abilities, changed = self._automaton.abilities, self._changed(heard)
+        for job in self._execution.conduct.jobs.under_way:
+            if job.begun == now:
+                self._brought(job, changed)
+        for name in outcome.finished:
+            ability = abilities[name]
+            assert ability.finish_guard is not None
+            # A finish guard can go on to hold; what is written once more then says nothing new.
+            fresh = self._estimates if name in outcome.ended else changed
+            for action in _taken(ability.finish_actions, fresh, changed):
+                self._wrote(heard, ability, ability.finish_guard, action, now)
+        for name in outcome.called_off:
+            for action in _taken(abilities[name].cancel_actions, changed, changed):
+                self._beliefs[target(action)] = _unmeasured(name, now)
+        for name in outcome.started:
+            ability = abilities[name]
+            for action in _taken(ability.start_actions, self._estimates, changed):
+                self._wrote(heard, ability, conjunction(ability.enabled, ability.start_guard), action, now)
+
+    def _brought(self, job: Job, changed: frozenset[str]) -> None:
+        """The product of the job is there; who ordered it says what it is like."""
+        for action in self._automaton.work_masters[job.work_master].brings:
+            if target(action) in changed:
+                since = job.begun.epoch if job.begun is not None else 0.0
+                belief = BeliefView(writer=f"job {job.id}", at=since, evidence=[], unconfirmed_since=None)
+                self._beliefs[target(action)] = belief
+
+    def _wrote(self, heard: Heard, ability: Ability, guard: Expression, action: Assignment, now: Timestamp) -> None:
+        """The ability has written an estimate, as its `guard` held."""
+        seen = self._evidence(heard, guard, action)
+        forced = seen.keys() & self._execution.conduct.forces.keys()
+        genuine = ((name, value) for name, value in seen.items() if name not in forced)
+        self._beliefs[target(action)] = BeliefView(
+            writer=ability.name,
+            at=now.epoch,
+            evidence=[value_text(self._automaton, name, value) for name, value in genuine if value is not None],
+            unconfirmed_since=now.epoch if forced else self._doubt(action),
+        )
+
+    def _evidence(self, heard: Heard, guard: Expression, action: Assignment) -> dict[str, Value | None]:
+        """Return what was measured: the variables that are read, or else those that flags were set by in the tick
+        before.
+        """
+        direct = [*variables(guard), *sorted(reads(action))]
+        measured = [name for name in dict.fromkeys(direct) if self._is(name, Kind.MEASURED)]
+        if measured:
+            return {name: heard.after[name] for name in measured}
+        behind = sorted(read_variables(self._automaton, (guard,)))
+        return {name: heard.before[name] for name in behind if self._is(name, Kind.MEASURED)}
+
+    def _doubt(self, action: Assignment) -> float | None:
+        """Since when nobody has confirmed an estimate from which the value is computed."""
+        read = self._estimates.intersection(variables(action.value))
+        since = [self._beliefs[name].unconfirmed_since for name in read]
+        return min((each for each in since if each is not None), default=None)
+
+    def _changed(self, heard: Heard) -> frozenset[str]:
+        return frozenset(name for name in self._estimates if heard.before[name] != heard.after[name])
+
+    def _is(self, name: str, kind: Kind) -> bool:
+        variable = self._automaton.variables.get(name)
+        return variable is not None and variable.kind is kind
+
+
+def _document(beliefs: Mapping[str, BeliefView]) -> dict[str, JsonValue]:
+    return {name: belief.model_dump(mode="json") for name, belief in beliefs.items()}
+
+
+def _taken(actions: Iterable[Assignment], names: frozenset[str], changed: frozenset[str]) -> Iterator[Assignment]:
+    """The actions that write one of `names`. One with a condition has only if its variable has changed."""
+    return (a for a in actions if target(a) in (names if a.condition is None else names & changed))
+
+
+def _seen(by: str, now: Timestamp) -> BeliefView:
+    """A person says so."""
+    return BeliefView(writer=by, at=now.epoch, evidence=[], unconfirmed_since=None)
+
+
+def _unmeasured(writer: str, now: Timestamp) -> BeliefView:
+    """Calling off writes what is expected of it, and who takes a correction back what was there: nothing was measured
+    that says so.
+    """
+    return BeliefView(writer=writer, at=now.epoch, evidence=[], unconfirmed_since=now.epoch)
+
+
+def _first(name: str, beginning: InitialState | None, before: Mapping[str, BeliefView]) -> BeliefView:
+    """Return what is known as the execution begins."""
+    at = 0.0 if beginning is None else beginning.now.epoch
+    since = None if beginning is None else beginning.unconfirmed_since
+    if beginning is None or name not in beginning.values:
+        return BeliefView(writer=MODEL, at=at, evidence=[], unconfirmed_since=since)
+    known = before.get(name)
+    if known is None:
+        return BeliefView(writer=JOURNAL, at=at if since is None else since, evidence=[], unconfirmed_since=since)
+    doubted = [each for each in (known.unconfirmed_since, since) if each is not None]
+    return known.model_copy(update={"unconfirmed_since": min(doubted, default=None)})
+
+
+def beliefs_from(content: Mapping[str, JsonValue]) -> dict[str, BeliefView]:
+    """Return what such a record says; nothing where it is of a program that wrote it differently."""
+    try:
+        return {name: BeliefView.model_validate(written) for name, written in content.items()}
+    except ValidationError:
+        return {}
+
+
+# What each variable is, and since when.
+
+
+class Variables:
+    """Those of `execution`; `feeds` names the topic behind each measured one."""
+
+    def __init__(self, execution: Executor, feeds: Mapping[str, str], beliefs: Beliefs) -> None:
+        self._execution = execution
+        self._feeds, self._beliefs = feeds, beliefs
+        self._since: dict[str, tuple[Value | None, float]] = {}
+
+    def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
+        """After a tick: remember what has changed."""
+        now = moment.epoch
+        for name in self._execution.automaton.variables:
+            value = self._execution.state[name]
+            if name not in self._since or self._since[name][0] != value:
+                self._since[name] = (value, now)
+
+    def since(self, name: str) -> float | None:
+        """Return when a variable was first seen with the value that it has; None before the first tick."""
+        seen = self._since.get(name)
+        return None if seen is None else seen[1]
+
+    def view_part(self, moment: Timestamp) -> dict[str, object]:
+        """Its part of the view."""
+        return {"variables": self._views(), "unconfirmed": self._beliefs.unconfirmed}
+
+    def _views(self) -> dict[str, VariableView]:
+        views = {}
+        for name, variable in self._execution.automaton.variables.items():
+            if variable.kind is Kind.ACTIVITY:
+                continue  # operations have a part of their own
+            value = self._execution.state[name]
+            since = self._since.get(name)
+            views[name] = VariableView(
+                resource=variable.resource,
+                kind=VariableKind(variable.kind),
+                value=value,
+                domain=list(variable.type.domain),
+                dual_approval=variable.dual_approval,
+                since=since[1] if since else None,
+                awaits=self._feeds.get(name) if value is None else None,
+                belief=self._beliefs.of(name) if variable.kind is Kind.ESTIMATED else None,
+            )
+        return views

@@ -1,0 +1,47 @@
+"""What passes the pipelines of a running station, for who asks."""
+
+from __future__ import annotations
+
+from sequence_planner.controller.commands.command import CommandRefused, answers
+from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, AskRecord
+from sequence_planner.controller.io.devices import Devices
+from sequence_planner.controller.io.monitor import Observing, record_view
+from sequence_planner.controller.io.pipeline_graph import pipelines_view
+from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView, RecordView
+from sequence_planner.core.clock import Timestamp
+from sequence_planner.pipelines.graph import StationPipelines
+
+
+class PipelineTraffic:
+    """Answers about `pipelines`, and what `devices` have observed of them."""
+
+    def __init__(self, pipelines: StationPipelines, devices: Devices) -> None:
+        self._pipelines, self._devices = pipelines, devices
+        self._observing = Observing()
+
+    @answers(AboutPipelines)
+    def pipelines(self, query: AboutPipelines) -> PipelinesView:
+        """The graph of the pipelines."""
+        return pipelines_view(self._pipelines)
+
+    @answers(AboutFlows)
+    def flows(self, query: AboutFlows) -> FlowsView:
+        """Return what has passed the pipelines."""
+        return self._observing.view(self._devices.traffic(query.among), Timestamp.now())
+
+    @answers(AskRecord)
+    def record(self, query: AskRecord) -> RecordView:
+        """The last record of a pipeline. Raises `CommandRefused` where there is none that can be told."""
+        pipeline = query.pipeline
+        found = self._devices.traffic({pipeline}).get(pipeline)
+        if found is None:
+            raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
+        try:
+            record = record_view(found, Timestamp.now())
+        except ValueError as error:
+            detail = f"The last record of `{pipeline}` is too large to be told: {error}."
+            raise CommandRefused("record-too-large", "The record is too large", detail, 422) from None
+        if record is None:
+            detail = f"Nothing has passed `{pipeline}` since the controller began. Try again when something has."
+            raise CommandRefused("no-record", "There is no record", detail, 409)
+        return record
