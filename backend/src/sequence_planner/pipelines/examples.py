@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.language.records.field_paths import fits, shown
 from sequence_planner.language.records.record import RealType, Record, RecordType
 from sequence_planner.language.resolver import suggestion
@@ -186,8 +186,7 @@ def _checked(given: Plain, known: Mapping[str, object]) -> Plain:
 # An example is of one topic or flow alone, with its own stages. It begins with nothing remembered.
 
 
-@dataclass(frozen=True)
-class PipelineExample:
+class PipelineExample(Immutable):
     """One example with what it is of."""
 
     pipeline: str
@@ -238,8 +237,7 @@ class PipelineExample:
                 yield key, f"expected `{key}` to be {_said(wanted)}, and it is {_said(came)}{why}"
 
 
-@dataclass(frozen=True)
-class ExampleMoment:
+class ExampleMoment(Immutable):
     """The outcome of a pipeline by some moment, and what of it makes no sense; and what has passed each edge."""
 
     came: Plain

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.language.records.record import Record, RecordType
 from sequence_planner.language.types import Type
 from sequence_planner.model.stages.base import Override, Stage
@@ -46,8 +47,7 @@ STATUS_TYPE, STATUS_FIELD = "std_msgs/msg/String", "data"
 # Everything here is immutable and shared; what changes while the station runs is in `runtime`.
 
 
-@dataclass(frozen=True)
-class Topic:
+class Topic(Immutable):
     """A topic as the station uses it."""
 
     name: str
@@ -56,8 +56,7 @@ class Topic:
     quality: QualityOfService
 
 
-@dataclass(frozen=True)
-class Chain:
+class Chain(Immutable):
     """Stages, one after the other, and the fields of a record before the first and after each."""
 
     stages: tuple[Stage, ...]
@@ -74,8 +73,7 @@ class Chain:
         return any(stage.is_timed for stage in self.stages)
 
 
-@dataclass(frozen=True)
-class VariableField:
+class VariableField(Immutable):
     """A field that is a variable at the end of a chain. `between` is what a discretised one is between its points."""
 
     field: str
@@ -84,8 +82,7 @@ class VariableField:
     between: str | None = None
 
 
-@dataclass(frozen=True)
-class IncomingPipeline:
+class IncomingPipeline(Immutable):
     """From messages to measured variables. Without a message for `deadline` seconds they are unknown."""
 
     topic: Topic
@@ -112,8 +109,7 @@ class Joining(StrEnum):
     MERGE = "merge"  # the latest record of each, as one
 
 
-@dataclass(frozen=True)
-class Flow:
+class Flow(Immutable):
     """A chain behind topics or other flows. `sources` has them by alias, which outside a merge is their own name."""
 
     name: str
@@ -129,16 +125,14 @@ class Flow:
         return tuple(writing.variable for writing in self.writings)
 
 
-@dataclass(frozen=True)
-class Setting:
+class Setting(Immutable):
     """A field of an outgoing message and the field of the last record that it takes; `depends` are its variables."""
 
     field: str
     depends: frozenset[str]
 
 
-@dataclass(frozen=True)
-class OutgoingPipeline:
+class OutgoingPipeline(Immutable):
     """From variables to messages, repeated `every` so many seconds.
 
     `read` has the variables of the resource by their names without it, as they stand in the first record.
@@ -157,8 +151,7 @@ class OutgoingPipeline:
         return tuple(variable for variable in self.read.values() if variable in self.depends)
 
 
-@dataclass(frozen=True)
-class ServiceUse:
+class ServiceUse(Immutable):
     """A service that the station calls when the output `when` rises, every so many seconds, or both."""
 
     name: str
@@ -170,8 +163,7 @@ class ServiceUse:
     response: IncomingPipeline
 
 
-@dataclass(frozen=True)
-class ActionUse:
+class ActionUse(Immutable):
     """An action that is sent a goal when the output `when` rises, which is cancelled when that falls."""
 
     name: str
@@ -278,8 +270,7 @@ class Edge:
         self.at = now
 
 
-@dataclass(frozen=True)
-class EdgeView:
+class EdgeView(Immutable):
     """One edge: where it leads (`3 discretise`, or the name of the end), and what has passed it.
 
     `held` are the records the stage has not let through so far: dropped, held back, or made one of several.
@@ -293,8 +284,7 @@ class EdgeView:
     at: float | None
 
 
-@dataclass(frozen=True)
-class PipelineView:
+class PipelineView(Immutable):
     """The pipeline of one topic or flow, from its source to its end; `repeated` messages said nothing new."""
 
     name: str

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
+from sequence_planner.core.immutable import Immutable
+
 Direction = Literal["publisher", "subscriber"]
 
 #: Samples that wait for a process which itself waits for the processor.
@@ -93,8 +95,7 @@ _NAMED = {
 }
 
 
-@dataclass(frozen=True)
-class QualityEvent:
+class QualityEvent(Immutable):
     """A message of the middleware about the quality of service of one of our own endpoints.
 
     `incompatible`: a peer was found that does not agree, so nothing passes between the two. `deadline`: no sample came

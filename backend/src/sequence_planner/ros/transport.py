@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, runtime_checkable
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros.qos import Direction, QualityEvent, QualityOfService
 
 # Who serves and who calls services, where a transport can tell.
@@ -13,8 +14,7 @@ from sequence_planner.ros.qos import Direction, QualityEvent, QualityOfService
 Role = Literal["server", "client"]
 
 
-@dataclass(frozen=True)
-class ServiceEnd:
+class ServiceEnd(Immutable):
     """A server or a client of a service, `type_name` as in `package/srv/Name`; `own` is this transport's.
 
     `node` and `vendor` (of its middleware) are None where it does not tell. It is `understood` where it puts the number
@@ -87,8 +87,7 @@ def unhindered() -> None:
     """Let a request go out whenever it can."""
 
 
-@dataclass(frozen=True)
-class NetworkEndpoint:
+class NetworkEndpoint(Immutable):
     """A publisher or subscriber on the network.
 
     `own` tells this transport's endpoints from everybody else's. `type_name` is `package/msg/Name`, or whatever the

@@ -22,6 +22,7 @@ from cyclonedds.qos import Qos
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros import discovery_info, environment, names
 from sequence_planner.ros.call_header import CallHeader, split_header, with_header
 from sequence_planner.ros.delivery import Delivery, Serving, both_sides, check_hashes
@@ -342,8 +343,7 @@ def _responder(service: str, end: CallEnd, header: CallHeader) -> Callable[[byte
 # registry.
 
 
-@dataclass(frozen=True)
-class _Publisher:
+class _Publisher(Immutable):
     writer: DataWriter[RawSample]
     raw: type[RawSample]
     type_name: str

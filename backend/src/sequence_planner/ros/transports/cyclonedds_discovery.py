@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Collection, Container, Iterable
-from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Literal, get_args
 from uuid import UUID
@@ -28,6 +27,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 from rosbags.interfaces import Nodetype
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros import discovery_info, names
 from sequence_planner.ros.environment import vendor_of
 from sequence_planner.ros.qos import Direction, QualityOfService
@@ -54,8 +54,7 @@ _OF_WRITERS = DDSStatus.OfferedIncompatibleQos | DDSStatus.OfferedDeadlineMissed
 _POLICIES = {2: "durability", 4: "deadline", 8: "liveliness", 11: "reliability"}
 
 
-@dataclass(frozen=True)
-class StatusChange:
+class StatusChange(Immutable):
     """A change of one endpoint's status; `detail` names the policy, where one was not agreed on, or says what it is."""
 
     topic: str
@@ -64,8 +63,7 @@ class StatusChange:
     detail: str
 
 
-@dataclass(frozen=True)
-class Watched:
+class Watched(Immutable):
     """One of our own endpoints and its quality of service."""
 
     topic: str

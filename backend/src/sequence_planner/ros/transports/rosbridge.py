@@ -22,6 +22,7 @@ from roslibpy.comm.comm_asyncio import (
     AsyncioRosBridgeProtocol,
 )
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.names import check_node_name, check_topic
 from sequence_planner.ros.qos import Direction, QualityOfService
@@ -60,8 +61,7 @@ _open: set[RosbridgeClient] = set()
 _lock = threading.Lock()
 
 
-@dataclass(frozen=True)
-class Events:
+class Events(Immutable):
     """The functions called on roslibpy's thread: when there is a connection, with each frame, and when there is
     none.
     """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Set
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -13,6 +12,7 @@ from rosbags.typesys import TypesysError
 from rosbags.typesys.base import BaseName, BaseType, create_field_desc, normalize_fieldname
 from rosbags.typesys.msg import MSGParser
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros.types.errors import MessageDefinitionError, nearest
 
 if TYPE_CHECKING:
@@ -63,8 +63,7 @@ _INSTEAD = {
 }
 
 
-@dataclass(frozen=True)
-class FieldDeclaration:
+class FieldDeclaration(Immutable):
     """One field of a definition, with the line and column that declare it and the default as written, if any."""
 
     name: str
@@ -74,8 +73,7 @@ class FieldDeclaration:
     column: int
 
 
-@dataclass(frozen=True)
-class ConstantDeclaration:
+class ConstantDeclaration(Immutable):
     """One constant of a definition: its name, the name of its type and its value."""
 
     name: str
@@ -83,8 +81,7 @@ class ConstantDeclaration:
     value: ScalarValue
 
 
-@dataclass(frozen=True)
-class Definition:
+class Definition(Immutable):
     """One message, read."""
 
     type_name: str
@@ -93,8 +90,7 @@ class Definition:
     constants: tuple[ConstantDeclaration, ...]
 
 
-@dataclass(frozen=True)
-class Interface:
+class Interface(Immutable):
     """One file, read: `type_name` is written `package/msg/Name`, with `srv` or `action` for the other kinds.
 
     `messages` are the message itself, request and response, or goal, result and feedback.
@@ -244,8 +240,7 @@ PLACEHOLDER = "structure_needs_at_least_one_member"
 ON_THE_WIRE = frozenset({"char", "byte"})
 
 
-@dataclass(frozen=True)
-class FieldType:
+class FieldType(Immutable):
     """The type of one field.
 
     `array` is None for a single value, the length of a fixed array, or "sequence". `type_name` is the primitive's name

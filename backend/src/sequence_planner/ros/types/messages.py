@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
@@ -14,6 +13,7 @@ from rosbags.typesys import TypesysError
 from rosbags.typesys.base import normalize_fieldname
 from rosbags.typesys.store import Typestore
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.core.numerals import counted
 from sequence_planner.ros import names
 from sequence_planner.ros.types.definitions import (
@@ -59,8 +59,7 @@ if TYPE_CHECKING:
 _DTYPES = {"byte": "uint8", "char": "uint8"}
 
 
-@dataclass(frozen=True)
-class MessageShape:
+class MessageShape(Immutable):
     """One message type: its fields in order, the defaults that are not zero, and the class that holds its values."""
 
     type_name: str

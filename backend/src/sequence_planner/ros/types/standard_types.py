@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros.types.definitions import ON_THE_WIRE, Interface, as_uint8, carried, read_interface
 
 if TYPE_CHECKING:
@@ -28,8 +29,7 @@ CANCEL_GOAL = "action_msgs/srv/CancelGoal"
 GOAL_STATUSES = "action_msgs/msg/GoalStatusArray"
 
 
-@dataclass(frozen=True)
-class ServiceType:
+class ServiceType(Immutable):
     """The messages of the service `type_name`, by the names of their types."""
 
     type_name: str
@@ -50,8 +50,7 @@ class ServiceType:
         return f"{self.type_name}_Event"
 
 
-@dataclass(frozen=True)
-class ActionType:
+class ActionType(Immutable):
     """The messages and services of the action `type_name`, by the names of their types."""
 
     type_name: str

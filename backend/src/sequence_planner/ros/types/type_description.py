@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
@@ -16,6 +15,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys.base import normalize_fieldname
 from rosbags.typesys.store import Typestore
 
+from sequence_planner.core.immutable import Immutable
 from sequence_planner.ros.types.definitions import MAX_DEPTH
 
 if TYPE_CHECKING:
@@ -48,8 +48,7 @@ _NESTED, _BOUNDED_STRING = 1, 21
 _ARRAY, _BOUNDED_SEQUENCE, _SEQUENCE = 48, 96, 144  # added to the number of the element's type
 
 
-@dataclass(frozen=True)
-class FoundType:
+class FoundType(Immutable):
     """A message type that no file defines: `source` has described it over the network, and `type_hash` proves it."""
 
     type_name: str
