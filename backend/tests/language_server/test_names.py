@@ -46,6 +46,20 @@ def test_where_it_is_declared(
     editor.close(uri)
 
 
+def test_an_operation_in_a_sequence_leads_to_it(editor: Editor, station: Path) -> None:
+    file = station / "operations.yaml"
+    whole = "whole:\n  for: {one: bolt_pair}\n  sequence: [place_bolt_pair(one), tighten_bolt_pair(one)]\n"
+    file.write_text(f"{whole}again: {{sequence: whole}}\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
+    uri = editor.open(file)
+    for mark, offset, found in (
+        ("[place_bolt_pair(one)", 3, "place_bolt_pair"),
+        ("sequence: whole", 12, "whole"),
+    ):
+        (place,) = editor.ask("textDocument/definition", **editor.at(uri, mark, offset))
+        assert named(editor, place) == ("operations.yaml", found)
+    editor.close(uri)
+
+
 def test_where_it_is_used(editor: Editor, station: Path) -> None:
     uri = editor.open(station / "resources" / "robot.yaml")
     asked = editor.at(uri, "  pose: {", 4)

@@ -5,7 +5,6 @@ That this allows the orders a sequence stands for, and no others, is a law of `c
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 from shutil import copytree
 
@@ -264,9 +263,7 @@ tighten_bolts:
   sequence: tighten_bolt_pair(pair)
 """
 _READY = "scene.attached == ATLASTOOL and not nutrunner.activate_lift)\n"
-_EACH_AFTER_THE_OTHER = "".join(
-    f"    and (pair == {later} implies bolts[{sooner}] == tightened)\n" for sooner, later in pairwise(_PAIRS)
-)
+_EACH_AFTER_THE_OTHER = "    and (pair == first(bolt_pair) or bolts[previous(pair)] == tightened)\n"
 
 
 @pytest.mark.parametrize(

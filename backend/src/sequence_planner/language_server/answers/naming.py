@@ -23,6 +23,7 @@ _HOMES = {
     "enumeration": STATION,
     "value": STATION,
     "operation": OPERATIONS,
+    "sequence": OPERATIONS,
     "specification": SPECIFICATIONS,
     "work_master": WORK_MASTERS,
 }
@@ -81,7 +82,7 @@ def _homes(snapshot: StationSnapshot, part: ModelPart) -> list[str]:
     if part.kind == "resource":
         return [file_of(part.name)]
     owner, _, name = (part.owner or "").partition(":")
-    if name:  # the parameter of an operation or a specification
+    if name:  # the parameter of an operation, say
         return [_HOMES[owner]]
     if part.kind in _HOMES:
         return [_HOMES[part.kind]]

@@ -39,6 +39,7 @@ _SYMBOL_KINDS = {
     "effect": types.SymbolKind.Event,
     "alarm": types.SymbolKind.Event,
     "operation": types.SymbolKind.Function,
+    "sequence": types.SymbolKind.Function,
     "specification": types.SymbolKind.Constant,
     "work_master": types.SymbolKind.Class,
     "parameter": types.SymbolKind.TypeParameter,
