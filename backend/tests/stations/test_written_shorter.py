@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 from golden.journals import model
-from sequence_planner.automaton.automaton import Automaton, target
+from sequence_planner.automaton.automaton import target
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_expression
+from sequence_planner.language.records.field_paths import domain
 from sequence_planner.language.syntax import (
     TRUE,
     Assignment,
@@ -25,7 +26,8 @@ from sequence_planner.language.syntax import (
     occurrences,
 )
 from sequence_planner.language.types import EnumerationType, Type, Value
-from sequence_planner.station import read_station
+from sequence_planner.model.stages.map import MapStage, TableStage
+from sequence_planner.station import ReadyStation, prepare_station
 
 STATIONS = Path(__file__).parents[3] / "models"
 MOST_STATES = 200_000
@@ -35,15 +37,39 @@ BEFORE = {"truck_engine_station": "29321a2f211e"}
 
 
 @pytest.fixture(scope="module", params=BEFORE)
-def automata(request: pytest.FixtureRequest) -> tuple[Automaton, Automaton]:
+def stations(request: pytest.FixtureRequest) -> tuple[ReadyStation, ReadyStation]:
     with model(BEFORE[request.param]) as folder:
-        before = read_station(folder).automaton
-    assert model_digest(before).startswith(BEFORE[request.param])
-    return before, read_station(STATIONS / request.param).automaton
+        before = prepare_station(folder)
+    assert model_digest(before.automaton).startswith(BEFORE[request.param])
+    return before, prepare_station(STATIONS / request.param)
 
 
-def test_it_means_what_it_meant(automata: tuple[Automaton, Automaton]) -> None:
-    before, now = automata
+def test_its_pipelines_give_what_they_gave(stations: tuple[ReadyStation, ReadyStation]) -> None:
+    before, now = (each.pipelines for each in stations)
+    compared = 0
+    for one, other in ((before.incoming, now.incoming), (before.outgoing, now.outgoing)):
+        assert one.keys() == other.keys()
+        for topic, pipeline in one.items():
+            for first, second in zip(pipeline.chain.stages, other[topic].chain.stages, strict=True):
+                assert (type(first), first.reads, first.gives.keys()) == (
+                    type(second),
+                    second.reads,
+                    second.gives.keys(),
+                )
+                if isinstance(first, TableStage) and isinstance(second, TableStage):
+                    domains = [domain(type_) or () for type_ in first.source_types]
+                    given = list(product(*domains))
+                    assert [first.meaning(each) for each in given] == [second.meaning(each) for each in given]
+                    compared += len(given)
+                if isinstance(first, MapStage) and isinstance(second, MapStage):
+                    texts = [*(key for key, _ in first.pairs), *(key for key, _ in second.pairs), "moving"]
+                    assert [first.meaning(each) for each in texts] == [second.meaning(each) for each in texts]
+                    compared += len(texts)
+    assert compared > 300
+
+
+def test_it_means_what_it_meant(stations: tuple[ReadyStation, ReadyStation]) -> None:
+    before, now = (each.automaton for each in stations)
     assert {each: _plain(variable.type) for each, variable in now.variables.items()} == {
         each: _plain(variable.type) for each, variable in before.variables.items()
     }

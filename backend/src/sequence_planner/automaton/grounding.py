@@ -778,5 +778,6 @@ def ground_variables(station: Station) -> tuple[Automaton, list[Finding]]:
         abilities={},
         flags=(),
         places=declarations.places,
+        vocabulary=declarations.vocabulary,
     )
     return automaton, findings.all

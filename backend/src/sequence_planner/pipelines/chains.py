@@ -46,6 +46,7 @@ class ChainBuilding:
     folder: Path
     findings: PipelineFindings
     fields: list[RecordType]
+    sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     stages: list[Stage] = field(default_factory=list)
     documents: list[StageDocument] = field(default_factory=list)
     is_cut: bool = False
@@ -67,7 +68,7 @@ class ChainBuilding:
             self.findings.add(place, f"`{self.name}` → stage {number} `{document.kind}`: {message}")
 
         fields = self.fields[-1]
-        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found)
+        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found, self.sets)
         stage = document.check(context)
         if stage is None or len(self.findings.found) > before:
             self.is_sound = False

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -56,7 +56,8 @@ class Context:
 
     `is_incoming` holds for incoming topics and flows. `fields` are those of the record before the stage. `wanted` are
     the names for which there is a use at the end, with their types: the measured variables of the resource without its
-    name (incoming), or the fields of the message (outgoing). A stage may give others, which a later one reads.
+    name (incoming), or the fields of the message (outgoing). A stage may give others, which a later one reads. `sets`
+    are the values of the enumerations and named sets of the station.
     `found` notes what is wrong at a place; it adds which pipeline and which stage.
     """
 
@@ -66,6 +67,7 @@ class Context:
     folder: Path
     place: Place
     found: Callable[[Place, str], None]
+    sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def field(self, path: SourceText) -> tuple[FieldPath, FieldType] | None:
         """A field that the stage reads, by its path; None, and a finding, when there is none."""
@@ -127,8 +129,8 @@ class StageDeclaration(DocumentPart, ABC):
         """What could be written about a field: its name, free ones for what is given, and examples of all else."""
         content: dict[str, object] = {}
         marks = dict(marks_of(cls))
-        for field, info in cls.model_fields.items():
-            key = info.alias or field
+        for own, info in cls.model_fields.items():
+            key = info.alias or own
             mark = marks.get((key,)) or marks.get((key, Within.ENTRIES))
             if (example := next((each for each in info.metadata if isinstance(each, ExampleValue)), None)) is not None:
                 content[key] = example.value

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from sequence_planner.language.records.field_paths import FieldPath, as_written, domain, is_numeric, is_textual, shown
+from sequence_planner.language.records.field_paths import (
+    FieldPath,
+    as_written,
+    domain,
+    is_numeric,
+    is_textual,
+    shown,
+    written,
+)
 from sequence_planner.language.records.record import FieldType, ListType, Record
+from sequence_planner.language.types import EnumerationType
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration
@@ -55,8 +65,9 @@ class MapDocument(StageDeclaration):
     """The field of the message."""
     variable: ModelVariable
     """The variable that corresponds to it."""
-    values: Annotated[dict[ReadValue, Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]
-    """What each value of the message means; for an outgoing topic, what is sent for each value of the variable."""
+    values: Given[Annotated[dict[ReadValue, Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]] = None
+    """What each value of the message means; for an outgoing topic, what is sent for each value of the variable. A named
+    set among the keys stands for its values. Without it each name is the same on both sides."""
     otherwise: Given[Annotated[Scalar, GIVEN_VALUE]] = None
     """What all other values become; without it they are unknown."""
 
@@ -65,14 +76,16 @@ class MapDocument(StageDeclaration):
         names = (self.field, self.variable)
         source, target = names if context.is_incoming else reversed(names)
         found = context.field(source)
-        meanings = [*self.values.values(), *([] if self.otherwise is None else [self.otherwise])]
+        rest = [] if self.otherwise is None else [self.otherwise]
+        meanings = [*(self.values or {}).values(), *rest]
         target_type = type_for(context, target, meanings)
         if found is None or target_type is None:
             return None
         path, source_type = found
-        given = values_of(context, source_type, list(self.values), source.place)
-        meant = values_of(context, target_type, meanings, target.place)
-        if given is None or meant is None or _are_twice(list(self.values), given, context):
+        values = self._written_out(source, source_type, target_type, context)
+        given = values_of(context, source_type, list(values), source.place)
+        meant = values_of(context, target_type, [*values.values(), *rest], target.place)
+        if not values or given is None or meant is None or _are_twice(list(values), given, context):
             return None
         missing = [value for value in domain(source_type) or () if value not in given]
         if missing and self.otherwise is None and not context.is_incoming:
@@ -81,6 +94,19 @@ class MapDocument(StageDeclaration):
         otherwise = None if self.otherwise is None else meant[-1]
         pairs = tuple(zip(given, meant, strict=False))
         return MapStage(context.place, path, source_type, str(target), target_type, pairs, otherwise)
+
+    def _written_out(
+        self, source: SourceText, of: FieldType, to: FieldType, context: Context
+    ) -> dict[SourceText, Scalar]:
+        """The value for each value, where sets and names that are the same stand for several; empty after a finding."""
+        if self.values is not None:
+            return {each: meant for key, meant in self.values.items() for each in meant_by(key, of, context)}
+        names = to if context.is_incoming else of
+        if not isinstance(names, EnumerationType):
+            context.found(source.place, "without `values` the variable is an enumeration, whose names the message has")
+            return {}
+        same = (SourceText(name, source.place, name) for name in names.values if name != self.otherwise)
+        return {name: name for name in same}
 
     @classmethod
     def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
@@ -103,6 +129,13 @@ class MapDocument(StageDeclaration):
     @classmethod
     def _about(cls, name: str, spot: Spot) -> object:
         return {"field": name, "variable": spot.target, "values": {"0": 0}} if spot.open else None
+
+
+def meant_by(text: SourceText, type_: FieldType, context: Context) -> list[SourceText]:
+    """The values that a text stands for: itself, or those of the set that it names and that is no value itself."""
+    if written(type_, text) is not None or str(text) not in context.sets:
+        return [text]
+    return [SourceText(member, text.place, member) for member in context.sets[str(text)]]
 
 
 def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
@@ -175,7 +208,7 @@ class TableRowDocument(DocumentPart):
     """One row of a table."""
 
     when: Annotated[list[Annotated[Scalar, ValueMark(of_given=False, but=ANY)]], Field(min_length=1)]
-    """A value for each of `fields`; `any` fits everything."""
+    """A value for each of `fields`, or a named set of them; `any` fits everything."""
     gives: Annotated[list[Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]
     """A value for each of `variables`."""
 
@@ -216,7 +249,7 @@ class TableDocument(StageDeclaration):
         gives = {str(name): type_ for name, type_ in zip(self.variables, types, strict=True) if type_ is not None}
         if len(gives) != len(types):
             return None
-        rows = [_row(row, sources, gives, context) for row in self.rows]
+        rows = [each for row in self.rows for each in _rows(row, sources, gives, context)]
         otherwise = None if self.otherwise is None else _values(self.otherwise, list(gives.values()), context)
         known = tuple(row for row in rows if row is not None)
         if len(known) != len(rows) or (self.otherwise is not None and otherwise is None):
@@ -256,17 +289,23 @@ def _has_cells(row: TableRowDocument, document: TableDocument, context: Context)
     return True
 
 
-def _row(
+def _rows(
     row: TableRowDocument, sources: Sequence[Passing], gives: Mapping[str, FieldType], context: Context
-) -> Row | None:
+) -> Iterator[Row | None]:
+    """The row for each choice of values of the sets in it; None after a finding."""
     place = place_of([*row.when, *row.gives], context.place)
-    when = [
-        None if cell == ANY else value_of(context, source.type, cell, place)
+    meant = _values(row.gives, list(gives.values()), context)
+    columns = [
+        meant_by(cell, source.type, context) if isinstance(cell, SourceText) and cell != ANY else [cell]
         for cell, source in zip(row.when, sources, strict=True)
     ]
-    meant = _values(row.gives, list(gives.values()), context)
-    wrong = any(value is None and cell != ANY for value, cell in zip(when, row.when, strict=True))
-    return None if wrong or meant is None else Row(tuple(when), meant)
+    for cells in product(*columns):
+        when = [
+            None if cell == ANY else value_of(context, source.type, cell, place)
+            for cell, source in zip(cells, sources, strict=True)
+        ]
+        wrong = any(value is None and cell != ANY for value, cell in zip(when, cells, strict=True))
+        yield None if wrong or meant is None else Row(tuple(when), meant)
 
 
 def _values(cells: Sequence[object], types: Sequence[FieldType], context: Context) -> tuple[object, ...] | None:
