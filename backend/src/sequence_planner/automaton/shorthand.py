@@ -39,7 +39,7 @@ def read_enumerations(station: Station, findings: Findings) -> dict[str, Enumera
     for name, values in station.station.enumeration_values().items():
         document = written[name]
         if isinstance(document, EnumerationDocument):
-            _check_included(name, document, station, findings)
+            check_included(name, document, station, findings)
         if values:
             found[str(name)] = EnumerationType(tuple(map(str, values)))
     return found
@@ -50,7 +50,8 @@ def own_values(document: list[SourceText] | EnumerationDocument) -> list[SourceT
     return document.values if isinstance(document, EnumerationDocument) else document
 
 
-def _check_included(name: SourceText, document: EnumerationDocument, station: Station, findings: Findings) -> None:
+def check_included(name: SourceText, document: EnumerationDocument, station: Station, findings: Findings) -> None:
+    """Note what an enumeration includes and cannot."""
     enumerations = station.station.enumerations
     for each in document.includes:
         if each not in enumerations:
@@ -101,14 +102,15 @@ class ShorthandReader:
             for name in ready or pending:
                 if not ready:
                     self._findings.add(name, f"`{name}` would be a part of itself")
-                elif (type_ := self._set(name, pending[name])) is not None:
+                elif (type_ := self.read_set(name, pending[name])) is not None:
                     yield name, type_
             pending = {name: document for name, document in pending.items() if ready and name not in ready}
 
     def _needs(self, document: SetDocument) -> set[str]:
         return {str(document.of), *map(str, document.values or document.excludes or ())}
 
-    def _set(self, name: SourceText, document: SetDocument) -> EnumerationType | None:
+    def read_set(self, name: SourceText, document: SetDocument) -> EnumerationType | None:
+        """The values of one set; None where its enumeration is unknown or nothing is left."""
         if (whole := self._domain(document.of)) is None:
             return None
         named = self._values_among(document.values or document.excludes or [], whole)
@@ -146,11 +148,14 @@ class ShorthandReader:
     def read_relations(self) -> Iterator[tuple[SourceText, ValueRelation]]:
         """Each relation with its pairs."""
         for name, document in self._station.relations.items():
-            types = [self._domain(each) for each in document.between]
-            if types[0] is not None and types[1] is not None:
-                yield name, self._relation(document, types[0], types[1])
+            if (relation := self.read_relation(document)) is not None:
+                yield name, relation
 
-    def _relation(self, document: RelationDocument, first: EnumerationType, second: EnumerationType) -> ValueRelation:
+    def read_relation(self, document: RelationDocument) -> ValueRelation | None:
+        """One relation; None where one of its enumerations is unknown."""
+        first, second = map(self._domain, document.between)
+        if first is None or second is None:
+            return None
         pairs: set[tuple[str, str]] = set()
         for one, other in document.pairs:
             for left in self._values_among(one if isinstance(one, list) else [one], first):
@@ -166,10 +171,16 @@ class ShorthandReader:
     def read_maps(self) -> Iterator[tuple[SourceText, ValueMap]]:
         """Each map with its table."""
         for name, document in self._station.maps.items():
-            source = self._domain(document.source)
-            target = self._declarations.type_of(name, document.to, None)
-            if source is not None and target is not None:
-                yield name, ValueMap(source, target, self._table(name, document, source, target))
+            if (found := self.read_map(name, document)) is not None:
+                yield name, found
+
+    def read_map(self, name: SourceText, document: ValueMapDocument) -> ValueMap | None:
+        """One map; None where what it is from or to is unknown."""
+        source = self._domain(document.source)
+        target = self._declarations.type_of(name, document.to, None)
+        if source is None or target is None:
+            return None
+        return ValueMap(source, target, self._table(name, document, source, target))
 
     def _table(
         self, name: SourceText, document: ValueMapDocument, source: EnumerationType, target: Type

@@ -40,9 +40,28 @@ from sequence_planner.ros.types.messages import MessageRegistry
 # The layers are those of the paper: 0 what nodes of ROS 2 measure and are told, 1 the abilities of resources with what
 # they estimate, 2 operations and specifications, 3 the order of work. All ties are uses that `gather` finds, once each.
 
-_LAYERS = {"work_master": 3, "sequence": 3, "operation": 2, "specification": 2, "ability": 1, "effect": 1, "alarm": 1}
+_LAYERS = {
+    "work_master": 3,
+    "sequence": 3,
+    "operation": 2,
+    "specification": 2,
+    "ability": 1,
+    "effect": 1,
+    "alarm": 1,
+    "predicate": 1,
+}
 _OF_FILE = {SPECIFICATIONS: "specification", WORK_MASTERS: "work_master"}
 _FROM_ROS = (Manner.FEEDS, Manner.SENDS)
+_OF_STATION = {
+    "enumerations": "enumeration",
+    "sets": "set",
+    "relations": "relation",
+    "maps": "map",
+    "predicates": "predicate",
+    "estimated": "variable",
+    "alarms": "alarm",
+}
+_OF_RESOURCE = {"abilities": "ability", "flows": "flow", "alarms": "alarm", "predicates": "predicate"}
 _OF_SECTION = {"topics": "topic", "services": "service", "actions": "action"}
 
 
@@ -126,19 +145,17 @@ def user(where: Where) -> ModelPart | None:
         return None if resource is None else ModelPart("resource", None, resource)
     section, name = str(path[0]), str(path[1])
     if resource is None:
-        kinds = {"enumerations": "enumeration", "estimated": "variable", "alarms": "alarm"}
-        return ModelPart(kinds[section], None, name) if section in kinds else None
+        return ModelPart(_OF_STATION[section], None, name) if section in _OF_STATION else None
     if section in _OF_SECTION:
         return ModelPart(_OF_SECTION[section], None, name)
-    kind = {"abilities": "ability", "flows": "flow", "alarms": "alarm"}.get(section, "variable")
-    return ModelPart(kind, resource, name)
+    return ModelPart(_OF_RESOURCE.get(section, "variable"), resource, name)
 
 
 def _ties(declared: Declared, gathered: Gathered) -> tuple[ModelEdge, ...]:
     found: dict[ModelEdge, None] = {}
     homes = homes_of(gathered)
     for each in gathered.occurrences:
-        if each.declares or each.text is None:
+        if each.declares or each.text is None or each.part.kind == "word":
             continue
         place, where = each.text.at(each.span), each.where
         by = user(where)
@@ -219,14 +236,15 @@ class _Things:
             case "parameter" if ":" in owner:
                 return parse_part(owner)
             case "parameter":
-                return parse_part(f"{'ability' if owner in self._declared.abilities else 'variable'}:{owner}")
+                holders = {"ability": self._declared.abilities, "predicate": self._declared.predicates}
+                return parse_part(f"{next((kind for kind in holders if owner in holders[kind]), 'variable')}:{owner}")
             case "variable" if self._is_passing(part):
                 return self._first[part].by
         return None
 
     def _resource(self, part: ModelPart, where: Where | None, place: Usage | None) -> str | None:
         """The resource to which it belongs: for what is of ROS 2, that in whose file it stands."""
-        if part.kind in ("variable", "ability", "flow", "alarm"):
+        if part.kind in ("variable", "ability", "flow", "alarm", "predicate"):
             return part.owner
         if part.kind == "resource":
             return part.name

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import atexit
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
@@ -18,8 +21,11 @@ from sequence_planner.model.loader import Station, load_station
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.yaml.reader import EntryPath, read_yaml
 
+from ..references.stations import write
+from ..shorthand import SHORTHAND
+
 MODELS = Path(__file__).parents[4] / "models"
-STATIONS = sorted(path.name for path in MODELS.iterdir() if (path / "station.yaml").is_file())
+STATIONS = [*sorted(path.name for path in MODELS.iterdir() if (path / "station.yaml").is_file()), "shorthand"]
 ELSEWHERE = "the text in question"  # where a text put into a draft says that it stands
 
 
@@ -46,10 +52,15 @@ class Draft:
 
 @lru_cache
 def draft(name: str) -> Draft:
-    """A station of `models/`."""
-    station = load_station(MODELS / name)
+    """A station of `models/`, or that with all that can be said for short."""
+    folder = MODELS / name
+    if name == "shorthand":
+        folder = Path(mkdtemp())
+        atexit.register(rmtree, folder)
+        write(SHORTHAND, folder)
+    station = load_station(folder)
     lexicon = Lexicon.of(station)
-    return Draft(station, lexicon, tuple(_texts(MODELS / name, lexicon)))
+    return Draft(station, lexicon, tuple(_texts(folder, lexicon)))
 
 
 def _texts(folder: Path, lexicon: Lexicon) -> Iterator[Text]:

@@ -16,7 +16,8 @@ from sequence_planner.pipelines.inference import variables_inferred
 from sequence_planner.ros.types.messages import MessageRegistry
 from support.examples import examples
 
-from .drafts import ELSEWHERE, MODELS, STATIONS, Text, draft, with_text, words
+from ..references.stations import messages_of
+from .drafts import ELSEWHERE, STATIONS, Text, draft, with_text, words
 
 KIT = "resources/robot.yaml"
 TOOL = "resources/nutrunner.yaml"
@@ -242,8 +243,7 @@ _REGISTRIES: dict[str, MessageRegistry] = {}
 
 def grounded(station: Station) -> list[tuple[object, str]]:
     """What grounding finds in the text in question."""
-    name = station.folder.name
-    registry = _REGISTRIES.setdefault(name, MessageRegistry.from_folder(MODELS / name / "messages"))
+    registry = _REGISTRIES.setdefault(station.folder.name, messages_of(station.folder))
     try:
         ground(variables_inferred(station, registry)[0])
     except ModelError as error:

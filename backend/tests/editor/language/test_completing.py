@@ -6,6 +6,7 @@ import pytest
 
 from sequence_planner.editor.language.completion import MOST_OPTIONS, Completion, complete
 from sequence_planner.editor.language.field import FieldKind
+from sequence_planner.editor.language.quantifiers import QuantifierPart, quantifiers_before
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.scope import Lexicon
 from sequence_planner.language.lexer import tokens
@@ -47,7 +48,10 @@ def test_every_word_of_a_station_is_among_the_options_where_it_stands(station: s
     different = {(each.field.kind, each.field.resource, each.text): each for each in drafted.texts}
     for each in different.values():
         if each.field.kind in EXPRESSIONS:
-            for token in tokens(each.text)[:-1]:
+            written = tokens(each.text)[:-1]
+            for number, token in enumerate(written):
+                if quantifiers_before(written[:number]).expected is QuantifierPart.WORD:
+                    continue  # people choose these
                 assert written_there(drafted.lexicon, each, each.text, token.start, token.end), (
                     f"{each}: {each.text[: token.start]}‹{token.text}›"
                 )
@@ -136,7 +140,8 @@ def test_a_parameter_stands_for_its_values() -> None:
 )
 def test_an_action_is_on_what_may_be_written_there(path: EntryPath, kinds: set[NameKind]) -> None:
     found = at_mark(TOOL, ("abilities", "run_nut", *path), "|")
-    assert {each.kind for each in found.options} - {NameKind.RESOURCE} == kinds
+    assert {each.kind for each in found.options} - {NameKind.RESOURCE, NameKind.KEYWORD} == kinds
+    assert [each.insert for each in found.options if each.kind is NameKind.KEYWORD] == ["all"]
     assert inserts(at_mark(TOOL, ("abilities", "run_nut", *path), "tool_is_idle |")) == [":="]
 
 

@@ -10,6 +10,7 @@ from sequence_planner.editor.language.schemas import HoverView, NameKind
 from sequence_planner.editor.language.service import hover_view
 from sequence_planner.editor.symbols.index import parse_part
 from sequence_planner.editor.symbols.rename import usages
+from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.language.types import BOOLEAN, Place
 from sequence_planner.model.yaml.reader import EntryPath
 
@@ -129,7 +130,7 @@ def test_every_name_of_a_station_is_known(station: str) -> None:
         for word in words(each.text):
             at = each.text.index(word, at)
             found = hover(drafted.lexicon, each.field, each.text, at)
-            is_word = word.isidentifier() and word not in ("and", "or", "not", "in", "if", "implies", "true", "false")
+            is_word = word.isidentifier() and word not in (*KEYWORDS, "where", "F")
             if is_word and each.field.kind is not FieldKind.TYPE:
                 assert found is not None, f"{each}: {word} in {each.text}"
                 assert found.start <= at < found.end

@@ -9,15 +9,16 @@ from functools import cached_property
 from typing import NamedTuple
 
 from sequence_planner.automaton.declarations import OPERATION
-from sequence_planner.automaton.findings import without_arguments
+from sequence_planner.editor.language.families import SHORT, Visible, stub
 from sequence_planner.editor.language.field import FieldKind, TextField
+from sequence_planner.editor.language.quantifiers import QuantifierPart, Quantifiers, quantifiers_before
 from sequence_planner.editor.language.schemas import NameKind
-from sequence_planner.editor.language.scope import Lexicon, Visible, VisibleNames, abilities
+from sequence_planner.editor.language.scope import Lexicon, VisibleNames, abilities
 from sequence_planner.language.lexer import INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS, Token, tokens
 from sequence_planner.language.parser import can_go_on, parse
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import NameScope, type_of
-from sequence_planner.language.syntax import ExpressionError, Span
+from sequence_planner.language.syntax import Component, ExpressionError, Name, Span
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 # The name that is being written at a place of a text: `robot.move(ho` before it, `me).done` behind it.
@@ -129,6 +130,9 @@ def option(text: str, kind: NameKind, detail: object = "") -> Option:
 EQUALITIES = ("==", "!=")
 ORDERS = ("<", "<=", ">", ">=")
 JUNCTIONS = ("and", "or", "implies")
+# Where there are sets: "count" is a number, and stands where one does.
+_QUANTIFIERS = ("all", "any", "none", "exactly", "at least", "at most")
+_OF_QUANTIFIERS = ("in", ",", "where", ":")
 _CLOSING = {")": "(", "}": "{", "]": "["}
 _LAST = re.compile(r"(\w+|\S)\s*\Z")
 _BEFORE_OPERAND = frozenset({*JUNCTIONS, "not", "if", "in"})
@@ -142,6 +146,7 @@ class TextBefore:
     text: str
     kind: FieldKind
     scope: NameScope
+    quantifiers: Quantifiers
     _fitting: dict[str, bool] = field(default_factory=dict, compare=False, repr=False)
 
     def fits(self, word: str) -> bool:
@@ -154,10 +159,15 @@ class TextBefore:
     @cached_property
     def tokens(self) -> tuple[Token, ...]:
         """Its words, if they are words of the language."""
-        try:
-            return tuple(tokens(self.text)[:-1])
-        except ExpressionError:
-            return ()
+        return words_of(self.text)
+
+    @cached_property
+    def binds(self) -> bool:
+        """True if the word of a quantifier stands next."""
+        if self.quantifiers.expected is not QuantifierPart.WORD or not self.fits("x in y"):
+            return False
+        is_variable = self.scope.find(Name((Component(self.tokens[-1].text),))) is not None
+        return not is_variable or self.tokens[-1].kind in (",", "number")
 
     @cached_property
     def wants_name(self) -> bool:
@@ -170,7 +180,10 @@ class TextBefore:
     @cached_property
     def wants_target(self) -> bool:
         """True if the variable that an action writes can stand next."""
-        return self.kind is FieldKind.ACTION and not self.text.strip()
+        if self.kind is not FieldKind.ACTION or not self.text.strip():
+            return self.kind is FieldKind.ACTION
+        kinds = [token.kind for token in self.tokens]
+        return bool(kinds) and kinds[-1] == ":" and ":=" not in kinds
 
     @cached_property
     def wants_set(self) -> bool:
@@ -179,6 +192,8 @@ class TextBefore:
 
     def words(self) -> list[str]:
         """The operators and other words of the language that can stand next."""
+        if self.wants_target:
+            return [] if self.tokens or not self.scope.vocabulary.domains else ["all"]
         if self.wants_set:
             return ["{"]
         if self._is_broken:
@@ -195,6 +210,11 @@ class TextBefore:
             found += sorted(PREFIX_LETTERS)
         if isinstance(expected, IntegerRange) and self.fits("-"):
             found.append("-")
+        if self.scope.vocabulary.domains and self.fits("all x in y"):
+            if expected is None or expected == BOOLEAN:
+                found += _QUANTIFIERS
+            if expected is None or isinstance(expected, IntegerRange):
+                found.append("count")
         return [*found, "("] if self.fits("(") else found
 
     def _joining_words(self) -> list[str]:
@@ -206,18 +226,23 @@ class TextBefore:
             if target is not None and target != BOOLEAN:  # what it is compared with, or joined to, is no value of it
                 signs = ("+", "-", "if") if isinstance(target, IntegerRange) else ("if",)
                 return [sign for sign in signs if self.fits(sign)]
-        compares, is_truth = self.fits("=="), operand is None or operand == BOOLEAN
+        is_compared = begin > 0 and self.tokens[begin - 1].kind in (*EQUALITIES, *ORDERS)
+        compares, is_truth = self.fits("==") and not is_compared, operand is None or operand == BOOLEAN
         is_number = operand is None or isinstance(operand, IntegerRange)
+        is_ordered = is_number or (operand is not None and self.scope.vocabulary.order_of(operand) is not None)
         found: list[str] = []
         if (is_truth or not compares) and self.fits("and"):
             found += JUNCTIONS
             if self.kind is FieldKind.FORMULA and self.fits("U"):
                 found += sorted(INFIX_LETTERS)
         if compares:
-            found += (*EQUALITIES, *(ORDERS if is_number else ()), *(("in",) if operand != BOOLEAN else ()))
+            found += (*EQUALITIES, *(ORDERS if is_ordered else ()), *(("in",) if operand != BOOLEAN else ()))
         if is_number and self.fits("+"):
             found += ["+", "-"]
-        return [*found, *(word for word in (":=", "if", "{", ")", "}", ",") if self.fits(word))]
+        if self.tokens and self.tokens[-1].text == "at":
+            found += [word for word in ("least", "most") if self.fits(f"{word} 1 x in y")]
+        further = (":=", "if", "{", ")", "]", "}", ",", *_OF_QUANTIFIERS)
+        return list(dict.fromkeys((*found, *(word for word in further if self.fits(word)))))
 
     def expected(self) -> Type | None:
         """The type of what stands next beside an operator, as far as the other side tells it."""
@@ -236,7 +261,9 @@ class TextBefore:
 
     @cached_property
     def _is_broken(self) -> bool:
-        return bool(self.text.strip()) and not any(self.fits(word) for word in ("x", "and", ")", "}", ":=", "{", "1"))
+        return bool(self.text.strip()) and not any(
+            self.fits(word) for word in ("x", "and", ")", "}", ":=", "{", "1", *_OF_QUANTIFIERS)
+        )
 
     def _opening(self, at: int) -> int | None:
         """The bracket that is open before the word `at`."""
@@ -260,7 +287,7 @@ class TextBefore:
                 depth += 1
             elif kind in _CLOSING.values():
                 depth -= 1
-            if depth < 0 or (depth == 0 and kind in _BOUNDS):
+            if depth < 0 or (depth == 0 and (kind in _BOUNDS or begin - 1 in self.quantifiers.signs)):
                 break
             begin -= 1
         return begin
@@ -275,6 +302,14 @@ class TextBefore:
             return type_of(parse(written), self.scope)
         except ExpressionError:
             return None
+
+
+def words_of(text: str) -> tuple[Token, ...]:
+    """The words of a text, if they are words of the language."""
+    try:
+        return tuple(tokens(text)[:-1])
+    except ExpressionError:
+        return ()
 
 
 # How well a name fits what has been typed of it.
@@ -326,14 +361,19 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
     match field.kind:
         case FieldKind.TYPE:
             yield option(str(BOOLEAN), NameKind.ENUMERATION, "false, true")
-            yield from _enumerations(lexicon.declarations.enumerations)
+            yield from _enumerations(lexicon, lexicon.declarations.enumerations)
         case FieldKind.ENUMERATION:
-            yield from _enumerations(lexicon.declarations.enumerations)
+            yield from _enumerations(lexicon, lexicon.declarations.enumerations)
         case FieldKind.INITIAL:
             if field.type is not None:
                 few = not isinstance(field.type, IntegerRange) or len(field.type.domain) <= _MOST_NUMBERS
                 for value in field.type.domain if few else ():
                     yield option(print_value(value), NameKind.VALUE, field.type)
+        case FieldKind.MEMBER:
+            for value in () if field.type is None else field.type.domain:
+                yield option(print_value(value), NameKind.VALUE, field.type)
+            chosen = {name: lexicon.declarations.enumerations[name] for name in field.choices}
+            yield from _enumerations(lexicon, chosen)
         case FieldKind.ABILITY:
             yield from _abilities(lexicon, field)
         case FieldKind.OPERATION:
@@ -346,9 +386,10 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
                         yield option(name.removeprefix(f"{field.resource}."), NameKind.MEASURED, BOOLEAN)
 
 
-def _enumerations(enumerations: Mapping[str, EnumerationType]) -> Iterator[Option]:
+def _enumerations(lexicon: Lexicon, enumerations: Mapping[str, EnumerationType]) -> Iterator[Option]:
+    sets = lexicon.sets
     for name, type_ in enumerations.items():
-        yield option(name, NameKind.ENUMERATION, type_)
+        yield option(name, NameKind.SET if name in sets else NameKind.ENUMERATION, type_)
 
 
 def _abilities(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
@@ -368,6 +409,7 @@ _LEVELS = 5
 _MOST_INSTANCES = 8  # of one declaration that are written out before its bracket is typed
 _NO_VARIABLES = (NameKind.FLAG, NameKind.ACTIVITY)
 _BRACKET = re.compile(r"[(\[]")
+_ARGUMENT = re.compile(r"(.*[(\[,]\s*)\w*[)\]]?", re.DOTALL)
 Match = tuple[int, Visible, bool]  # how well a family fits what is typed, and whether it is its full name that does
 
 
@@ -417,15 +459,17 @@ def _at_level(sight: VisibleNames, matches: list[Match], typed: str, level: int,
             if family.step not in found:
                 found[family.step] = rank, _step_option(family.step)
         elif family.arguments and level and (level > 1 or not seen.own):
-            stub = _stub(seen, long)
-            found.setdefault(stub, (rank, option(stub, family.kind, "…")))
+            beginning = stub(seen, long)
+            found.setdefault(beginning, (rank, option(beginning, family.kind, "…")))
         else:
             forms = list(sight.forms(seen, long))
             if len(forms) > _MOST_INSTANCES:
                 forms = [form for form in forms[:_MOST_INSTANCES] if sight.has_parameter(form)]
-                found.setdefault(_stub(seen, long), (rank, option(_stub(seen, long), family.kind, "…")))
+                found.setdefault(stub(seen, long), (rank, option(stub(seen, long), family.kind, "…")))
             for form in forms:
                 found.setdefault(form, (rank, option(form, family.kind, family.type)))
+            if family.arguments and any(True for _ in sight.indices(family, 0)):
+                found.setdefault(stub(seen, long), (rank, option(stub(seen, long), family.kind, "…")))
         if len(found) > room:
             break
     return list(found.values())
@@ -436,23 +480,40 @@ def _with_arguments(sight: VisibleNames, typed: str, wanted: Callable[[Visible],
     head = typed[: typed.index(next(sign for sign in typed if sign in "(["))]
     begun = _bare(typed)
     for seen in sight.families:
-        if not seen.family.arguments or not wanted(seen):
+        if not wanted(seen):
+            continue
+        if not seen.family.arguments:
+            if seen.family.kind in SHORT and "(" in seen.short and _bare(seen.short).startswith(begun):
+                yield option(seen.short, seen.family.kind, seen.family.type)
             continue
         long = seen.family.name == head
         if long or (seen.own and seen.family.name.endswith(f".{head}") and seen.short.startswith(head)):
-            for form in sight.forms(seen, long):
-                if _bare(form).startswith(begun):
-                    yield option(form, seen.family.kind, seen.family.type)
+            single = list(_single_arguments(sight, typed, seen))
+            forms = (form for form in sight.forms(seen, long) if _bare(form).startswith(begun))
+            whole = (option(form, seen.family.kind, seen.family.type) for form in forms)
+            many = seen.family.kind in SHORT and len(seen.family.arguments) > 1
+            yield from (*single, *whole) if many else (*whole, *single)
+
+
+def _single_arguments(sight: VisibleNames, typed: str, seen: Visible) -> Iterator[Option]:
+    """What is typed of a name, with all that can stand as the argument that is being typed."""
+    found = _ARGUMENT.fullmatch(typed)
+    index = typed.count(",")
+    if found is None or index >= len(seen.family.arguments):
+        return
+    done, begun = found[1], _bare(typed)
+    is_last = index + 1 == len(seen.family.arguments)
+    closing = f"{']' if seen.family.indexed else ')'}{seen.family.suffix}" if is_last else ","
+    type_ = sight.enumerations[seen.family.arguments[index]]
+    fitting = [name for name, each in sight.parameters.items() if not set(each.values).isdisjoint(type_.values)]
+    for word in dict.fromkeys((*fitting, *sight.indices(seen.family, index), *type_.values)):
+        written = f"{done}{word}{'' if word[-1] in '([' else closing}"
+        if _bare(written).startswith(begun):
+            yield option(written, seen.family.kind, seen.family.type)
 
 
 def _bare(text: str) -> str:
     return re.sub(r"\s", "", text).lower()
-
-
-def _stub(seen: Visible, long: bool) -> str:
-    """The name up to its arguments."""
-    name = without_arguments(seen.long if long else seen.short).removesuffix(seen.family.suffix)
-    return f"{name}{'[' if seen.family.indexed else '('}"
 
 
 def _step_option(step: str) -> Option:
@@ -463,7 +524,7 @@ def _step_option(step: str) -> Option:
 
 _EXPRESSIONS = (FieldKind.CONDITION, FieldKind.FORMULA, FieldKind.ACTION)
 _MOST_OPTIONS = 20  # that are all worth an option
-_CLOSERS = (")", "}", ",")
+_CLOSERS = (")", "]", "}", ",", ":")
 
 Ranked = tuple[int, Option]
 
@@ -473,8 +534,10 @@ def complete(lexicon: Lexicon, field: TextField, text: str, offset: int) -> Comp
     if field.kind not in _EXPRESSIONS:
         return complete_choice(lexicon, field, text, offset)
     chain = chain_at(text, offset, field.kind is FieldKind.FORMULA)
-    sight = VisibleNames(lexicon, field)
-    beginning = TextBefore(text[: chain.start], field.kind, sight.scope)
+    before = text[: chain.start]
+    quantifiers = quantifiers_before(words_of(before))
+    sight = VisibleNames(lexicon, field, quantifiers.bound)
+    beginning = TextBefore(before, field.kind, sight.scope, quantifiers)
     ranked = list(_options(sight, field, beginning, chain))
     ordered = [each for _, each in sorted(ranked, key=lambda pair: pair[0])]
     is_whole = chain.typed.isdecimal() or any(each.insert == chain.typed for each in ordered)
@@ -485,16 +548,23 @@ def complete(lexicon: Lexicon, field: TextField, text: str, offset: int) -> Comp
 
 def _options(sight: VisibleNames, field: TextField, beginning: TextBefore, chain: DottedName) -> Iterator[Ranked]:
     typed = chain.typed
+    words = [(rank, option(word, NameKind.KEYWORD)) for word in beginning.words() for rank in _fit(typed, word)]
     if beginning.wants_target:
         yield from _names(sight, typed, lambda seen: _is_written(seen, field), 0)
+        yield from words
         return
-    words = [(rank, option(word, NameKind.KEYWORD)) for word in beginning.words() for rank in _fit(typed, word)]
+    if beginning.binds:
+        yield from ((0, each) for each in _binders(sight, typed))
+        return
+    if beginning.quantifiers.expected is QuantifierPart.VALUE:
+        yield from _values_of_one(sight, beginning.quantifiers.values, typed)
+        return
     if not beginning.wants_name:
         yield from _numbers(beginning, typed)
         yield from words
         return
     if beginning.wants_set:
-        for each in _enumerations(sight.enumerations):
+        for each in _enumerations(sight.lexicon, sight.enumerations):
             yield from ((rank, each) for rank in _fit(typed, each.label))
         yield from words
         return
@@ -542,6 +612,24 @@ def _all_values(sight: VisibleNames, typed: str) -> Iterator[Ranked]:
         rank = likeness(typed, value)
         if rank < 3:
             yield rank + 1, option(value, NameKind.VALUE, name)
+
+
+def _binders(sight: VisibleNames, typed: str) -> Iterator[Option]:
+    """A word for each set that a quantifier can be about: what is typed, or the first letter that is free."""
+    letters = "".join(map(chr, range(ord("a"), ord("z") + 1)))
+    taken = {*sight.parameters, *(value for value, _ in sight.values()), *(seen.short for seen in sight.families)}
+    for name, type_ in sight.enumerations.items():
+        start = letters.find(name[0].lower())
+        free = (each for each in letters[start:] + letters[:start] if each not in taken)
+        word = typed or next(free, "each")
+        yield option(f"{word} in {name}", NameKind.PARAMETER, type_)
+
+
+def _values_of_one(sight: VisibleNames, written: tuple[str, ...], typed: str) -> Iterator[Ranked]:
+    """The values of each enumeration that has all those written so far."""
+    for value, name in sight.values():
+        if value not in written and set(written) <= set(sight.enumerations[name].values):
+            yield from ((rank, option(value, NameKind.VALUE, name)) for rank in _fit(typed, value))
 
 
 def _numbers(beginning: TextBefore, typed: str) -> Iterator[Ranked]:

@@ -27,6 +27,7 @@ class FieldKind(StrEnum):
     ACTION = "action"
     TYPE = "type"
     INITIAL = "initial"
+    MEMBER = "member"
     ENUMERATION = "enumeration"
     ABILITY = "ability"
     OPERATION = "operation"

@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice, product
 
 from sequence_planner.automaton.declarations import OPERATION
-from sequence_planner.editor.language.completion import chain_at, word_at
+from sequence_planner.editor.language.completion import chain_at, word_at, words_of
+from sequence_planner.editor.language.families import SHORT, Family
 from sequence_planner.editor.language.field import FieldKind, TextField
+from sequence_planner.editor.language.quantifiers import quantifiers_before
 from sequence_planner.editor.language.schemas import NameKind
-from sequence_planner.editor.language.scope import Family, Lexicon, VisibleNames
+from sequence_planner.editor.language.scope import Lexicon, VisibleNames
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
+from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.resolver import (
     NameScope,
-    resolve_assignment,
+    resolve_assignments,
     resolve_formula,
     resolve_predicate,
 )
-from sequence_planner.language.syntax import Constant, Expression, ExpressionError, Name, Span, children
+from sequence_planner.language.simplifier import simplify
+from sequence_planner.language.syntax import (
+    And,
+    Binder,
+    Constant,
+    Expression,
+    ExpressionError,
+    Name,
+    NamedMembership,
+    Quantified,
+    Span,
+    children,
+)
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value, contains
 
 # What resolution makes of one name of a text.
@@ -29,7 +45,10 @@ def is_value_at(span: Span, text: str, kind: FieldKind, scope: NameScope) -> boo
         parts = _resolved(text, kind, scope)
     except ExpressionError:
         return False
-    return any(isinstance(leaf, Constant) and leaf.span == span for part in parts for leaf in _leaves(part))
+    word = text[span.start : span.end]
+    # What a predicate is written out to stands where its name does.
+    constants = (leaf for part in parts for leaf in _leaves(part) if isinstance(leaf, Constant) and leaf.span == span)
+    return any(leaf.value == word for leaf in constants)
 
 
 def _resolved(text: str, kind: FieldKind, scope: NameScope) -> tuple[Expression, ...]:
@@ -37,8 +56,8 @@ def _resolved(text: str, kind: FieldKind, scope: NameScope) -> tuple[Expression,
         return (resolve_formula(parse_formula(text), scope),)
     if kind is FieldKind.CONDITION:
         return (resolve_predicate(parse(text), scope),)
-    action = resolve_assignment(parse_assignment(text), scope)
-    return (action.value,) if action.condition is None else (action.value, action.condition)
+    actions = resolve_assignments(parse_assignment(text), scope)
+    return tuple(part for each in actions for part in (each.value, each.condition) if part is not None)
 
 
 def _leaves(expression: Expression) -> Iterator[Expression]:
@@ -60,7 +79,7 @@ class Hover:
 
     `names` are the full names it has for the choices of the parameters, and `pattern` is all of them at once, with the
     parameters as they are written. `place` is where it is declared, within the station; `part` is the id by which it is
-    looked for there, but for a parameter.
+    looked for there, but for a parameter. `expansion` is what it stands for, where it is written for short.
     """
 
     start: int
@@ -75,6 +94,7 @@ class Hover:
     title: str | None = None
     place: Place | None = None
     part: str | None = None
+    expansion: str | None = None
 
 
 def hover(lexicon: Lexicon, field: TextField, text: str, offset: int) -> Hover | None:
@@ -92,21 +112,32 @@ class _Hovering:
         self._field = field
         self._text = text
         self._sight = VisibleNames(lexicon, field)
+        self._outer = self._sight.scope
 
     def at(self, offset: int) -> Hover | None:
         chain = chain_at(self._text, offset, self._field.kind is FieldKind.FORMULA)
-        span = Span(chain.start, chain.end)
         word = word_at(self._text, offset)
-        if chain.start < word.start and self._text[chain.start : word.start].rstrip()[-1:] in "([,":
+        bound = quantifiers_before(words_of(self._text[: word.start])).bound
+        if bound:
+            self._sight = VisibleNames(self._lexicon, self._field, bound)
+        tree = self._tree()
+        if (quantified := _quantified_at(tree, offset)) is not None:
+            return self._quantified(quantified, word, offset)
+        if (named := _set_at(tree, offset)) is not None:
+            return self._enumeration(named.span, str(named))
+        whole = _name_at(tree, offset)
+        span = Span(chain.start, chain.end) if whole is None or whole.is_word else whole.span
+        if span.start < word.start and self._text[span.start : word.start].rstrip()[-1:] in "([,":
             return self._argument(word)
         name = self._name(span)
         if name is None:
             return None
         if name.is_word and (found := self._parameter(span)):
             return found
-        if name.is_word and is_value_at(span, self._text, self._field.kind, self._sight.scope):
+        if name.is_word and is_value_at(span, self._text, self._field.kind, self._outer):
             return self._value(span)
-        return self._variable(span, name) or (self._value(span) if name.is_word else None)
+        found = self._variable(span, name) or self._for_short(span, name) or self._of_array(span, name)
+        return found or (self._value(span) if name.is_word else None)
 
     def choice(self, span: Span) -> Hover | None:
         """Say what the whole text is, where that is one name of few."""
@@ -116,6 +147,8 @@ class _Hovering:
                 return self._enumeration(span, word)
             case FieldKind.INITIAL:
                 return self._value(span, self._field.type)
+            case FieldKind.MEMBER:
+                return self._value(span) or self._enumeration(span, word)
             case FieldKind.ACKNOWLEDGEMENT:
                 full = f"{self._field.resource}.{word}"
                 return self._family(span, full, (full,), self._lexicon.family.get(full))
@@ -133,22 +166,24 @@ class _Hovering:
         return name if isinstance(name, Name) else None
 
     def _argument(self, span: Span) -> Hover | None:
-        return self._parameter(span) or self._value(span)
+        found = self._parameter(span) or self._value(span) or self._enumeration(span, self._text[span.start : span.end])
+        name = self._name(span)
+        return found if found is not None or name is None else self._variable(span, name)
 
     def _parameter(self, span: Span) -> Hover | None:
         word = self._text[span.start : span.end]
         type_ = self._sight.parameters.get(word)
         if type_ is None:
             return None
-        key = next(name for name in self._field.parameters if name == word)
-        place = self._lexicon.within(key.place) if key.place.file else None
+        key = next((name for name in self._field.parameters if name == word), None)
+        place = self._lexicon.within(key.place) if key is not None and key.place.file else None
         return Hover(span.start, span.end, word, NameKind.PARAMETER, word, type=type_, place=place)
 
     def _value(self, span: Span, type_: Type | None = None) -> Hover | None:
         word = self._text[span.start : span.end]
         for name, values in self._lexicon.station.station.enumeration_values().items():
             declared = self._lexicon.declarations.enumerations[name]
-            if word in declared.values and (type_ is None or type_ == declared):
+            if word in declared.values and (type_ is None or set(type_.domain) <= set(declared.values)):
                 place = self._lexicon.within(values[declared.values.index(word)].place)
                 return Hover(
                     span.start, span.end, word, NameKind.VALUE, word, type=declared, title=name, place=place,
@@ -167,6 +202,13 @@ class _Hovering:
                     span.start, span.end, word, NameKind.ENUMERATION, word, type=type_, place=place,
                     part=f"enumeration:{word}",
                 )  # fmt: skip
+        for each in self._lexicon.sets:
+            if each == word and word in self._lexicon.declarations.enumerations:
+                type_ = self._lexicon.declarations.enumerations[word]
+                place = self._lexicon.within(each.place)
+                return Hover(
+                    span.start, span.end, word, NameKind.SET, word, type=type_, place=place, part=f"set:{word}"
+                )
         return None
 
     def _ability(self, span: Span) -> Hover | None:
@@ -233,7 +275,138 @@ class _Hovering:
         )  # fmt: skip
 
     def _scopes(self) -> list[NameScope]:
-        return list(self._field.scopes(self._lexicon.meaning(self._field))) or [self._sight.scope]
+        scopes = list(self._field.scopes(self._lexicon.meaning(self._field))) or [self._sight.scope]
+        bound = self._sight.bound
+        choices = product(*([(value, type_) for value in type_.values] for type_ in bound.values()))
+        return [scope.binding(dict(zip(bound, choice, strict=True))) for choice in choices for scope in scopes]
+
+    # What is written for short.
+
+    def _tree(self) -> tuple[Expression, ...]:
+        """The text as it is read, or nothing where it makes no sense."""
+        try:
+            if self._field.kind is FieldKind.ACTION:
+                action = parse_assignment(self._text)
+                parts = (action.target, action.value, *(() if action.condition is None else (action.condition,)))
+                if not action.binders:
+                    return parts
+                # Read as a quantifier: all of it stands within.
+                begin = Span(action.target.span.start, action.span.end)
+                return (Quantified("all", None, action.binders, None, And(parts, begin), action.span),)
+            return (parse_formula(self._text) if self._field.kind is FieldKind.FORMULA else parse(self._text),)
+        except ExpressionError:
+            return ()
+
+    def _quantified(self, quantified: Quantified, word: Span, offset: int) -> Hover | None:
+        """What stands before the body of a quantifier: itself, its words, or what these range over."""
+        for binder in quantified.binders:
+            if binder.span.start <= offset <= binder.span.end:
+                bound = {each.word: _domain(each) for each in quantified.binders}
+                self._sight = VisibleNames(self._lexicon, self._field, bound)
+                return self._parameter(binder.span)
+            for domain in binder.domain if isinstance(binder.domain, tuple) else (binder.domain,):
+                if domain.span.start <= offset <= domain.span.end:
+                    return self._enumeration(domain.span, str(domain)) or self._value(domain.span)
+        read = resolve_formula if self._field.kind is FieldKind.FORMULA else resolve_predicate
+        return Hover(
+            word.start, word.end, self._text[word.start : word.end], NameKind.KEYWORD, quantified.quantifier,
+            expansion=self._expansion(lambda scope: read(quantified, scope)),
+        )  # fmt: skip
+
+    def _for_short(self, span: Span, name: Name) -> Hover | None:
+        """A predicate, a relation, a map, or a function of an ordered enumeration."""
+        skeleton = ".".join(part.name for part in name.path)
+        word, vocabulary = self._text[span.start : span.end], self._sight.scope.vocabulary
+        prefixes = (*self._sight.scope.prefixes, "")
+        full = next((prefix + skeleton for prefix in prefixes if prefix + skeleton in self._lexicon.short), None)
+        family = None if full is None else self._lexicon.short[full]
+        if full is None or family is None:
+            if (family := self._lexicon.short.get(str(name))) is None:
+                return None
+            return Hover(span.start, span.end, word, family.kind, word, type=family.type)
+        expansion: str | None = None
+        match family.kind:
+            case NameKind.KEYWORD:
+                return Hover(span.start, span.end, word, family.kind, word, type=family.type)
+            case NameKind.PREDICATE:
+                expansion = self._expansion(lambda scope: resolve_predicate(name, scope), *name.path[-1].arguments)
+            case NameKind.RELATION:
+                expansion = _shortened(", ".join(map(" – ".join, sorted(vocabulary.relations[full].pairs))))
+            case NameKind.MAP:
+                table = vocabulary.maps[full].table.items()
+                expansion = _shortened(", ".join(f"{key} → {print_value(value)}" for key, value in table))
+        return Hover(
+            span.start, span.end, word, family.kind, f"{full}{word[len(skeleton):]}", (), family.type,
+            resource=family.owner, title=family.title, place=self._lexicon.within(family.place),
+            part=f"{family.kind}:{full}", expansion=expansion,
+        )  # fmt: skip
+
+    def _of_array(self, span: Span, name: Name) -> Hover | None:
+        """A variable or flag whose index or argument has a value itself."""
+        skeleton = ".".join(part.name for part in name.path)
+        for prefix in (*self._sight.scope.prefixes, ""):
+            family = next((each for each in self._lexicon.families if each.skeleton == prefix + skeleton), None)
+            if family is not None and family.arguments and family.kind not in SHORT:
+                names = tuple(islice(family.instances(self._sight.enumerations), _MOST_NAMES))
+                return self._family(span, f"{prefix}{name}", names, family)
+        return None
+
+    def _expansion(self, read: Callable[[NameScope], Expression], *words: str | Name) -> str | None:
+        """What a part of the text is written out to, for the first choice of the words in it that stand for values."""
+        scope = self._sight.scope
+        try:
+            said = _shortened(print_expression(simplify(read(scope))))
+        except ExpressionError:
+            return None
+        chosen = [f"{word} = {scope.parameters[str(word)][0]}" for word in words if str(word) in scope.parameters]
+        return f"{', '.join(chosen)}: {said}" if chosen else said
+
+
+_LONGEST = 400
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST].rpartition(' ')[0]} …"
+
+
+def _domain(binder: Binder) -> str | tuple[str, ...]:
+    return str(binder.domain) if isinstance(binder.domain, Name) else tuple(map(str, binder.domain))
+
+
+def _around(parts: tuple[Expression, ...], offset: int) -> Iterator[Expression]:
+    """All that is written around a place, the outermost first."""
+    for part in parts:
+        if part.span.start <= offset <= part.span.end:
+            yield part
+            inner = tuple(each for step in part.path for each in step.arguments) if isinstance(part, Name) else ()
+            yield from _around(children(part) + tuple(each for each in inner if isinstance(each, Name)), offset)
+
+
+def _quantified_at(tree: tuple[Expression, ...], offset: int) -> Quantified | None:
+    """The quantifier before whose body or condition a place is."""
+    for part in _around(tree, offset):
+        if isinstance(part, Quantified):
+            inside = (part.body,) if part.where is None else (part.where, part.body)
+            last = part.binders[-1].domain
+            end = last.span.end if isinstance(last, Name) else last[-1].span.end
+            if part.span.start <= offset <= end and not any(
+                each.span.start <= offset <= each.span.end for each in inside
+            ):
+                return part
+    return None
+
+
+def _set_at(tree: tuple[Expression, ...], offset: int) -> Name | None:
+    """The set or enumeration that stands there behind `in`."""
+    memberships = (part for part in _around(tree, offset) if isinstance(part, NamedMembership))
+    found = (part.domain for part in memberships if part.domain.span.start <= offset <= part.domain.span.end)
+    return next(found, None)
+
+
+def _name_at(tree: tuple[Expression, ...], offset: int) -> Name | None:
+    """The innermost name that stands there."""
+    names = [part for part in _around(tree, offset) if isinstance(part, Name)]
+    return names[-1] if names else None
 
 
 def _part(family: Family) -> str:

@@ -22,6 +22,10 @@ class NameKind(StrEnum):
     ABILITY = "ability"
     OPERATION = "operation"
     ENUMERATION = "enumeration"
+    SET = "set"
+    PREDICATE = "predicate"
+    RELATION = "relation"
+    MAP = "map"
 
 
 class ProblemView(View):
@@ -62,7 +66,8 @@ class HoverView(View):
 
     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
-    by which it is looked for in the model, but for a parameter.
+    by which it is looked for in the model, but for a parameter. `expansion` is what it stands for, where it is written
+    for short.
     """
 
     start: int
@@ -77,4 +82,5 @@ class HoverView(View):
     resource: str | None
     title: str | None
     part: str | None
+    expansion: str | None
     declared: DeclarationView | None

@@ -3,342 +3,38 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from itertools import islice, product
 from pathlib import PurePosixPath
-from typing import Any, NamedTuple
 
-from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.findings import Findings, instance_name, with_arguments
 from sequence_planner.automaton.grounding import (
-    CANCEL,
-    EFFECT,
-    FINISH,
-    START,
     Meaning,
-    Writing,
-    alarm_condition,
-    check_acknowledgement,
-    exclusive_abilities,
-    observable_condition,
 )
-from sequence_planner.editor.language.field import (
-    FieldKind,
-    TextField,
-    all_of,
-    condition,
-    field_of_parameter,
-    placed,
-    with_text,
+from sequence_planner.editor.language.document_fields import (
+    field_of_operation,
+    field_of_resource,
+    field_of_specification,
+    field_of_station,
 )
+from sequence_planner.editor.language.families import SHORT, Family, Visible, families_of, seen_from, stub
+from sequence_planner.editor.language.field import TextField, placed
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.sequences import field_of_sequence, field_of_work_master
 from sequence_planner.language.resolver import NameScope
 from sequence_planner.language.suggestions import beginning_with
-from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
+from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type
 from sequence_planner.model.documents import (
-    AbilityDocument,
-    Parameters,
     ResourceDocument,
-    SpecificationDocument,
-    VariableDocument,
 )
-from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ModelError, SourceText
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.builder import load_messages
 from sequence_planner.pipelines.inference import variables_inferred
 from sequence_planner.ros.types.messages import MessageRegistry
-
-# What is declared in a draft, one entry for each declaration: a variable, a flag or an activity.
-
-
-@dataclass(frozen=True)
-class Family:
-    """The names of one declaration: `bolts[…]`, or the flag `robot.move(…).executing`.
-
-    A full name is `name`, its arguments, and `suffix`; `arguments` are the enumerations these are of. `owner` is the
-    resource, or None for what belongs to the station, and `indexed` whether brackets are around the arguments.
-    """
-
-    name: str
-    kind: NameKind
-    type: Type
-    place: Place
-    arguments: tuple[str, ...] = ()
-    suffix: str = ""
-    indexed: bool = False
-    owner: str | None = None
-    initial: Value | None = None
-    title: str | None = None
-
-    @cached_property
-    def skeleton(self) -> str:
-        """The full name without arguments."""
-        return self.name + self.suffix
-
-    @cached_property
-    def step(self) -> str:
-        """The resource, or what stands for the operations, with its dot; empty for a variable of the station."""
-        head, dot, _ = self.name.partition(".")
-        return head + dot if dot else ""
-
-    def instance(self, words: tuple[str, ...]) -> str:
-        """The full name with these arguments."""
-        return with_arguments(self.name, words, self.indexed) + self.suffix
-
-    def instances(self, enumerations: Mapping[str, EnumerationType]) -> Iterator[str]:
-        """All full names."""
-        for words in product(*(enumerations[argument].values for argument in self.arguments)):
-            yield self.instance(words)
-
-
-class Visible(NamedTuple):
-    """A family as it is seen from a resource: `short` is what its name is there without arguments.
-
-    `own` says whether it belongs to that resource; the lower its `distance`, the likelier is it meant.
-    """
-
-    family: Family
-    short: str
-    own: bool
-    distance: int
-
-    @property
-    def long(self) -> str:
-        """The full name without arguments."""
-        return self.family.skeleton
-
-
-# Whose names come first, where all fit what is typed as well.
-_DISTANCES = {NameKind.FLAG: 2, NameKind.ACTIVITY: 4}
-
-
-def seen_from(resource: str | None, families: Iterable[Family]) -> Iterator[Visible]:
-    """All families as they are seen from a resource, or from the station as a whole."""
-    for family in families:
-        own = resource is not None and family.owner == resource
-        short = family.skeleton[len(family.step) :] if own else family.skeleton
-        far = 0 if own else 1 if family.owner is None else 4
-        yield Visible(family, short, own, far + _DISTANCES.get(family.kind, 0))
-
-
-def families_of(station: Station, declarations: Declarations) -> Iterator[Family]:
-    """Everything declared that has a type."""
-    for name, document in station.station.estimated.items():
-        yield from _variable(None, name, document, Kind.ESTIMATED, declarations)
-    for resource, whole in station.resources.items():
-        for kind in (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED):
-            for name, document in getattr(whole, kind.value).items():
-                yield from _variable(resource, name, document, kind, declarations)
-        for name, ability in whole.abilities.items():
-            if (arguments := _arguments(ability.parameters, declarations)) is not None:
-                yield from _flags(resource, name, ability, arguments)
-    for name, operation in station.operations.items():
-        if (arguments := _arguments(operation.parameters, declarations)) is not None:
-            title = None if operation.title is None else str(operation.title)
-            full = f"{OPERATION}.{name}"
-            yield Family(full, NameKind.ACTIVITY, BOOLEAN, name.place, arguments, ".active", title=title)
-
-
-def _variable(
-    resource: str | None, name: SourceText, document: VariableDocument, kind: Kind, declarations: Declarations
-) -> Iterator[Family]:
-    full = str(name) if resource is None else f"{resource}.{name}"
-    arguments = _arguments(document.each, declarations)
-    if arguments is None:
-        return
-    family = Family(full, NameKind(kind.value), BOOLEAN, name.place, arguments, indexed=True)
-    first = next(family.instances(declarations.enumerations), "")
-    declared = declarations.variables.get(first)
-    if declared is not None and declared.kind is kind and declared.resource == resource:
-        yield Family(
-            full, family.kind, declared.type, name.place, arguments, "", True, resource, initial=declared.initial
-        )
-
-
-def _flags(resource: str, name: SourceText, document: AbilityDocument, arguments: tuple[str, ...]) -> Iterator[Family]:
-    title = None if document.title is None else str(document.title)
-    for flag in FLAGS:
-        text = getattr(document, flag)
-        place = text.place if isinstance(text, SourceText) else name.place
-        yield Family(
-            f"{resource}.{name}", NameKind.FLAG, BOOLEAN, place, arguments, f".{flag}", owner=resource, title=title
-        )
-
-
-def _arguments(parameters: Parameters, declarations: Declarations) -> tuple[str, ...] | None:
-    """The enumerations of `parameters`, or None if one of them is unknown."""
-    written = tuple(map(str, parameters.values()))
-    return written if all(each in declarations.enumerations for each in written) else None
-
-
-# The fields of a resource's document.
-
-_SECTIONS = {kind.value: kind for kind in (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)}
-
-
-def field_of_resource(
-    resource: str, document: ResourceDocument, path: EntryPath, given: Parameters | None, meaning: Meaning
-) -> TextField | None:
-    """The field at `path` of a resource's document."""
-    match path:
-        case ("abilities", str(name), *rest):
-            ability = document.abilities.get(placed(name)) or AbilityDocument()
-            parameters = ability.parameters if given is None else given
-            return _AbilityFields(resource, name, ability, parameters).at(tuple(rest))
-        case (str(section), str(name), *rest) if section in _SECTIONS:
-            written: Mapping[SourceText, VariableDocument] = getattr(document, section)
-            return field_of_variable(resource, name, written, _SECTIONS[section], tuple(rest), meaning)
-        case ("alarms", str(), "when"):
-            return TextField(FieldKind.CONDITION, alarm_condition, resource=resource)
-    return None
-
-
-class _AbilityFields:
-    def __init__(self, resource: str, name: str, document: AbilityDocument, parameters: Parameters) -> None:
-        self._document = document
-        self._around: dict[str, Any] = {"resource": resource, "ability": name, "parameters": parameters}
-        self._resource = resource
-
-    def at(self, path: EntryPath) -> TextField | None:
-        document, finish = self._document, self._document.finish
-        match path:
-            case (str(flag),) if flag in FLAGS:
-                return TextField(FieldKind.CONDITION, condition, **self._around)
-            case ("start" | "finish", "when"):
-                return TextField(FieldKind.CONDITION, condition, **self._around)
-            case ("start", "do", int(index)):
-                guards = (document.enabled, document.start.when)
-                return self._action(document.start.do, index, guards, START)
-            case ("finish", "do", int(index)):
-                texts = [] if finish is None else finish.do
-                return self._action(texts, index, () if finish is None else (finish.when,), FINISH)
-            case ("cancel", "do", int(index)):
-                return self._action([] if document.cancel is None else document.cancel.do, index, (), CANCEL)
-            case ("effects", str(), "when"):
-                return TextField(FieldKind.CONDITION, observable_condition, **self._around)
-            case ("effects", str(name), "do", int(index)):
-                effect = document.effects.get(placed(name))
-                if effect is None:
-                    return self._action([], index, (), EFFECT)
-                return self._action(effect.do, index, (effect.when,), EFFECT)
-            case ("human", "acknowledgement"):
-                return TextField(FieldKind.ACKNOWLEDGEMENT, self._acknowledgement, **self._around)
-            case ("parameters", str(name)):
-                return field_of_parameter(name)
-        return None
-
-    def _acknowledgement(self, meaning: Meaning, text: SourceText, scope: NameScope) -> None:
-        check_acknowledgement(meaning, self._resource, text)
-
-    def _action(
-        self, texts: list[SourceText], index: int, guards: tuple[Predicate, ...], writing: Writing
-    ) -> TextField:
-        def read(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
-            return meaning.actions(with_text(texts, index, text), scope, all_of(meaning, guards, scope), writing)
-
-        return TextField(FieldKind.ACTION, read, writing=writing, **self._around)
-
-
-def field_of_variable(
-    resource: str | None,
-    name: str,
-    documents: Mapping[SourceText, VariableDocument],
-    kind: Kind,
-    path: EntryPath,
-    meaning: Meaning,
-) -> TextField | None:
-    """The field at `path` of a variable, which need not be there yet."""
-    document = documents.get(placed(name)) or VariableDocument()
-    key = placed(name)
-    full = name if resource is None else f"{resource}.{name}"
-    match path:
-        case ("type",):
-            return TextField(FieldKind.TYPE, lambda found, text, scope: found.declarations.type_of(key, text, kind))
-        case ("initial",):
-            type_ = meaning.declarations.noting(Findings()).type_of(key, document.type, kind)
-            return TextField(
-                FieldKind.INITIAL,
-                lambda found, text, scope: type_ and found.declarations.initial_of(key, full, text, type_),
-                type=type_,
-            )
-        case ("for", str(parameter)):
-            return field_of_parameter(parameter)
-    return None
-
-
-# The fields of the documents beside the resources: station, operations and specifications.
-
-
-def field_of_station(station: Station, path: EntryPath, meaning: Meaning) -> TextField | None:
-    """The field at `path` of `station.yaml`."""
-    match path:
-        case ("rest",):
-            return TextField(FieldKind.CONDITION, condition)
-        case ("alarms", str(), "when"):
-            return TextField(FieldKind.CONDITION, alarm_condition)
-        case ("estimated", str(name), *rest):
-            documents = station.station.estimated
-            return field_of_variable(None, name, documents, Kind.ESTIMATED, tuple(rest), meaning)
-    return None
-
-
-def field_of_operation(station: Station, path: EntryPath, given: Parameters | None) -> TextField | None:
-    """The field at `path` of `operations.yaml`."""
-    match path:
-        case (str(name), "precondition" | "goal" | "local" as part):
-            document = station.operations.get(placed(name))
-            written = {} if document is None else document.parameters
-            parameters = written if given is None else given
-            if part == "local":
-                return TextField(FieldKind.FORMULA, Meaning.formula, parameters, operation=name)
-            return TextField(FieldKind.CONDITION, condition, parameters, operation=name)
-        case (str(), "parameters", str(parameter)):
-            return field_of_parameter(parameter)
-    return None
-
-
-def field_of_specification(station: Station, path: EntryPath, given: Parameters | None) -> TextField | None:
-    """The field at `path` of `specifications.yaml`."""
-    match path:
-        case (str(name), *rest):
-            document = station.specifications.get(placed(name))
-            written = {} if document is None else document.parameters
-            parameters = written if given is None else given
-            return _of_specification(station, document, tuple(rest), parameters)
-    return None
-
-
-def _of_specification(
-    station: Station, document: SpecificationDocument | None, path: EntryPath, parameters: Parameters
-) -> TextField | None:
-    match path:
-        case ("forbidden" | "never" | "while",) | ("order", int()):
-            return TextField(FieldKind.CONDITION, condition, parameters)
-        case ("zone", str(resource)):
-            # Where the resource is none, that is found at its name, and the condition is not read.
-            read = condition if resource in station.resources else _unread
-            return TextField(FieldKind.CONDITION, read, parameters, resource)
-        case ("exclusive", int(index)):
-            texts = (document and document.exclusive) or []
-            return TextField(
-                FieldKind.ABILITY,
-                lambda meaning, text, scope: exclusive_abilities(meaning, with_text(texts, index, text), scope),
-                parameters,
-            )
-        case ("parameters", str(parameter)):
-            return field_of_parameter(parameter)
-    return None
-
-
-def _unread(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
-    return None
-
 
 # Everything that names mean in one draft of a station.
 
@@ -367,6 +63,11 @@ class Lexicon:
         """Its names."""
         return Declarations(self.station, Findings())
 
+    @property
+    def sets(self) -> Set[SourceText]:
+        """The names of sets, which are among the enumerations as well."""
+        return self.station.station.sets.keys()
+
     @cached_property
     def operations(self) -> tuple[str, ...]:
         """The ground operations."""
@@ -384,7 +85,17 @@ class Lexicon:
     @cached_property
     def family(self) -> Mapping[str, Family]:
         """The family that each full name is one of."""
-        return {name: family for family in self.families for name in family.instances(self.declarations.enumerations)}
+        return {
+            name: family
+            for family in self.families
+            if family.kind not in SHORT
+            for name in family.instances(self.declarations.enumerations)
+        }
+
+    @cached_property
+    def short(self) -> Mapping[str, Family]:
+        """Each predicate, relation and map."""
+        return {family.name: family for family in self.families if family.kind in SHORT}
 
     def seen_from(self, resource: str | None) -> tuple[Visible, ...]:
         """The same as they are seen from a resource, or from the station as a whole."""
@@ -405,7 +116,7 @@ class Lexicon:
                 document = station.resources.get(at.stem) or ResourceDocument()
                 return field_of_resource(at.stem, document, path, given, meaning)
             case ("station.yaml",):
-                return field_of_station(station, path, meaning)
+                return field_of_station(station, path, meaning, given)
             case ("operations.yaml",):
                 return field_of_sequence(station, path, self.operations) or field_of_operation(station, path, given)
             case ("specifications.yaml",):
@@ -450,30 +161,38 @@ _MOST_FORMS = 2000  # of one family
 
 
 class VisibleNames:
-    """The names that can be seen from one field."""
+    """The names that can be seen from one field, or from within quantifiers in its text that have `bound` words."""
 
-    def __init__(self, lexicon: Lexicon, field: TextField) -> None:
-        self._lexicon = lexicon
+    def __init__(
+        self, lexicon: Lexicon, field: TextField, bound: Mapping[str, str | tuple[str, ...]] | None = None
+    ) -> None:
+        self.lexicon = lexicon
         self._field = field
         self._meaning = lexicon.meaning(field)
+        domains = ((word, self._domain(domain)) for word, domain in (bound or {}).items())
+        self.bound: Mapping[str, EnumerationType] = {word: type_ for word, type_ in domains if type_ is not None}
+        """The words of quantifiers, with what they stand for."""
+
+    def _domain(self, domain: str | tuple[str, ...]) -> EnumerationType | None:
+        return self.enumerations.get(domain) if isinstance(domain, str) else EnumerationType(domain)
 
     @cached_property
     def scope(self) -> NameScope:
         """The meaning of names, for the first choice of the parameters."""
-        first = next(self._field.scopes(self._meaning), None)
-        return first or self._meaning.scope({}, *self._field.prefixes({}))
+        first = next(self._field.scopes(self._meaning), None) or self._meaning.scope({}, *self._field.prefixes({}))
+        return first.binding({word: (type_.values[0], type_) for word, type_ in self.bound.items()})
 
     @cached_property
     def parameters(self) -> Mapping[str, EnumerationType]:
         """The parameters with what they range over."""
         enumerations = self.enumerations
         written = ((str(name), enumerations.get(each)) for name, each in self._field.parameters.items())
-        return {name: type_ for name, type_ in written if type_ is not None}
+        return {**{name: type_ for name, type_ in written if type_ is not None}, **self.bound}
 
     @property
     def enumerations(self) -> Mapping[str, EnumerationType]:
         """The enumerations of the draft."""
-        return self._lexicon.declarations.enumerations
+        return self.lexicon.declarations.enumerations
 
     def flags(self) -> Iterator[str]:
         """The flags of the field's own ability, by their bare names."""
@@ -490,7 +209,7 @@ class VisibleNames:
     @property
     def families(self) -> tuple[Visible, ...]:
         """All families that have a name here."""
-        return self._lexicon.seen_from(self._field.resource)
+        return self.lexicon.seen_from(self._field.resource)
 
     def forms(self, seen: Visible, long: bool = False) -> Iterator[str]:
         """The names of a family as they can be written here: one for each choice of values or parameters."""
@@ -501,6 +220,14 @@ class VisibleNames:
                 tuple(map(self._value, words))
             ):
                 yield written
+
+    def indices(self, family: Family, index: int) -> Iterator[str]:
+        """What has a value and can stand as that argument of a family: a name, or the beginning of one."""
+        wanted = self.enumerations[family.arguments[index]].values
+        for seen in self.families:
+            type_, own = seen.family.type, seen.family
+            if isinstance(type_, EnumerationType) and not set(type_.values).isdisjoint(wanted):
+                yield stub(seen, not seen.own) if own.arguments else seen.short
 
     def has_parameter(self, form: str) -> bool:
         """Return whether a parameter is among the arguments of a name."""
@@ -525,7 +252,11 @@ class VisibleNames:
         for prefix in (*self.scope.prefixes, ""):
             if prefix + text in self.scope.variables:
                 return prefix + text
-        return None
+        if family.kind is NameKind.PREDICATE:
+            named = (prefix + name for prefix in (*self.scope.prefixes, ""))
+            found = next((each for each in named if each in self.scope.vocabulary.predicates), None)
+            return None if found is None else with_arguments(found, map(self._value, words))
+        return text if family.kind in SHORT else None
 
 
 def abilities(families: Iterable[Visible]) -> Iterator[Visible]:

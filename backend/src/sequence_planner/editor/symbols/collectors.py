@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from sequence_planner.automaton.declarations import FLAGS
@@ -19,19 +20,25 @@ from sequence_planner.editor.symbols.index import (
     variable_of,
 )
 from sequence_planner.language.parser import parse, parse_assignment, parse_calculation, parse_formula
+from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.language.syntax import (
     NOWHERE,
     Assignment,
+    Binder,
     Comparison,
+    Component,
     Expression,
     ExpressionError,
     Membership,
     Name,
+    NamedMembership,
+    Quantified,
     RecordConstant,
     Selection,
     Span,
     children,
 )
+from sequence_planner.model.paths import shown_path
 from sequence_planner.model.source import SourceText
 
 # Which parts a dotted name names: what `NameScope` looks up in a sound model, in one that may be broken elsewhere.
@@ -96,11 +103,11 @@ class Naming:
     def __init__(self, declared: Declared, gathered: Gathered) -> None:
         self.declared = declared
         self.gathered = gathered
-        self._found: dict[tuple[str, str, str | None, bool], Named | None] = {}
+        self._found: dict[tuple[object, ...], Named | None] = {}
 
     def find(self, name: Name, around: TextContext) -> Named | None:
         """Return what a name names; nothing where no such name is declared."""
-        key = (str(name), around.holder, around.resource, around.has_flags)
+        key = (str(name), around.holder, around.resource, around.has_flags, *around.words.values())
         if key not in self._found:
             self._found[key] = self._find(_without_places(name), around)
         return self._found[key]
@@ -110,7 +117,7 @@ class Naming:
         is_word = len(steps) == 1 and not steps[0].arguments
         if is_word and word in around.parameters:
             enumeration = around.parameters[word]
-            return Named({0: ModelPart("parameter", around.holder, word)}, None, enumeration)
+            return Named({0: around.parameter(word)}, None, enumeration)
         if is_word and around.has_flags and word in FLAGS:
             return Named({})
         candidates = list(self._candidates(steps, around.resource))
@@ -156,31 +163,47 @@ class Naming:
         around = where.around
         for word, enumeration in zip(words, parameters.values(), strict=False):
             if word.text in around.parameters:
-                self.gathered.add(ModelPart("parameter", around.holder, word.text), where, text, word.span, whole=whole)
+                self.gathered.add(around.parameter(word.text), where, text, word.span, whole=whole)
                 self.link(around.parameters[word.text], enumeration)
-            elif word.text in self.declared.enumerations.get(enumeration, ()):
-                self.gathered.add(value_of(enumeration, word.text), where, text, word.span, whole=whole)
+            elif word.text in self.declared.homes.get(enumeration, ()):
+                self.gathered.add(self.declared.value(enumeration, word.text), where, text, word.span, whole=whole)
 
     def note_value(self, enumeration: str | None, where: Where, text: object) -> None:
         """Note that a whole text is a value of an enumeration, if it is."""
         if enumeration is not None and isinstance(text, SourceText) and self.has(enumeration, text):
-            self.gathered.add(value_of(enumeration, str(text)), where, text)
+            self.gathered.add(self.declared.value(enumeration, str(text)), where, text)
 
     def has(self, enumeration: str, value: str) -> bool:
         """Return whether an enumeration has a value."""
-        return value in self.declared.enumerations.get(enumeration, ())
+        return value in self.declared.homes.get(enumeration, ())
 
     def tie_values(self, enumeration: str | None, why: str) -> None:
         """Note that the names of an enumeration's values are not the model's alone."""
-        for value in self.declared.enumerations.get(enumeration or "", ()):
-            self.gathered.tie(value_of(enumeration or "", value), why)
+        for value in self.declared.homes.get(enumeration or "", ()):
+            self.gathered.tie(self.declared.value(enumeration or "", value), why)
 
     def link(self, one: str | None, other: str | None) -> None:
         """Note that values of two enumerations are compared, or become one another."""
         if one is None or other is None or one == other:
             return
-        values = set(self.declared.enumerations.get(one, ())) & set(self.declared.enumerations.get(other, ()))
-        self.gathered.links |= {frozenset({value_of(one, each), value_of(other, each)}) for each in values}
+        values = set(self.declared.homes.get(one, ())) & set(self.declared.homes.get(other, ()))
+        pairs = (frozenset({self.declared.value(one, each), self.declared.value(other, each)}) for each in values)
+        self.gathered.links |= {pair for pair in pairs if len(pair) > 1}
+
+    def note_domain(self, name: object, where: Where, text: SourceText | None = None, span: Span | None = None) -> None:
+        """Note that an enumeration or a set is named, if it is: by a text, or at `span` of one."""
+        if isinstance(name, SourceText) and text is None:
+            text = name
+        if text is not None and str(name) in self.declared.homes:
+            self.gathered.add(self.declared.domain(str(name)), where, text, span)
+
+    def note_member(self, domain: object, where: Where, text: object) -> None:
+        """Note that a whole text is a value of an enumeration or set, or a set of such values."""
+        if isinstance(text, SourceText):
+            if self.has(str(domain), text):
+                self.note_value(str(domain), where, text)
+            else:
+                self.note_domain(text, where)
 
     def _candidates(self, steps: tuple[NameStep, ...], resource: str | None) -> Iterator[Named]:
         names = [step.word.text for step in steps]
@@ -188,6 +211,14 @@ class Naming:
             yield from self._own(resource, steps, 0)
         if len(names) == 1 and names[0] in self.declared.variables:
             yield self._variable(None, names[0], 0)
+        elif len(names) == 1 and names[0] in self.declared.predicates:
+            yield Named({0: ModelPart("predicate", None, names[0])}, (0, self.declared.predicates[names[0]]))
+        elif len(names) == 1 and names[0] in self.declared.relations:
+            yield Named({0: ModelPart("relation", None, names[0])}, (0, self.declared.relations[names[0]]))
+        elif len(names) == 1 and names[0] in self.declared.maps:
+            source, target = self.declared.maps[names[0]]
+            ranges = target if target in self.declared.homes else None
+            yield Named({0: ModelPart("map", None, names[0])}, (0, source), ranges)
         elif is_activity(names) and names[1] in self.declared.operations:
             yield Named({1: ModelPart("operation", None, names[1])}, (1, self.declared.operations[names[1]]))
         elif names[0] in self.declared.resources:
@@ -202,6 +233,8 @@ class Naming:
         full = f"{resource}.{name}"
         if not rest and full in self.declared.variables:
             yield self._variable(resource, name, first)
+        elif not rest and full in self.declared.predicates:
+            yield Named({first: ModelPart("predicate", resource, name)}, (first, self.declared.predicates[full]))
         elif len(rest) == 1 and rest[0].word.text in FLAGS and full in self.declared.abilities:
             yield Named({first: ModelPart("ability", resource, name)}, (first, self.declared.abilities[full]))
 
@@ -263,10 +296,12 @@ class _Reading:
         self._naming = naming
         self._text = text
         self._where = where
+        self._binders = 0  # so far in the text
 
     def assignment(self, action: Assignment) -> None:
         """Read what it writes, what that becomes, and when."""
         assert isinstance(action.target, Name)
+        self._bind(action.binders)
         expected = self._name(action.target, None, writes=True)
         found = self.read(action.value, expected)
         self._naming.link(expected, found)
@@ -284,10 +319,50 @@ class _Reading:
                 enumeration = self.read(left)
                 for option in options:
                     self._naming.link(enumeration, self.read(option, enumeration))
+            case NamedMembership(left, domain):
+                is_value = isinstance(left, Name) and not self._is_parameter(left) and self._found(left) is None
+                self._naming.link(self.read(left, str(domain) if is_value else None), str(domain))
+                self._naming.note_domain(str(domain), self._where, self._text, domain.span)
+            case Quantified(_, _, binders, where, body):
+                around = self._where
+                self._bind(binders)
+                for part in (body,) if where is None else (where, body):
+                    self.read(part)
+                self._where = around
             case _:
                 for part in children(expression):
                     self.read(part)
         return None
+
+    def _bind(self, binders: tuple[Binder, ...]) -> None:
+        """Note the words of a quantifier, which have a meaning from here on, and what they range over."""
+        declared, around = self._naming.declared, self._where.around
+        ranges, words = dict(around.parameters), dict(around.words)
+        for binder in binders:
+            if isinstance(binder.domain, Name):
+                ranges[binder.word] = str(binder.domain)
+                self._naming.note_domain(str(binder.domain), self._where, self._text, binder.domain.span)
+            else:
+                values = set(map(str, binder.domain))
+                homes = [name for name in declared.homes if values <= declared.homes[name].keys()]
+                ranges[binder.word] = homes[0] if homes else ""
+                for value in binder.domain:
+                    for part in {declared.value(home, str(value)) for home in homes}:
+                        self._naming.gathered.add(part, self._where, self._text, value.span)
+            entry = shown_path(self._where.path)
+            part = ModelPart("word", f"{self._where.file}:{entry}#{self._binders}", binder.word)
+            self._binders += 1
+            words[binder.word] = part
+            self._naming.gathered.add(
+                part, self._where, self._text, Span(binder.span.start, binder.span.start + len(binder.word)),
+                declares=True,
+            )  # fmt: skip
+            hidden = self._naming.find(Name((Component(binder.word),)), around)
+            self._naming.gathered.hidden |= {(part, each) for each in (hidden.parts.values() if hidden else ())}
+            same = (value_of(each, binder.word) for each in declared.values.get(binder.word, ()))
+            self._naming.gathered.hidden |= {(part, each) for each in same}
+        bound = replace(around, parameters=ranges, words=words)
+        self._where = replace(self._where, around=bound)
 
     def _compare(self, first: Expression, second: Expression) -> None:
         enumeration = self.read(first)
@@ -298,17 +373,63 @@ class _Reading:
         named = self._naming.find(name, around)
         is_value = expected is not None and name.is_word and self._naming.has(expected, word)
         if expected is not None and is_value and word not in around.parameters:
-            value = value_of(expected, word)
+            value = self._naming.declared.value(expected, word)
             self._naming.gathered.add(value, self._where, self._text, name.span)
             if named is not None and named.enumeration is not None:
                 self._naming.gathered.hidden.add((named.parts[max(named.parts)], value))
             return None
+        if named is None and len(name.path) == 1 and (name.path[0].name in STEPS or name.path[0].name in ENDS):
+            return self._in_order(name, expected)
         if self._word is None or self._word in word:
             steps = steps_of(name, self._text)
             named = named or self._naming.implied(steps, around)
             if named is not None:
                 self._naming.note(named, steps, self._where, self._text, writes=writes)
+                self._arguments(name, named, steps)
         return None if named is None else named.enumeration
+
+    def _arguments(self, name: Name, named: Named, steps: tuple[NameStep, ...]) -> None:
+        """The arguments that have a value themselves: variables, and names with arguments."""
+        at, parameters = named.arguments or (-1, {})
+        for index, (part, step) in enumerate(zip(name.path, steps, strict=True)):
+            wanted = [*parameters.values()] if index == at else []
+            for number, (argument, word) in enumerate(zip(part.arguments, step.arguments, strict=True)):
+                enumeration = wanted[number] if number < len(wanted) else None
+                self._argument(argument, word, enumeration)
+
+    def _argument(self, argument: str | Name, word: NameWord, enumeration: str | None) -> str | None:
+        """One argument, unless it is a parameter or a value; returns the enumeration over which it ranges."""
+        if isinstance(argument, Name):
+            found = self._name(argument, None)
+        elif word.text in self._where.around.parameters:
+            return self._where.around.parameters[word.text]
+        elif enumeration is not None and self._naming.has(enumeration, word.text):
+            return enumeration
+        else:
+            single = Name((Component(word.text),), word.span)
+            found = None if self._found(single) is None else self._name(single, None)
+        self._naming.link(enumeration, found)
+        return found
+
+    def _in_order(self, name: Name, expected: str | None) -> str | None:
+        """`previous(x)` and `next(x)` range over what `x` does, `first(set)` and `last(set)` over the set."""
+        words = steps_of(name, self._text)[0].arguments
+        if len(words) != 1:
+            return None
+        [word], [argument] = words, name.path[0].arguments
+        if name.path[0].name in ENDS:
+            self._naming.note_domain(word.text, self._where, self._text, word.span)
+            return word.text
+        if word.text in self._where.around.parameters:
+            self._naming.note_arguments(words, {"": ""}, self._where, self._text, name.span)
+        found = self._argument(argument, word, None)
+        if found is None:
+            ordered = [each for each in self._naming.declared.ordered if self._naming.has(each, word.text)]
+            for each in ordered:
+                part = self._naming.declared.value(each, word.text)
+                self._naming.gathered.add(part, self._where, self._text, word.span)
+            return ordered[0] if ordered else None
+        return found
 
     def _is_value_first(self, left: Expression, right: Expression) -> bool:
         """Return whether the left of a comparison is to be read as a value of what stands on its right."""
@@ -528,7 +649,7 @@ class _Calculation:
         self._done.add(part.span.start)
         quote = isinstance(part, RecordConstant)
         span = Span(part.span.start + quote, part.span.end - quote)
-        value = value_of(enumeration, self._text[span.start : span.end])
+        value = self._names.naming.declared.value(enumeration, self._text[span.start : span.end])
         self._names.naming.gathered.add(value, self._where, self._text, span)
 
     def _type(self, part: Expression) -> str | None:

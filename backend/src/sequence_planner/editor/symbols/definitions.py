@@ -17,6 +17,7 @@ from sequence_planner.editor.symbols.index import (
     Where,
     branches_in,
     operation_part,
+    own_values,
     parameters,
     value_of,
     variable_of,
@@ -99,9 +100,9 @@ def manner_of(part: ModelPart, by: ModelPart | None, path: EntryPath, declared: 
     """Tell how `by`, or the station itself, uses a part at an entry within it; `writes` holds where that gets a
     value.
     """
-    if part.kind == "enumeration":
+    if part.kind in ("enumeration", "set"):
         return Manner.RANGES
-    if part.kind in ("value", "parameter", "resource"):
+    if part.kind in ("value", "parameter", "resource", "word"):
         return Manner.NAMES
     if by is None:
         return Manner.REST
@@ -196,12 +197,67 @@ class _Walk:
         for name, values in pairs(entry(content, "enumerations")):
             where = top.to("enumerations", name).within(f"enumeration {name}")
             self._add(ModelPart("enumeration", None, str(name)), where, name, declares=True)
-            for index, value in enumerate(items(values)):
-                if isinstance(value, SourceText):
-                    self._add(value_of(str(name), str(value)), where.to(index), value, declares=True)
+            listed = where if isinstance(values, list) else where.to("values")
+            for index, value in enumerate(own_values(values)):
+                self._add(value_of(str(name), str(value)), listed.to(index), value, declares=True)
+            for index, each in enumerate(items(entry(values, "includes"))):
+                self._naming.note_domain(each, where.to("includes", index))
+        self._sets(content, top)
+        self._relations(content, top)
+        self._maps(content, top)
+        self._predicates(None, content, top)
         self._variables(None, entry(content, "estimated"), top.to("estimated"))
         self._alarms(None, content, top)
         self._read.condition(entry(content, "rest"), top.to("rest"))
+
+    def _sets(self, content: object, top: Where) -> None:
+        for name, document in pairs(entry(content, "sets")):
+            at = top.to("sets", name).within(f"set {name}")
+            self._add(ModelPart("set", None, str(name)), at, name, declares=True)
+            of = entry(document, "of")
+            self._naming.note_domain(of, at.to("of"))
+            for key in ("values", "except"):
+                for index, each in enumerate(items(entry(document, key))):
+                    self._naming.note_member(of, at.to(key, index), each)
+
+    def _relations(self, content: object, top: Where) -> None:
+        for name, document in pairs(entry(content, "relations")):
+            at = top.to("relations", name).within(f"relation {name}")
+            self._add(ModelPart("relation", None, str(name)), at, name, declares=True)
+            between = items(entry(document, "between"))
+            for index, each in enumerate(between):
+                self._naming.note_domain(each, at.to("between", index))
+            for row, pair in enumerate(items(entry(document, "pairs"))):
+                for side, (of, members) in enumerate(zip(between, items(pair), strict=False)):
+                    where = at.to("pairs", row, side)
+                    self._naming.note_member(of, where, members)
+                    for index, each in enumerate(items(members)):
+                        self._naming.note_member(of, where.to(index), each)
+            if entry(document, "symmetric") is True and len(between) > 1:
+                self._naming.link(str(between[0]), str(between[1]))
+
+    def _maps(self, content: object, top: Where) -> None:
+        for name, document in pairs(entry(content, "maps")):
+            at = top.to("maps", name).within(f"map {name}")
+            self._add(ModelPart("map", None, str(name)), at, name, declares=True)
+            source, target = entry(document, "from"), entry(document, "to")
+            self._naming.note_domain(source, at.to("from"))
+            self._naming.note_domain(target, at.to("to"))
+            for key, value in pairs(entry(document, "values")):
+                self._naming.note_member(source, at.to("values", key), key)
+                self._naming.note_value(str(target), at.to("values", key), value)
+            self._naming.note_value(str(target), at.to("otherwise"), entry(document, "otherwise"))
+
+    def _predicates(self, resource: str | None, content: object, top: Where) -> None:
+        for name, document in pairs(entry(content, "predicates")):
+            part = ModelPart("predicate", resource, str(name))
+            around = TextContext(resource, part.full, parameters(entry(document, "parameters")))
+            at = top.to("predicates", name).within(f"predicate {part.full}", around)
+            self._add(part, at, name, declares=True)
+            self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
+            self._title(entry(document, "title"), at.to("title"))
+            self._read.condition(document, at)
+            self._read.condition(entry(document, "when"), at.to("when"))
 
     def resource(self, resource: str, file: str, content: object) -> None:
         """Variables and abilities; what stands in pipelines has a walk of its own."""
@@ -213,6 +269,7 @@ class _Walk:
             self._variables(resource, entry(content, section), top.to(section))
         for name, ability in pairs(entry(content, "abilities")):
             self._ability(resource, name, ability, top.to("abilities", name))
+        self._predicates(resource, content, top)
         self._alarms(resource, content, top)
 
     def changed_in_instance(self, resource: str, file: str, own: object, whole: object) -> None:
@@ -370,7 +427,7 @@ class _Walk:
 
     def _enumeration(self, text: SourceText, where: Where) -> None:
         if str(text).isidentifier() and text != "bool":
-            self._add(ModelPart("enumeration", None, str(text)), where, text)
+            self._add(self._naming.declared.domain(str(text)), where, text)
 
     def _title(self, text: object, where: Where) -> None:
         """A text for people, in which a parameter stands in braces."""

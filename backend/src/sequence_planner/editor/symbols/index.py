@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sequence_planner.automaton.declarations import FLAGS, OPERATION
+from sequence_planner.automaton.shorthand import RESERVED
 from sequence_planner.editor.symbols.fields import inferred
 from sequence_planner.editor.symbols.texts import (
     OPERATIONS,
@@ -35,6 +36,11 @@ from sequence_planner.ros.types.messages import MessageRegistry
 KINDS: Mapping[str, str] = {
     "enumeration": "the enumeration",
     "value": "the value",
+    "set": "the set",
+    "relation": "the relation",
+    "map": "the map",
+    "predicate": "the predicate",
+    "word": "the word",
     "resource": "the resource",
     "variable": "the variable",
     "ability": "the ability",
@@ -53,7 +59,7 @@ KINDS: Mapping[str, str] = {
 }
 # Kinds whose names are those of ROS 2, and known in the whole station.
 ROS_KINDS = frozenset({"topic", "service", "action", "message"})
-_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm"})
+_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm", "predicate"})
 _WITHIN = frozenset({"effect", "parameter"})
 
 
@@ -61,7 +67,8 @@ class ModelPart(NamedTuple):
     """Something with a name. `owner` is what it belongs to, without which the name does not tell it:
 
     the enumeration of a value; the resource of a variable, an ability or a flow; the ability of an effect; and for a
-    parameter the full name of its ability or variable, or the id of what else it belongs to, such as `operation:press`.
+    parameter the full name of its ability, variable or predicate, or the id of what else it belongs to, such as
+    `operation:press`. The word of a quantifier belongs to that: the file, the entry, and its number in the text.
     """
 
     kind: str
@@ -79,7 +86,7 @@ class ModelPart(NamedTuple):
         return self.name if self.owner is None else f"{self.owner}.{self.name}"
 
     def __str__(self) -> str:
-        return f"{KINDS[self.kind]} `{self.full.rpartition(':')[2]}`"
+        return f"{KINDS[self.kind]} `{self.name if self.kind == 'word' else self.full.rpartition(':')[2]}`"
 
 
 def parse_part(text: str) -> ModelPart:
@@ -120,7 +127,7 @@ def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
                 return part._replace(owner=f"{new.name}{owner[len(old.name) :]}")
         case "enumeration" if part.kind == "value" and owner == old.name:
             return part._replace(owner=new.name)
-        case "ability" | "variable" if part.kind in _WITHIN and owner == old.full:
+        case "ability" | "variable" | "predicate" if part.kind in _WITHIN and owner == old.full:
             return part._replace(owner=new.full)
         case "operation" | "specification" | "sequence" | "work_master" if part.kind == "parameter" and owner == old.id:
             return part._replace(owner=new.id)
@@ -159,7 +166,12 @@ class Declared:
 
     def __init__(self, content: ModelContent, messages: MessageRegistry | None) -> None:
         self.messages = messages
-        self.enumerations: dict[str, tuple[str, ...]] = {}
+        self.homes: dict[str, dict[str, str]] = {}  # by enumeration or set, its values with where each is declared
+        self.sets: set[str] = set()
+        self.ordered: list[str] = []
+        self.relations: dict[str, Parameters] = {}
+        self.maps: dict[str, tuple[Parameters, str]] = {}
+        self.predicates: dict[str, Parameters] = {}
         self.resources: dict[str, object] = {name: found for name, _, found in content.resources()}
         self.variables: dict[str, DeclaredVariable] = {}
         self.abilities: dict[str, Parameters] = {}
@@ -168,10 +180,8 @@ class Declared:
         self.parts: list[ModelPart] = []
         self.sent: set[str] = set()  # topics on which the station speaks
         station = content.get(STATION)
-        for name, values in pairs(entry(station, "enumerations")):
-            self.enumerations[str(name)] = tuple(str(value) for value in items(values) if isinstance(value, SourceText))
-            self.parts.append(ModelPart("enumeration", None, str(name)))
-            self.parts += [ModelPart("value", str(name), value) for value in self.enumerations[str(name)]]
+        self._read_enumerations(station)
+        self._read_short(station)
         self._read_variables(None, "estimated", entry(station, "estimated"))
         self.parts += [ModelPart("alarm", None, str(each)) for each, _ in pairs(entry(station, "alarms"))]
         for resource, found in self.resources.items():
@@ -180,11 +190,12 @@ class Declared:
         self.parts += [ModelPart("message", None, name) for name in map(message_of, content.definitions) if name]
         has_actions = any(pairs(entry(found, "actions")) for found in self.resources.values())
         if has_actions:
-            self.enumerations.setdefault(GOAL_STATE, tuple(map(str, GoalState)))
+            self.homes.setdefault(GOAL_STATE, dict.fromkeys(map(str, GoalState), GOAL_STATE))
         self.values: dict[str, list[str]] = {}
-        for enumeration, names in self.enumerations.items():
-            for value in names:
-                self.values.setdefault(value, []).append(enumeration)
+        for enumeration, homes in self.homes.items():
+            for value, home in homes.items():
+                if home == enumeration:
+                    self.values.setdefault(value, []).append(enumeration)
 
     def own(self, resource: str, section: str) -> Iterator[tuple[str, DeclaredVariable]]:
         """The variables of one section of a resource, by their names without it."""
@@ -196,7 +207,66 @@ class Declared:
     def enumeration(self, resource: str | None, name: str) -> str | None:
         """The enumeration over which a variable ranges, if it does."""
         found = self.variables.get(variable_of(resource, name).full)
-        return None if found is None or found.type not in self.enumerations else found.type
+        return None if found is None or found.type not in self.homes else found.type
+
+    def value(self, domain: str, name: str) -> ModelPart:
+        """A value of an enumeration or set, where it is declared: perhaps by an enumeration that is included."""
+        return value_of(self.homes.get(domain, {}).get(name, domain), name)
+
+    def domain(self, name: str) -> ModelPart:
+        """An enumeration or a set."""
+        return ModelPart("set" if name in self.sets else "enumeration", None, name)
+
+    def _read_enumerations(self, station: object) -> None:
+        written = {str(name): document for name, document in pairs(entry(station, "enumerations"))}
+        own = {name: own_values(document) for name, document in written.items()}
+
+        def homes(name: str, around: tuple[str, ...]) -> dict[str, str]:
+            found = dict.fromkeys(map(str, own.get(name, ())), name)
+            for each in map(str, items(entry(written.get(name), "includes"))):
+                if each not in around:
+                    found = {**homes(each, (*around, each)), **found}
+            return found
+
+        for name, document in written.items():
+            self.homes[name] = homes(name, (name,))
+            self.parts.append(ModelPart("enumeration", None, name))
+            self.parts += [ModelPart("value", name, str(value)) for value in own[name]]
+            if entry(document, "ordered") is True:
+                self.ordered.append(name)
+        sets = {str(name): document for name, document in pairs(entry(station, "sets"))}
+        self.sets = {name for name in sets if name not in self.homes}
+        self.parts += [ModelPart("set", None, name) for name in sets]
+
+        def contents(name: str, around: tuple[str, ...]) -> dict[str, str]:
+            if name not in self.sets or name in around:
+                return self.homes.get(name, {})
+            whole = contents(str(entry(sets[name], "of")), (*around, name))
+            kept = entry(sets[name], "values")
+            named = {
+                value
+                for each in map(str, items(entry(sets[name], "except") if kept is None else kept))
+                for value in ([each] if each in whole else contents(each, (*around, name)))
+            }
+            return {value: home for value, home in whole.items() if (value in named) is (kept is not None)}
+
+        self.homes |= {name: contents(name, ()) for name in self.sets}
+
+    def _read_short(self, station: object) -> None:
+        for name, document in pairs(entry(station, "relations")):
+            between = items(entry(document, "between"))
+            self.relations[str(name)] = {str(index): str(each) for index, each in enumerate(between)}
+            self.parts.append(ModelPart("relation", None, str(name)))
+        for name, document in pairs(entry(station, "maps")):
+            self.maps[str(name)] = {"0": str(entry(document, "from"))}, str(entry(document, "to"))
+            self.parts.append(ModelPart("map", None, str(name)))
+        self._read_predicates(None, station)
+
+    def _read_predicates(self, resource: str | None, written: object) -> None:
+        for name, document in pairs(entry(written, "predicates")):
+            part = ModelPart("predicate", resource, str(name))
+            self.predicates[part.full] = parameters(entry(document, "parameters"))
+            self._note(part, self.predicates[part.full], part.full)
 
     def _read_variables(self, resource: str | None, section: str, written: object) -> None:
         for name, document in pairs(written):
@@ -210,6 +280,7 @@ class Declared:
         self.parts.append(ModelPart("resource", None, resource))
         for section in SECTIONS:
             self._read_variables(resource, section, entry(found, section))
+        self._read_predicates(resource, found)
         for name, document in pairs(entry(found, "abilities")):
             part = ModelPart("ability", resource, str(name))
             self.abilities[part.full] = parameters(entry(document, "parameters"))
@@ -247,6 +318,17 @@ class Declared:
     def _note(self, part: ModelPart, of: Parameters, holder: str) -> None:
         self.parts.append(part)
         self.parts += [ModelPart("parameter", holder, name) for name in of]
+
+
+def is_reserved(name: str) -> bool:
+    """Return whether a text would take the name of a predicate, relation or map for something else."""
+    return name in RESERVED
+
+
+def own_values(document: object) -> list[SourceText]:
+    """The values that an enumeration declares itself."""
+    written = document if isinstance(document, list) else entry(document, "values")
+    return [value for value in items(written) if isinstance(value, SourceText)]
 
 
 def parameters(written: object) -> Parameters:
@@ -290,13 +372,19 @@ class TextContext:
     """The context of names around a text, for what they mean: its resource, and the parameters of what it stands in,
     with their enumerations.
 
-    `holder` is the owner of these parameters; `has_flags` holds within an ability.
+    `holder` is the owner of these parameters; `has_flags` holds within an ability. `words` are those of the parameters
+    that a quantifier binds.
     """
 
     resource: str | None = None
     holder: str = ""
     parameters: Mapping[str, str] = field(default_factory=dict)
     has_flags: bool = False
+    words: Mapping[str, ModelPart] = field(default_factory=dict)
+
+    def parameter(self, word: str) -> ModelPart:
+        """The parameter, or the word of a quantifier."""
+        return self.words.get(word) or ModelPart("parameter", self.holder, word)
 
 
 @dataclass(frozen=True, slots=True)

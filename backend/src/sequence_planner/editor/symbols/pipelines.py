@@ -20,7 +20,6 @@ from sequence_planner.editor.symbols.index import (
     Occurrence,
     Unwritten,
     Where,
-    value_of,
     variable_of,
 )
 from sequence_planner.editor.symbols.stages import Stages, kinds_of
@@ -286,8 +285,8 @@ class PipelineCollector:
                 self._naming.gathered.add(part, where.to(key), text, writes=is_status)
         if (status := text_at(document, "status")) is not None:
             enumeration = self._naming.declared.enumeration(resource, str(status))
-            for value in self._naming.declared.enumerations.get(enumeration or "", ()):
-                self._naming.gathered.tie(value_of(enumeration or "", value), _STATUS)
+            for value in self._naming.declared.homes.get(enumeration or "", ()):
+                self._naming.gathered.tie(self._naming.declared.value(enumeration or "", value), _STATUS)
             if enumeration == GOAL_STATE:
                 self._naming.gathered.tie(ModelPart("enumeration", None, GOAL_STATE), _STATUS)
 

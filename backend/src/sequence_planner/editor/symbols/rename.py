@@ -18,6 +18,7 @@ from sequence_planner.editor.symbols.index import (
     Occurrence,
     belongs_to,
     following,
+    is_reserved,
     variable_of,
 )
 from sequence_planner.editor.symbols.pipelines import said, unsaid
@@ -178,8 +179,10 @@ def usage_of(found: Occurrence) -> Usage:
 
 # Why a part cannot be called so: its new name is none, or taken, or not the model's alone.
 
+_SHORT = ("predicate", "relation", "map")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_SHARING = (("variable", "ability"), ("operation", "sequence"))  # which have no names in common
+# Which have no names in common, of a resource or of the station.
+_SHARING = (("variable", "ability", "predicate", "relation", "map"), ("enumeration", "set"), ("operation", "sequence"))
 
 
 def require_name(part: ModelPart, name: str) -> None:
@@ -198,9 +201,11 @@ def require_name(part: ModelPart, name: str) -> None:
         )
     if scalar(name) != name:
         raise EditError(f"`{name}` is no name that YAML would read as a text: choose another")
-    if name in FLAGS and part.kind in ("variable", "parameter", "ability"):
+    if name in FLAGS and part.kind in ("variable", "parameter", "ability", *_SHORT):
         raise EditError(f"`{name}` is a flag of every ability: choose another name")
-    if part.kind == "enumeration" and name == "bool":
+    if is_reserved(name) and part.kind in _SHORT:
+        raise EditError(f"`{name}` is a word of quantifiers and orders: choose another name")
+    if part.kind in ("enumeration", "set") and name == "bool":
         raise EditError("`bool` is a type already: choose another name")
     if part.kind == "resource" and name == OPERATION:
         raise EditError(f"`{OPERATION}` stands for the operations in expressions: choose another name")
@@ -214,6 +219,10 @@ def require_free(new: ModelPart, declared: Declared, gathered: Gathered, content
     found = next((each for each in _rivals(new) if each in taken), None)
     if found is not None:
         raise EditError(f"{found} is there already: choose another name")
+    if new.kind == "value":
+        owners = (name for name, homes in declared.homes.items() if new.owner in homes.values() and new.name in homes)
+        if (owner := next(owners, None)) is not None:
+            raise EditError(f"{declared.value(owner, new.name)} is one of `{owner}` already: choose another name")
     rivals = set(_rivals(new))
     if (used := next((each for each in gathered.occurrences if each.part in rivals), None)) is not None:
         raise EditError(f"{new} is named already, by {used.where.said}: choose another name")
@@ -223,9 +232,8 @@ def require_free(new: ModelPart, declared: Declared, gathered: Gathered, content
 
 def _rivals(new: ModelPart) -> Iterator[ModelPart]:
     yield new
-    if new.kind != "variable" or new.owner is not None:  # of a station there are no abilities
-        for kinds in _SHARING:
-            yield from (new._replace(kind=kind) for kind in kinds if new.kind in kinds and kind != new.kind)
+    for kinds in _SHARING:
+        yield from (new._replace(kind=kind) for kind in kinds if new.kind in kinds and kind != new.kind)
 
 
 def _undeclared(declared: Declared) -> Iterator[ModelPart]:
@@ -234,8 +242,10 @@ def _undeclared(declared: Declared) -> Iterator[ModelPart]:
         yield variable_of(owner or None, name)
 
 
-def require_known(part: ModelPart, declared: Declared) -> None:
+def require_known(part: ModelPart, declared: Declared, gathered: Gathered) -> None:
     """Raises `EditError` for a part that there is not."""
+    if part.kind == "word" and any(each.part == part for each in gathered.occurrences):
+        return
     if part not in declared.parts and not (part.kind == "variable" and part.full in declared.variables):
         raise EditError(f"{part} is declared nowhere, so it cannot be given another name")
 
@@ -381,7 +391,7 @@ def renamed(
     require_name(part, new_name)
     content = ModelContent(files)
     declared, gathered = gather(content, messages)
-    require_known(part, declared)
+    require_known(part, declared, gathered)
     if new_name == part.name:
         return {}
     before = dict(files)
@@ -465,7 +475,7 @@ def _meaning(content: ModelContent, declared: Declared, gathered: Gathered, call
     found: dict[str, dict[tuple[int, int, int, ModelPart], bool]] = {}
     for each in gathered.occurrences:
         if each.text is not None:
-            part = called(each.part)
+            part = _by_number(called(each.part))
             file = each.home_file
             place = each.text.place
             found.setdefault(file, {}).setdefault((place.line, place.column, each.span.start, part), each.declares)
@@ -477,6 +487,11 @@ def _meaning(content: ModelContent, declared: Declared, gathered: Gathered, call
         frozenset(map(called, (*gathered.ties, *gathered.bindings))),
         len(gathered.unread),
     )
+
+
+def _by_number(part: ModelPart) -> ModelPart:
+    """The word of a quantifier by the number of that within its text: what is around the text may be renamed."""
+    return part._replace(owner=(part.owner or "").rpartition("#")[2]) if part.kind == "word" else part
 
 
 def _in_order(places: Mapping[tuple[int, int, int, ModelPart], bool]) -> list[tuple[ModelPart, bool]]:

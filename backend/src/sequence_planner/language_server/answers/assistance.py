@@ -36,6 +36,10 @@ _COMPLETION_KINDS = {
     NameKind.ABILITY: types.CompletionItemKind.Function,
     NameKind.OPERATION: types.CompletionItemKind.Function,
     NameKind.ENUMERATION: types.CompletionItemKind.Enum,
+    NameKind.SET: types.CompletionItemKind.Enum,
+    NameKind.PREDICATE: types.CompletionItemKind.Function,
+    NameKind.RELATION: types.CompletionItemKind.Function,
+    NameKind.MAP: types.CompletionItemKind.Function,
 }
 
 

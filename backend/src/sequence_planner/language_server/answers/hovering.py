@@ -60,6 +60,8 @@ def _told(found: Hover) -> str:
         lines.append(
             ", ".join(f"`{each}`" for each in values[:_MOST_VALUES]) + (" …" if len(values) > _MOST_VALUES else "")
         )
+    if found.expansion is not None:
+        lines.append(f"stands for `{found.expansion}`")
     if len(found.names) > 1:
         lines.append("one of " + ", ".join(f"`{each}`" for each in found.names[:_MOST_VALUES]))
     if found.place is not None and found.place.file:
