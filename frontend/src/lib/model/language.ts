@@ -45,6 +45,8 @@ export interface Hover extends Span {
 	readonly domain: readonly Value[];
 	readonly initial: Value | null;
 	readonly title: string | null;
+	/** What it stands for, where it is written for short. */
+	readonly expansion: string | null;
 	/** The id by which it is looked for in the model; null for a parameter. */
 	readonly part: string | null;
 	readonly declared: { readonly file: string; readonly line: number; readonly column: number } | null;

@@ -30,6 +30,7 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 		{ kind: 'resource', file: '', path: null, section: 'resources' },
 		{ kind: 'enumeration', file: STATION, path: ['enumerations'], section: 'enumerations' },
 		{ kind: 'variable', file: STATION, path: ['estimated'], section: 'variables' },
+		{ kind: 'predicate', file: STATION, path: ['predicates'], section: 'station_predicates' },
 		{ kind: 'alarm', file: STATION, path: ['alarms'], section: 'station_alarms' },
 		{ kind: 'operation', file: 'operations.yaml', path: [], section: 'operations' },
 		{ kind: 'sequence', file: 'operations.yaml', path: [], section: 'operations' },
@@ -59,6 +60,8 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 		case 'ability':
 			return { ...title, enabled: false };
 		case 'alarm':
+			return { ...title, when: false };
+		case 'predicate':
 			return { ...title, when: false };
 		case 'effect':
 			return { kind: 'executing', when: false, do: [], ...given };

@@ -7,16 +7,20 @@ type Contents = Readonly<Record<string, Json | undefined>>;
 
 const namesAt = (content: Json | undefined, key: string): string[] => entriesOf(valueAt(content, [key])).map(([name]) => name);
 
-/** The values that a variable of that type can have; none where they are not names. */
-function valuesOf(contents: Contents, type: string | null): string[] {
+/** The values that a variable of that type can have; none where they are not names. `around` includes it already. */
+function valuesOf(contents: Contents, type: string | null, around: readonly string[] = []): string[] {
 	if (type === 'bool') return ['true', 'false'];
-	const values = type === null ? undefined : valueAt(contents[STATION], ['enumerations', type]);
-	return isList(values) ? values.filter((each) => typeof each === 'string') : [];
+	if (type === null || around.includes(type)) return [];
+	const written = valueAt(contents[STATION], ['enumerations', type]);
+	const own = isList(written) ? written : valueAt(written, ['values']);
+	const included = valueAt(written, ['includes']);
+	const names = (value: Json | undefined): string[] => (isList(value) ? value.filter((each) => typeof each === 'string') : []);
+	return [...names(own), ...names(included).flatMap((each) => valuesOf(contents, each, [...around, type]))];
 }
 
 /** What could be written in the field `name` at a place, in alphabetical order but for the values of a type. */
 export function suggestionsFor(name: string, { file, path }: Spot, contents: Contents, files: readonly string[]): string[] {
-	const enumerations = namesAt(contents[STATION], 'enumerations');
+	const enumerations = ['enumerations', 'sets'].flatMap((key) => namesAt(contents[STATION], key));
 	const resource = contents[file];
 	const section = path[0];
 	switch (name) {

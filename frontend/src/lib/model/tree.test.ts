@@ -1,5 +1,7 @@
 import { describe, expect, test } from 'vitest';
+import { made, placesAt, type Place } from './making.ts';
 import { pathAt, placesOf } from './places.ts';
+import { suggestionsFor } from './suggesting.ts';
 import { around, idOf, lookupOf, nodeAt, nodesOf, parameterOf, partOf, rowsOf, treeOf } from './tree.ts';
 
 const FILES = {
@@ -122,4 +124,52 @@ test('after an edit of one file all others are what they were', () => {
 	}
 	expect(tree.map(({ id }) => lookup.parents.get(id))).toEqual(tree.map(() => undefined));
 	expect(lookup.byId.has('resources/arm.yaml#measured#speed')).toBe(false);
+});
+
+describe('what a station says for short', () => {
+	const station = {
+		enumerations: { spot: ['home', 'out'], pose: { values: ['nowhere'], includes: ['spot'] } },
+		sets: { free: { of: 'spot', values: ['home'] } },
+		relations: { near: { between: ['spot', 'spot'], pairs: [['home', 'out']] } },
+		maps: { place_of: { from: 'spot', to: '0..1', values: { home: 1 }, otherwise: 0 } },
+		predicates: { ready: 'goal == home' }
+	};
+	const robot = { predicates: { is_at: { parameters: { p: 'spot' }, when: 'at == p' } } };
+	const files = { 'station.yaml': { digest: '1' }, 'resources/robot.yaml': { digest: '2' } };
+	const contents = { 'station.yaml': station, 'resources/robot.yaml': robot };
+	const tree = treeOf(files, contents);
+
+	test('is in the tree with the names by which it is told', () => {
+		expect([...nodesOf(tree)].map(partOf).filter((part) => part !== null)).toEqual([
+			'enumeration:spot',
+			'enumeration:pose',
+			'set:free',
+			'relation:near',
+			'map:place_of',
+			'predicate:ready',
+			'resource:robot',
+			'predicate:robot.is_at'
+		]);
+		const node = nodeAt(lookupOf(tree), 'resources/robot.yaml', ['predicates', 'is_at', 'when']);
+		expect(node && parameterOf(node, 'p')).toBe('parameter:robot.is_at.p');
+	});
+
+	test('can be made where it belongs', () => {
+		const [resource] = [...nodesOf(tree)].filter(({ kind }) => kind === 'resource');
+		const places = placesAt(resource ?? null, []).filter(({ kind }) => kind === 'predicate');
+		expect(places.map(({ file, path }) => [file, path])).toEqual([
+			['resources/robot.yaml', ['predicates']],
+			['station.yaml', ['predicates']]
+		]);
+		expect(made(places[1] as Place, 'all_done', {})).toEqual([
+			{ kind: 'add', file: 'station.yaml', path: ['predicates', 'all_done'], value: { title: 'All done', when: false } }
+		]);
+	});
+
+	test('its names and the values of enumerations that are included are suggested', () => {
+		const spot = { file: 'resources/robot.yaml', path: ['measured', 'at', 'initial'] };
+		const measured = { ...contents, 'resources/robot.yaml': { measured: { at: { type: 'pose' } } } };
+		expect(suggestionsFor('initial', spot, measured, [])).toEqual(['nowhere', 'home', 'out']);
+		expect(suggestionsFor('for', spot, measured, [])).toEqual(['free', 'pose', 'spot']);
+	});
 });

@@ -14,6 +14,10 @@ export type EntryKind =
 	| 'ability'
 	| 'effect'
 	| 'alarm'
+	| 'set'
+	| 'relation'
+	| 'map'
+	| 'predicate'
 	| 'operation'
 	| 'sequence'
 	| 'specification'
@@ -35,6 +39,11 @@ export type SectionName =
 	| 'abilities'
 	| 'alarms'
 	| 'station_alarms'
+	| 'sets'
+	| 'relations'
+	| 'maps'
+	| 'predicates'
+	| 'station_predicates'
 	| 'operations'
 	| 'specifications'
 	| 'work_masters'
@@ -66,8 +75,17 @@ export const IN_RESOURCE = {
 	output: 'variable',
 	estimated: 'variable',
 	abilities: 'ability',
-	alarms: 'alarm'
+	alarms: 'alarm',
+	predicates: 'predicate'
 } as const satisfies Partial<Record<SectionName, EntryKind>>;
+
+/** What a station says once by a name: shown where there is some. */
+const SHORT = [
+	['sets', 'sets', 'set'],
+	['relations', 'relations', 'relation'],
+	['maps', 'maps', 'map'],
+	['station_predicates', 'predicates', 'predicate']
+] as const satisfies readonly (readonly [SectionName, string, EntryKind])[];
 
 /** What makes a sequence of an entry among the operations. */
 const ORDERS = ['sequence', 'parallel', 'alternative', 'arbitrary'];
@@ -146,6 +164,9 @@ export function treeOf(
 			path: [],
 			children: [
 				section('enumerations', STATION, ['enumerations'], entriesIn('enumeration', STATION, ['enumerations'], station)),
+				...SHORT.map(([name, key, kind]) => section(name, STATION, [key], entriesIn(kind, STATION, [key], station))).filter(
+					({ children }) => children.length > 0
+				),
 				section('variables', STATION, ['estimated'], entriesIn('variable', STATION, ['estimated'], station)),
 				section('station_alarms', STATION, ['alarms'], entriesIn('alarm', STATION, ['alarms'], station))
 			]
@@ -257,6 +278,7 @@ export function partOf(node: Node): string | null {
 		case 'ability':
 		case 'flow':
 		case 'alarm':
+		case 'predicate':
 			return `${node.kind}:${own(node.name)}`;
 		case 'effect':
 			return `effect:${own(String(node.path[1]))}.${node.name}`;
@@ -270,14 +292,17 @@ export function parameterOf(node: Node, name: string): string | null {
 	const [kind, ...rest] = (partOf(node) ?? '').split(':');
 	const owner = rest.join(':');
 	if (kind === 'effect') return `parameter:${owner.slice(0, owner.lastIndexOf('.'))}.${name}`;
-	if (kind === 'ability' || kind === 'variable') return `parameter:${owner}.${name}`;
+	if (kind === 'ability' || kind === 'variable' || kind === 'predicate') return `parameter:${owner}.${name}`;
 	const others: readonly (string | undefined)[] = ['operation', 'specification', 'sequence', 'work_master'];
 	return others.includes(kind) ? `parameter:${kind}:${owner}.${name}` : null;
 }
 
+/** What has no form of fields: it is written as text, or has an editor of its own. */
+const WITHOUT_FORM: readonly string[] = ['section', 'enumeration', 'message', ...SHORT.map(([, , kind]) => kind)];
+
 /** The shape of a node's document: what its form has. */
 export function shapeOf(node: Node): string | null {
-	return node.kind === 'section' || node.kind === 'enumeration' || node.kind === 'message' ? null : node.kind;
+	return WITHOUT_FORM.includes(node.kind) ? null : node.kind;
 }
 
 /** A row of the tree as it is seen: how deep it is, and its place among its siblings. */

@@ -45,6 +45,10 @@ const ORDER = [
 	'topic',
 	'service',
 	'action',
+	'predicate',
+	'relation',
+	'map',
+	'set',
 	'enumeration',
 	'message'
 ] as const;

@@ -17,6 +17,10 @@ export const SIGNS: Readonly<Record<Kind, string>> = {
 	topic: '/',
 	service: '?!',
 	action: '»',
+	predicate: '⊨',
+	relation: '~',
+	map: '↦',
+	set: '∈',
 	enumeration: '{}',
 	message: '✉'
 };
