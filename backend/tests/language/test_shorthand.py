@@ -377,6 +377,11 @@ def _action(text: str) -> object:
         ),
         (_condition, "all q in {p1, ‹p7›}: true", "`p7` is no value; did you mean `p3`?"),
         (_condition, "any q in pair ‹bolts›[q] == tight", "expected `:` or `where`, found `bolts`"),
+        (
+            _condition,
+            "all q in pair: n == 1 ‹==› true",
+            "expected an operator or the end, found `==`; comparisons do not chain: join two with and",
+        ),
         (_condition, "‹for› all q in pair: true", "`for` has no meaning here; write all …: …"),
         (_condition, "‹exists› q in pair: true", "`exists` has no meaning here; write any"),
         (_condition, "‹count q in pair: bolts[q] == tight›", "expected a truth value, found an integer in 0..3"),

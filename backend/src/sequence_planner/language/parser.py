@@ -435,6 +435,8 @@ class _Parser:
             number = int(self._expect("number", "a number").text)
         binders, where = self._bound()
         body = self._nested(self.expression, opening)
+        if self._token.kind in _RELATIONS or self._token.kind == "in":
+            self._no_operator("the end")  # the body goes on as far as it can: this would compare it once more
         return Quantified(quantifier, number, binders, where, body, self._since(opening.start))
 
     def _bound(self) -> tuple[tuple[Binder, ...], Expression | None]:
