@@ -66,7 +66,7 @@ def test_all_that_is_wrong_is_said_at_once(cell: Path) -> None:
     assert check(cell) == (
         2,
         "",
-        f"{cell}/operations.yaml:6:5: unknown variable `partz[which]`; did you mean `parts[right]`?\n"
+        f"{cell}/operations.yaml:6:5: unknown variable `partz[which]`; did you mean `parts[…]`, as in `parts[left]`?\n"
         f"{cell}/resources/arm.yaml:33:22: unknown variable or value `poze`; did you mean `pose`?\n"
         f"{cell}/resources/arm.yaml:35:20: expected one of {{home, out}}, found a truth value\n",
     )
@@ -87,7 +87,7 @@ def test_what_is_no_station(tmp_path: Path) -> None:
         (f"name: {'9' * 5000}", "1:7: `999999999999999999999999999...` is no number that can be used"),
         ("name: x\nrest: " + "(" * 2000 + "true" + ")" * 2000, "2:37: nested more than 30 deep: split it up"),
         ("name: x\nrest: " + "not " * 3000 + "true", "2:127: nested more than 30 deep: split it up"),
-        ("name: x\nrest: " + "1 + " * 3000 + "1 == 2", "2:209: more than 50 sums in one expression"),
+        ("name: x\nrest: " + "1 + " * 3000 + "1 == 2", "2:209: more than 50 operations in one expression"),
         ("name: " + "[" * 3000 + "]" * 3000, "1:1: cannot be read: it is nested too deeply"),
         ("name: " + "{a: " * 3000 + "}" * 3000, "1:1: cannot be read: it is nested too deeply"),
         ("name: &a [*a]", "1:7: this contains itself, by an alias of its own anchor"),

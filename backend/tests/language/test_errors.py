@@ -89,7 +89,10 @@ NO_CHAIN = "comparisons do not chain: join two with and"
         ("ready == ‹1›", "cannot compare a truth value with the integer 1; write true"),
         ("‹count› and ready", "expected a truth value, found an integer in 0..3"),
         ("‹pose›", "expected a truth value, found one of {unknown, home, above}"),
-        ("‹pose < above›", "`<` compares integers, not one of {unknown, home, above}"),
+        (
+            "‹pose < above›",
+            "`<` compares integers, not one of {unknown, home, above}, unless their enumeration is `ordered: true`",
+        ),
         ("count + ‹ready› == 2", "`+` needs integers, found a truth value"),
         # Names
         ("pose == ‹hoem›", "unknown variable or value `hoem`; did you mean `home`?"),

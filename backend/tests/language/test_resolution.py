@@ -106,7 +106,10 @@ def test_a_word_beside_an_enumeration_is_a_value_on_either_side() -> None:
         ("moving == ‹count›", "cannot compare a truth value with an integer in 0..3"),
         ("pose == ‹gripping›", "cannot compare one of {unknown, home, above} with one of {open, shut}"),
         ("pose == ‹moving›", "cannot compare one of {unknown, home, above} with a truth value"),
-        ("‹pose < above›", "`<` compares integers, not one of {unknown, home, above}"),
+        (
+            "‹pose < above›",
+            "`<` compares integers, not one of {unknown, home, above}, unless their enumeration is `ordered: true`",
+        ),
         ("home or (‹moving >= home›)", "`>=` compares integers, not a truth value"),
         ("count + ‹moving› == 1", "`+` needs integers, found a truth value"),
         ("target == ‹gripping›", "`gripping` is both a value and a variable here: rename one of them"),

@@ -405,9 +405,14 @@ def _action(text: str) -> object:
             "‹first(tool)› == none",
             "`tool` is one of {none, big, small}, which has no order: declare its enumeration with `ordered: true`",
         ),
-        (_condition, "‹at < home›", "`<` compares integers, not one of {unknown, home, a, b}"),
+        (
+            _condition,
+            "‹at < home›",
+            "`<` compares integers, not one of {unknown, home, a, b}, unless their enumeration is `ordered: true`",
+        ),
         (_condition, "‹broken›", "`broken` means nothing: unknown variable `bolts[p9]`; did you mean `bolts[p3]`?"),
         (_condition, "‹chicken›", "predicates need each other in a circle: chicken → egg → chicken"),
+        (_action, "‹all_tight› := true", "`all_tight` is a predicate, and only variables are written"),
         (
             _action,
             "‹bolts[chosen]› := tight",

@@ -31,7 +31,12 @@ PATHS_ARE = (
     'as in topics."/a.b".type'
 )
 NOTHING = "the type has nothing to remove here:"
-WRITTEN_OUT = [station for folder in (MODELS, STATIONS) for station in sorted(folder.glob("*/")) if station != ROBOTS]
+WRITTEN_OUT = [
+    station
+    for folder in (MODELS, STATIONS)
+    for station in sorted(folder.glob("*/"))
+    if (station / "station.yaml").exists() and station != ROBOTS
+]
 
 
 def automaton(station: Path) -> Automaton:

@@ -23,6 +23,7 @@ from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.core.late_log import LateLog
+from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY
 
 LOG = LateLog(__name__)
 MOST_KEPT: Final = 20  # files of each kind; the oldest are removed
@@ -120,11 +121,12 @@ def known_supervisor(automaton: Automaton) -> Supervisor | None:
 def key(automaton: Automaton) -> str:
     """Return what a model and the program have in common with others only if the same is found of them.
 
-    Places count, as what is found names them. In which order a job has its operations and what alarms
-    there are does not.
+    Places count, as what is found names them. In which order a job has its operations, what alarms there are and in
+    which words the model is written does not.
     """
     masters = {name: replace(master, operations={}) for name, master in automaton.work_masters.items()}
-    content = pickle.dumps((replace(automaton, work_masters=masters, alarms={}), dict(automaton.places)))
+    ground = replace(automaton, work_masters=masters, alarms={}, vocabulary=NO_VOCABULARY)
+    content = pickle.dumps((ground, dict(automaton.places)))
     # Equal texts may be one text or several, which a pickle tells; after one of them they are as after all others.
     content = pickle.dumps(pickle.loads(content))
     return hashlib.sha256(program() + content).hexdigest()

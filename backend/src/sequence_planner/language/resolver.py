@@ -215,6 +215,8 @@ def _target(name: Name, scope: NameScope) -> Variable:
     """The variable that an action writes; one of an array may be told by a name that has a value there."""
     if (found := scope.find(name)) is not None:
         return found
+    if _predicate(name, scope) is not None:
+        raise ExpressionError(f"`{name}` is a predicate, and only variables are written", name.span)
     if isinstance(dependent := _dynamic(name, scope), tuple) and isinstance(dependent[0], Variable):
         return dependent[0]
     if dependent is not None:
@@ -711,7 +713,8 @@ def _ordering(
     other = _comparable(second, order or type_, scope)
     if order is None:
         if not isinstance(type_, IntegerRange):
-            raise ExpressionError(f"`{operator}` compares integers, not {described(type_)}", span)
+            hint = ", unless their enumeration is `ordered: true`" if isinstance(type_, EnumerationType) else ""
+            raise ExpressionError(f"`{operator}` compares integers, not {described(type_)}{hint}", span)
         return _compared(operator, *((other, subject) if swapped else (subject, other)), span)
     relation, place = RELATIONS[operator], order.values.index
 

@@ -15,7 +15,10 @@ from sequence_planner.model.types.packages import PackageError, UsedPackages, re
 from sequence_planner.model.yaml.reader import read_yaml
 
 packages = typer.Typer(
-    add_completion=False, no_args_is_help=True, help="Packages of types of resources: bring them, and see what is here."
+    name="packages",
+    add_completion=False,
+    no_args_is_help=True,
+    help="Packages of types of resources: bring them, and see what is here.",
 )
 Names = Annotated[list[str] | None, typer.Argument(metavar="NAME", help="The packages; without it all.")]
 
