@@ -11,10 +11,11 @@ import pytest
 from typer.testing import CliRunner
 
 from sequence_planner.cli.main import app
+from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.execution.vocabulary import PlanStatus
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import NameScope, resolve_predicate
-from sequence_planner.station import prepare_station
+from sequence_planner.station import prepare_station, read_station
 from sequence_planner.synthesis.supervisor import Supervision, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
 from support.places import DOCS, MODELS, REPOSITORY
@@ -183,10 +184,12 @@ def test_a_fault_without_a_way_out_forbids_the_beginning(tmp_path: Path) -> None
     assert rig.execution.plan.status is PlanStatus.NONE
 
 
-def test_the_last_step_is_the_model() -> None:
-    model = MODELS / "robots_with_buffer"
-    written = {str(path.relative_to(model)): path.read_text() for path in model.rglob("*") if path.is_file()}
-    assert {name: lines(text) for name, text in files_after(6).items()} == {n: lines(t) for n, t in written.items()}
+def test_the_last_step_is_the_model(tmp_path: Path) -> None:
+    """The same station: the model has its robots as two instances of one type."""
+    written, model = (read_station(folder) for folder in (station_after(6, tmp_path), MODELS / "robots_with_buffer"))
+    assert model_digest(written.automaton) == model_digest(model.automaton)
+    messages = {path.name: lines(path.read_text()) for path in (MODELS / "robots_with_buffer").rglob("*.msg")}
+    assert {Path(name).name: lines(text) for name, text in files_after(6).items() if name.endswith(".msg")} == messages
 
 
 def test_what_is_quoted_stands_there() -> None:

@@ -17,8 +17,9 @@ from support.places import BOLT_TIGHTENING
 
 STATION = BOLT_TIGHTENING.with_name("truck_engine_station")
 LOOSENED = (
-    "position == AttachAtlasTCPPose implies end_effector.tool in {none, ATLASTOOL}",
-    "position == AttachAtlasTCPPose implies end_effector.tool in {none, ATLASTOOL, OFTOOL}",
+    "position in docked implies end_effector.tool in {none, tool_at[position]}",
+    "position in docked implies end_effector.tool in {none, tool_at[position]} or position == AttachAtlasTCPPose and "
+    "end_effector.tool == OFTOOL",
 )
 
 

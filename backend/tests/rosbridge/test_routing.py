@@ -150,7 +150,8 @@ def mixed(tmp_path: Path) -> Path:
     shutil.copytree(REPOSITORY / "models" / "robots_with_buffer", model)
     robot = model / "resources" / "robot_2.yaml"
     written = robot.read_text(encoding="utf-8")
-    robot.write_text(written.replace("direction: in,", "direction: in, ros: 1,").replace("out,", "out, ros: 1,"))
+    topics = "topics:\n  /robot_2/state: {ros: 1}\n  /robot_2/command: {ros: 1}\n"
+    robot.write_text(f"{written}\n{topics}", encoding="utf-8")
     return model
 
 

@@ -318,8 +318,9 @@ class ExecutorBase:
 
     def _update_operations(self, now: Timestamp) -> tuple[frozenset[str], frozenset[str]]:
         """Step 4: the operations that are activated by it, and those that are completed."""
-        idle = self.conduct.idle_operations(self.automaton)
         active = self._run.update_operations(self.active)
+        reached = frozenset(name for name in self.automaton.branching_operations if self._has_reached(name))
+        idle = self.conduct.idle_operations(self.automaton, active, reached)
         left = self.active - active
         withdrawn = (self.active & active & idle) | (left & idle)
         active, completed = active - idle, left - idle
@@ -343,13 +344,16 @@ class ExecutorBase:
 
     def _advance_jobs(self, active: frozenset[str], now: Timestamp) -> frozenset[str]:
         """Let what was eligible for a job in step 4 begin, or be completed where its goal holds; return the latter."""
-        before, operations, values = self.conduct.jobs, self.automaton.operations, self._run.values
-        after = before.advanced(self.automaton, active, lambda name: holds(operations[name].goal, values), now)
+        before = self.conduct.jobs
+        after = before.advanced(self.automaton, active, self._has_reached, now)
         if after is before:
             return frozenset()
         self._change(jobs=after)
         pairs = zip(before.taken, after.taken, strict=True)
         return frozenset(name for old, new in pairs for name in new.completed.keys() - old.completed.keys())
+
+    def _has_reached(self, operation: str) -> bool:
+        return holds(self.automaton.operations[operation].goal, self._run.values)
 
     def _check_operator_plan(self, now: Timestamp) -> None:
         """An operator plan whose goal holds is done; with it an operation that is reset begins anew."""
