@@ -46,6 +46,13 @@ export default defineConfig({
 						codeSplitting: {
 							groups: [
 								{ name: 'svelte', test: /node_modules\/svelte\//, priority: 1, entriesAware: true },
+								// The watch tells no messages of a station, and would have these with what it shares with other pages.
+								{
+									name: 'messages',
+									test: /lib\/(text\/message|plan\/next-step|wording\/breakable|alarm\/(priority|alarm-mark))/,
+									priority: 1,
+									entriesAware: true
+								},
 								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 4_700 }
 							]
 						},
