@@ -280,10 +280,11 @@ def _resource(
 def _station(document: YamlDocument) -> StationDocument:
     """The names of the station; what is wrong with it is not said here, as it is no matter of pipelines."""
     content = document.content if isinstance(document.content, dict) else {}
-    own = {key: value for key, value in content.items() if key in ("enumerations", "estimated")}
+    whole = ("enumerations", "sets", "estimated")
+    own = {key: value for key, value in content.items() if key in whole}
     place = document.place(())
     name = SourceText("draft", place, "draft")
-    for keys in (("enumerations", "estimated"), ("enumerations",), ()):
+    for keys in (whole, whole[:2], whole[:1], ()):
         try:
             chosen = {key: value for key, value in own.items() if key in keys}
             return StationDocument.model_validate({SourceText("name", place, "name"): name, **chosen})
