@@ -20,6 +20,7 @@ from sequence_planner.language.evaluator import RELATIONS
 from sequence_planner.language.lexer import KEYWORDS, PREFIX_LETTERS
 from sequence_planner.language.parser import temporal_refused
 from sequence_planner.language.shorthand.cases import (
+    BY_CASES,
     Cases,
     Count,
     Dependent,
@@ -261,7 +262,7 @@ def _truth(expression: Expression, scope: NameScope) -> Expression:
 
 def _written(expression: Expression, scope: NameScope, expected: Type) -> Expression:
     resolved, found = _typed(expression, scope, expected)
-    if isinstance(resolved, Cases | Count):
+    if isinstance(resolved, BY_CASES):
         if not isinstance(found, BooleanType):
             message = f"`{print_name(expression)}` depends on the state: write one action for each case, with `if`"
             raise ExpressionError(message, expression.span)
@@ -333,7 +334,7 @@ def _membership(subject: Dependent, members: tuple[Dependent, ...], span: Span) 
     def build(one: Expression, *others: Expression) -> Expression:
         return Membership(one, others, span)
 
-    if not any(isinstance(member, Cases | Count) for member in members):
+    if not any(isinstance(member, BY_CASES) for member in members):
         return truth_of(distributed((subject, *members), span, build), span)
     # A member without a value is none; the others count all the same.
     parts = (distributed((subject, each), span, lambda a, b: Comparison("==", a, b, span)) for each in members)
@@ -732,10 +733,10 @@ def _ordering(
 
 
 def _compared(operator: str, left: Dependent, right: Dependent, span: Span) -> Expression:
-    for side, other, sign in ((left, right, operator), (right, left, MIRRORED[operator])):
-        if isinstance(side, Count) and isinstance(other, Constant):
-            return counted(sign, int(other.value), side.conditions, span)
-    if isinstance(left, Cases) or isinstance(right, Cases) or isinstance(left, Count) or isinstance(right, Count):
+    if isinstance(left, BY_CASES) or isinstance(right, BY_CASES):
+        for side, other, sign in ((left, right, operator), (right, left, MIRRORED[operator])):
+            if isinstance(side, Count) and isinstance(other, Constant):
+                return counted(sign, int(other.value), side.conditions, span)
         return truth_of(distributed((left, right), span, lambda a, b: Comparison(operator, a, b, span)), span)
     return Comparison(operator, left, right, span)
 

@@ -50,16 +50,17 @@ class Count(Immutable):
 
 
 Dependent = Expression | Cases | Count
+BY_CASES = (Cases, Count)  # made once: it is asked for of each comparison
 
 
 def alternatives_of(value: Dependent) -> tuple[tuple[Expression, Expression], ...]:
     """The cases of a value; one without a condition where it does not depend on the state."""
-    return value.alternatives if isinstance(value, Cases | Count) else ((TRUE, value),)
+    return value.alternatives if isinstance(value, BY_CASES) else ((TRUE, value),)
 
 
 def distributed(parts: Sequence[Dependent], span: Span, build: Callable[..., Dependent]) -> Dependent:
     """What `build` makes of the `parts`, for each combination of their cases."""
-    if not any(isinstance(part, Cases | Count) for part in parts):
+    if not any(isinstance(part, BY_CASES) for part in parts):
         return build(*parts)
     found: list[tuple[Expression, Expression]] = []
     for combination in product(*map(alternatives_of, parts)):
@@ -72,7 +73,7 @@ def distributed(parts: Sequence[Dependent], span: Span, build: Callable[..., Dep
 
 def truth_of(value: Dependent, span: Span) -> Expression:
     """The condition that a truth value is, with its cases put together."""
-    if not isinstance(value, Cases | Count):
+    if not isinstance(value, BY_CASES):
         return value
     by_outcome: dict[Expression, list[Expression]] = {}
     for condition, outcome in value.alternatives:
