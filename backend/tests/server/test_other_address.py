@@ -16,15 +16,14 @@ from typing import NamedTuple
 
 import httpx
 import pytest
-from websockets.sync.client import connect
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.controller.commands.tasks import AcknowledgeTask
 from sequence_planner.core.actor import ActorKind
 from sequence_planner.server.settings import Settings
 from support.certificates import certify
-from support.server import Controller, Loop, Server
-from support.waiting import patience, until
+from support.server import Controller, Loop, Server, first_message_over_tls
+from support.waiting import until
 
 from .test_acting import problem
 from .watching import FOREIGN, OWN, WATCHES, Device, active, station
@@ -94,8 +93,8 @@ def test_a_watch_is_paired_sees_its_task_and_acknowledges_it(place: Place, contr
         assert (cookie.secure, cookie.name.startswith("__Host-")) == (True, True)
         headers = {"Cookie": f"{cookie.name}={cookie.value}", "Origin": place.origin}
         stream = f"wss://{place.address}:{place.server.settings.port}{WATCHES}/stream"
-        with connect(stream, ssl=place.trusting, additional_headers=headers) as seen:
-            assert json.loads(seen.recv(patience(5)))["tasks"].keys() == {OWN}
+        shown = json.loads(first_message_over_tls(stream, place.trusting, headers))
+        assert shown["tasks"].keys() == {OWN}
         assert wrist.acknowledge(OWN).status_code == 204
     (command,) = controller.commands
     assert isinstance(command, AcknowledgeTask)

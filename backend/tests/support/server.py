@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import secrets
 import socket
+import ssl
 import threading
 import time
 from collections.abc import Coroutine, Iterator
@@ -15,6 +16,7 @@ from typing import Any, TypeVar
 import httpx
 import uvicorn
 from fastapi import FastAPI
+from websockets.asyncio import client as asyncio_client
 from websockets.sync.client import ClientConnection, connect
 
 from sequence_planner.auth import users
@@ -34,7 +36,7 @@ from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import Settings
 from support.network import free_port
 from support.people import cheap_passwords
-from support.waiting import PATIENCE, until
+from support.waiting import PATIENCE, patience, until
 
 from .example_view import example_view
 
@@ -238,3 +240,22 @@ def listen(
         close_timeout=close_timeout,
         open_timeout=PATIENCE,
     )
+
+
+def first_message_over_tls(
+    address: str, trusting: ssl.SSLContext, headers: dict[str, str], sock: socket.socket | None = None
+) -> str:
+    """Return the first message of the stream at `address`. Raises `InvalidStatus` where the server refuses it.
+
+    The client has one thread: the one with two reads and writes a TLS connection at the same time, which OpenSSL does
+    not allow and which now and then loses what was sent.
+    """
+
+    async def listen() -> str:
+        async with asyncio_client.connect(
+            address, ssl=trusting, sock=sock, additional_headers=headers, open_timeout=PATIENCE
+        ) as stream:
+            async with asyncio.timeout(patience(5)):
+                return str(await stream.recv())
+
+    return asyncio.run(listen())
