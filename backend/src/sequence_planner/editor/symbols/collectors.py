@@ -197,6 +197,11 @@ class Naming:
         if text is not None and str(name) in self.declared.homes:
             self.gathered.add(self.declared.domain(str(name)), where, text, span)
 
+    def note_table(self, kind: str, where: Where, text: SourceText) -> None:
+        """Note that a whole text is the name of a map or a relation, if it is."""
+        if str(text) in (self.declared.maps if kind == "map" else self.declared.relations):
+            self.gathered.add(ModelPart(kind, None, str(text)), where, text)
+
     def note_member(self, domain: object, where: Where, text: object) -> None:
         """Note that a whole text is a value of an enumeration or set, or a set of such values."""
         if isinstance(text, SourceText):

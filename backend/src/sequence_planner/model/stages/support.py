@@ -23,6 +23,7 @@ from sequence_planner.language.records.field_paths import (
 )
 from sequence_planner.language.records.record import FieldType, ListType, RealType, Record, TextType
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.shorthand.vocabulary import ValueMap
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, Stage, StageDeclaration, StageInstance
@@ -62,6 +63,7 @@ class ImmediateStage(ABC):
 # Reading a stage backwards by trying: which values of its fields give what is wanted.
 
 MOST_TRIED = 5000
+MOST_NAMED = 5  # values of an enumeration in a finding
 
 
 def candidates(type_: FieldType, mentioned: Iterable[object]) -> list[object]:
@@ -127,6 +129,26 @@ def solve(
             values |= given
             return
     raise NotInvertibleError(complaint)
+
+
+# Maps of the station, whose tables stages may have.
+
+
+def map_of(name: SourceText, context: Context) -> ValueMap | None:
+    """A map of the station by its name; None, and a finding, when there is none."""
+    found = context.vocabulary.maps.get(str(name))
+    if found is None:
+        near = suggestion(name, context.vocabulary.maps)
+        context.found(name.place, f"there is no map `{name}`: `maps` of station.yaml declares them{near}")
+    return found
+
+
+def briefly(type_: FieldType) -> str:
+    """A type for people, of which not all of many values are named."""
+    if isinstance(type_, EnumerationType) and len(type_.values) > MOST_NAMED:
+        first = ", ".join(type_.values[: MOST_NAMED - 1])
+        return f"{{{first}, … {type_.values[-1]}}}"
+    return str(type_)
 
 
 # Stages through which the same fields pass, with other values or at other times.
