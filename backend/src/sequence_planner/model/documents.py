@@ -176,8 +176,8 @@ class StartDocument(DocumentPart):
 class FinishDocument(DocumentPart):
     """The finish of an ability: its guard and actions."""
 
-    when: Predicate
-    """As soon as this holds, the finish actions are taken."""
+    when: Predicate = True
+    """As soon as this holds, and what the ability goes on `until`, the finish actions are taken."""
     do: list[Action] = Field(default_factory=list)
     """Actions on outputs and estimates."""
 
@@ -185,10 +185,10 @@ class FinishDocument(DocumentPart):
 class EffectDocument(DocumentPart):
     """Expected reaction of measured variables; `takes` is its shortest and longest time in seconds."""
 
-    kind: Literal["starting", "executing", "finishing"]
+    kind: Literal["starting", "executing", "finishing"] = "executing"
     """For the reader: when in a run it is expected."""
-    when: Predicate
-    """The condition under which it happens, on measured and output variables."""
+    when: Given[Predicate] = None
+    """The condition under which it happens, on measured and output variables; without it while the ability executes."""
     do: list[Action] = Field(min_length=1)
     """Actions on measured variables, all taken at once."""
     takes: Duration = (0.5, 0.5)
@@ -253,8 +253,11 @@ class AbilityDocument(DocumentPart):
     """The ability can be used now."""
     start: StartDocument = StartDocument()
     """The start: a further guard, and its actions."""
+    until: Given[Predicate] = None
+    """It goes on from its command until this holds: it executes while the outputs of its resource are as the start has
+    set them and this does not hold, and finishes when both do."""
     executing: Predicate = False
-    """It is under way."""
+    """It is under way; where that is something else than what `until` says."""
     finished: Predicate = False
     """It is done; for use in other conditions."""
     finish: Given[FinishDocument] = None
@@ -266,8 +269,17 @@ class AbilityDocument(DocumentPart):
 
     @model_validator(mode="after")
     def _has_an_end(self) -> AbilityDocument:
-        if self.finish is None and self.timeouts != TimeoutsDocument():
-            raise ValueError("`timeouts` need a `finish`: without one the ability is done with its start")
+        if self.finish is None and self.until is None and self.timeouts != TimeoutsDocument():
+            raise ValueError("`timeouts` need a `finish` or an `until`: without one the ability is done with its start")
+        if self.until is None and self.finish is not None and "when" not in self.finish.model_fields_set:
+            raise ValueError("`finish` needs a `when`, or the ability something to go on `until`")
+        return self
+
+    @model_validator(mode="after")
+    def _effects_happen(self) -> AbilityDocument:
+        never = [name for name, each in self.effects.items() if each.when is None]
+        if never and self.until is None and "executing" not in self.model_fields_set:
+            raise ValueError(f"the effect `{never[0]}` needs a `when`: nothing says when the ability is executing")
         return self
 
 

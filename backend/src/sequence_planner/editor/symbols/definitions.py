@@ -80,6 +80,7 @@ _BY_KEY = {
     "alarm": {"when": Manner.ALARMS},
     "ability": {
         "enabled": Manner.GUARD,
+        "until": Manner.PROGRESS,
         "executing": Manner.PROGRESS,
         "finished": Manner.PROGRESS,
         "human": Manner.ACKNOWLEDGEMENT,
@@ -152,7 +153,7 @@ def _is_outgoing(by: ModelPart, path: EntryPath, declared: Declared) -> bool:
 
 # The names in the files of a station, entry by entry: which texts there are, and what is around each.
 
-_CONDITIONS = (("enabled",), ("start", "when"), ("executing",), ("finished",), ("finish", "when"))
+_CONDITIONS = (("enabled",), ("start", "when"), ("until",), ("executing",), ("finished",), ("finish", "when"))
 _ACTIONS = (("start", "do"), ("finish", "do"), ("cancel", "do"))
 _IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
 
