@@ -117,7 +117,8 @@ OUTGOING = "topics:\n  /tank/command: {{type: tank_msgs/msg/Command, direction: 
     ("form", "stage", "variable", "said"),
     [
         (INCOMING, "map: {field: word, variable: now, values: ‹code_off}", "now: {type: drive}",
-         "there is no map `code_off`: `maps` of station.yaml declares them; did you mean `code_of`?"),
+         "there is no map `code_off`: `maps` of station.yaml or of the resource declares them; did you mean "
+         "`code_of`?"),
         (INCOMING, "map: {field: word, variable: now, values: ‹in_use}", "now: {type: stop}",
          "`in_use` is from {manual, automatic, off} to bool, and `word` is text and `now` {store, bench}: it fits "
          "neither way round"),
@@ -130,7 +131,8 @@ OUTGOING = "topics:\n  /tank/command: {{type: tank_msgs/msg/Command, direction: 
         (OUTGOING, "table: {fields: [goal], variables: [far], rows: [{when: ‹far, gives: [true]}]}",
          "goal: {type: stop}", "the relation `far` is between two fields, and the table has 1"),
         (OUTGOING, "table: {fields: [goal, goal], variables: [far], rows: [{when: ‹near, gives: [true]}]}",
-         "goal: {type: stop}", "there is no relation `near`: `relations` of station.yaml declares them; did you mean "
+         "goal: {type: stop}",
+         "there is no relation `near`: `relations` of station.yaml or of the resource declares them; did you mean "
          "`far`?"),
         (OUTGOING, "table: {fields: [wanted, wanted], variables: [far], rows: [{when: ‹far, gives: [true]}]}",
          "wanted: {type: drive}", "`far` is between {between, store, bench} and {store, bench}, and `wanted` is "

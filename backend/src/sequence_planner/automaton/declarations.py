@@ -184,7 +184,7 @@ class Declarations:
             for name in names:
                 self._declare_short(str(name), name)
         for resource, document in self._station.resources.items():
-            for name in document.predicates:
+            for name in (*document.relations, *document.maps, *document.predicates):
                 self._declare_short(f"{resource}.{name}", name)
         ordered = [
             self.enumerations[str(name)]
@@ -194,8 +194,8 @@ class Declarations:
         return Vocabulary(
             self.enumerations,
             tuple(ordered),
-            {str(name): relation for name, relation in reader.read_relations()},
-            {str(name): table for name, table in reader.read_maps()},
+            dict(reader.read_relations()),
+            dict(reader.read_maps()),
             reader.read_predicates({name: document.predicates for name, document in self._station.resources.items()}),
         )
 

@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag,
 from sequence_planner.model.fields import Action, DocumentPart, Given, Predicate, Seconds, TypeName
 from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.stages.marks import ReadValue
 from sequence_planner.model.stages.registry import StageDocument
 
 # What the services and actions of a resource may hold: the station is their client, the device their server.
@@ -419,13 +420,13 @@ class SetDocument(DocumentPart):
         return self
 
 
-Members = SourceText | Annotated[list[SourceText], Field(min_length=1)]
+Members = ReadValue | Annotated[list[ReadValue], Field(min_length=1)]
 
 
 class RelationDocument(DocumentPart):
     """A relation between the values of two enumerations, by its pairs."""
 
-    between: Annotated[list[SourceText], Field(min_length=2, max_length=2)]
+    between: Annotated[list[TypeName], Field(min_length=2, max_length=2)]
     """The two enumerations or sets."""
     symmetric: bool = False
     """Whether each pair holds the other way round as well."""
@@ -436,11 +437,11 @@ class RelationDocument(DocumentPart):
 class ValueMapDocument(DocumentPart):
     """A value for each value of an enumeration."""
 
-    source: SourceText = Field(alias="from")
+    source: TypeName = Field(alias="from")
     """The enumeration or set that it is from."""
-    to: SourceText
+    to: TypeName
     """What it is to: an enumeration, `bool` or a range such as `0..3`."""
-    values: dict[SourceText, bool | int | SourceText] = Field(default_factory=dict)
+    values: dict[ReadValue, bool | int | SourceText] = Field(default_factory=dict)
     """The value for each; a set among the keys stands for all of its values."""
     otherwise: Given[bool | int | SourceText] = None
     """The value for all others; without it each needs its own."""
@@ -502,6 +503,10 @@ class ResourceDocument(DocumentPart):
     """Abilities of the resource."""
     alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
     """What people are told of the resource when something is wrong with it."""
+    relations: dict[SourceText, RelationDocument] = Field(default_factory=dict)
+    """Pairs of values that belong together, by names of the resource."""
+    maps: dict[SourceText, ValueMapDocument] = Field(default_factory=dict)
+    """Tables of values for values, by names of the resource."""
     predicates: dict[SourceText, NamedCondition] = Field(default_factory=dict)
     """Conditions with a name, which other conditions use by it."""
 

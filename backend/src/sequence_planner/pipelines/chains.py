@@ -48,6 +48,7 @@ class ChainBuilding:
     findings: PipelineFindings
     fields: list[RecordType]
     vocabulary: Vocabulary = NO_VOCABULARY
+    resource: str = ""
     stages: list[Stage] = field(default_factory=list)
     documents: list[StageDocument] = field(default_factory=list)
     is_cut: bool = False
@@ -69,7 +70,8 @@ class ChainBuilding:
             self.findings.add(place, f"`{self.name}` → stage {number} `{document.kind}`: {message}")
 
         fields = self.fields[-1]
-        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found, self.vocabulary)
+        known = (self.vocabulary, self.resource)
+        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found, *known)
         stage = document.check(context)
         if stage is None or len(self.findings.found) > before:
             self.is_sound = False

@@ -135,7 +135,7 @@ def _key(mapping: Mapping[SourceText, object], name: str) -> SourceText:
 MESSAGES, STATION, NOTHING = "messages/", "station.yaml", "name: draft\n"
 _OF_PACKAGE = f"/{MESSAGES}"  # in `packages/<name>/messages/`
 # Sections of a resource in which something has to do with pipelines.
-OURS = frozenset({*STAGES, "measured", "output", "estimated"})
+OURS = frozenset({*STAGES, "measured", "output", "estimated", "relations", "maps"})
 
 
 @dataclass(frozen=True)

@@ -86,7 +86,7 @@ class Stages:
         ranges = {path: each.enumeration for path, each in read.items()}
         for text, path, mark in marked:
             if isinstance(mark, TableMark):
-                self.names.naming.note_table(mark.kind, where.to(*path), text)
+                self.names.naming.note_table(mark.kind, where.to(*path), text, self.names.resource)
             if isinstance(mark, ValueMark) and text != mark.but:
                 enumeration = _of_entry(path, made if mark.of_given else ranges)
                 self.names.naming.note_value(enumeration, where.to(*path), text)

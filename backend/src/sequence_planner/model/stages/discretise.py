@@ -24,7 +24,7 @@ from sequence_planner.model.stages.marks import (
     ReadValue,
 )
 from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, has_numbers
-from sequence_planner.model.stages.support import ImmediateStage, briefly, map_of, values_of, wanted_type
+from sequence_planner.model.stages.support import ImmediateStage, briefly, values_of, wanted_type
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
 
@@ -241,7 +241,7 @@ def points_of(values: SourceText | Coordinates | None, context: Context) -> Coor
     """Points as they are written, or those that a map of the station has on one axis; None after a finding."""
     if not isinstance(values, SourceText):
         return values or {}
-    if (found := map_of(values, context)) is None:
+    if (found := context.named(values, context.vocabulary.maps)) is None:
         return None
     if not isinstance(found.target, IntegerRange):
         said = f"`{values}` is to {briefly(found.target)}, and a point is a number"

@@ -19,7 +19,6 @@ from sequence_planner.language.records.field_paths import (
     written,
 )
 from sequence_planner.language.records.record import FieldType, ListType, Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, Value
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
@@ -43,7 +42,6 @@ from sequence_planner.model.stages.support import (
     Passing,
     briefly,
     candidates,
-    map_of,
     passing,
     place_of,
     solve,
@@ -160,7 +158,7 @@ def table_of_map(
     """The table of a map of the station, from the values of `source` to those of `target`: as it is declared, or the
     other way round where only that fits. None after a finding.
     """
-    found = map_of(name, context)
+    found = context.named(name, context.vocabulary.maps)
     if found is None:
         return None
     to = wanted_type(context, target)
@@ -376,10 +374,8 @@ def _cells_of(row: TableRowDocument) -> list[object]:
 
 def pairs_of_relation(name: SourceText, sources: Sequence[Passing], context: Context) -> list[tuple[object, object]]:
     """The pairs of a relation of the station that two fields can have, in order; none after a finding."""
-    relation = context.vocabulary.relations.get(str(name))
+    relation = context.named(name, context.vocabulary.relations)
     if relation is None:
-        near = suggestion(name, context.vocabulary.relations)
-        context.found(name.place, f"there is no relation `{name}`: `relations` of station.yaml declares them{near}")
         return []
     first, second = (source.type for source in sources)
     pairs = [

@@ -23,7 +23,6 @@ from sequence_planner.language.records.field_paths import (
 )
 from sequence_planner.language.records.record import FieldType, ListType, RealType, Record, TextType
 from sequence_planner.language.resolver import suggestion
-from sequence_planner.language.shorthand.vocabulary import ValueMap
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, Stage, StageDeclaration, StageInstance
@@ -131,16 +130,7 @@ def solve(
     raise NotInvertibleError(complaint)
 
 
-# Maps of the station, whose tables stages may have.
-
-
-def map_of(name: SourceText, context: Context) -> ValueMap | None:
-    """A map of the station by its name; None, and a finding, when there is none."""
-    found = context.vocabulary.maps.get(str(name))
-    if found is None:
-        near = suggestion(name, context.vocabulary.maps)
-        context.found(name.place, f"there is no map `{name}`: `maps` of station.yaml declares them{near}")
-    return found
+# Types in findings about tables of the station.
 
 
 def briefly(type_: FieldType) -> str:
