@@ -11,8 +11,8 @@ from sequence_planner.analysis.checks.ungiven_values import check_never_given
 from sequence_planner.analysis.checks.warning import ModelWarning, described
 from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.declarations import OPERATION
-from sequence_planner.automaton.grounding import GroundBefore, ground
+from sequence_planner.automaton.declarations import OPERATION, GroundBefore
+from sequence_planner.automaton.grounding import ground
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import TRUE, variables

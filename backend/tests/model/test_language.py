@@ -460,7 +460,7 @@ def test_a_value_of_another_type_is_refused(tmp_path: Path, old: str, new: str) 
 def test_timeouts_need_a_finish(tmp_path: Path) -> None:
     station = copy_of_cell(tmp_path)
     write(station, "resources/door.yaml", "abilities:\n  open:\n    timeouts: {finish: 3}\n")
-    message = "`timeouts` need a `finish`: without one the ability is done with its start"
+    message = "`timeouts` need a `finish` or an `until`: without one the ability is done with its start"
     assert any(line.endswith(message) for line in findings(station))
 
 

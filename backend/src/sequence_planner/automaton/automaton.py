@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.core.immutable import Immutable, uncompared
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
-from sequence_planner.language.syntax import Assignment, Expression, Variable, variables
+from sequence_planner.language.syntax import (
+    FALSE,
+    TRUE,
+    Assignment,
+    Comparison,
+    Expression,
+    Not,
+    Variable,
+    conjunction,
+    variables,
+)
 from sequence_planner.language.types import BOOLEAN, Place, Type, Value
 
 # A state gives every variable and every ability flag a value; None is unknown. Never changed once made.
@@ -281,6 +291,18 @@ def target(action: Assignment) -> str:
     """The full name of the variable an action writes."""
     assert isinstance(action.target, Variable)
     return action.target.name
+
+
+def commanded(actions: Iterable[Assignment], outputs: Container[str]) -> Expression:
+    """The condition that those of `outputs` which `actions` always write have the values that are written."""
+    told = (each for each in actions if each.condition is None and target(each) in outputs)
+    return conjunction(*(_has_value(each.target, each.value) for each in told))
+
+
+def _has_value(variable: Expression, value: Expression) -> Expression:
+    if value in (TRUE, FALSE):
+        return variable if value == TRUE else Not(variable)
+    return Comparison("==", variable, value)
 
 
 def reads(action: Assignment) -> frozenset[str]:

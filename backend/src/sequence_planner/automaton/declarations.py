@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
+from typing import NamedTuple
 
-from sequence_planner.automaton.automaton import Kind, VariableDeclaration
-from sequence_planner.automaton.findings import Binding, Findings, instance_name
+from sequence_planner.automaton.automaton import Ability, Effect, Kind, VariableDeclaration
+from sequence_planner.automaton.findings import Binding, Findings, instance_name, without_arguments
 from sequence_planner.automaton.shorthand import (
     RESERVED,
     ShorthandReader,
@@ -33,7 +34,7 @@ from sequence_planner.model import fields
 from sequence_planner.model.documents import AbilityDocument, EnumerationDocument, Parameters, VariableDocument
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
-from sequence_planner.model.source import SourceText
+from sequence_planner.model.source import Finding, SourceText
 
 FLAGS = fields.FLAGS
 OPERATION = "operation"  # the first part of the name of what the tick knows of an operation
@@ -183,7 +184,7 @@ class Declarations:
             for name in names:
                 self._declare_short(str(name), name)
         for resource, document in self._station.resources.items():
-            for name in document.predicates:
+            for name in (*document.relations, *document.maps, *document.predicates):
                 self._declare_short(f"{resource}.{name}", name)
         ordered = [
             self.enumerations[str(name)]
@@ -193,8 +194,8 @@ class Declarations:
         return Vocabulary(
             self.enumerations,
             tuple(ordered),
-            {str(name): relation for name, relation in reader.read_relations()},
-            {str(name): table for name, table in reader.read_maps()},
+            dict(reader.read_relations()),
+            dict(reader.read_maps()),
             reader.read_predicates({name: document.predicates for name, document in self._station.resources.items()}),
         )
 
@@ -319,3 +320,106 @@ class Declarations:
                 self.broken.add(f"{OPERATION}.{name}")
             for binding in bindings:
                 self.types[f"{OPERATION}.{instance_name(name, binding)}.active"] = BOOLEAN
+
+
+# What abilities meant when they were ground before, for as long as the names in them mean the same.
+
+_WORD = re.compile(r"\w+")
+
+
+class GroundAbility(NamedTuple):
+    """An ability as its document means it, with all that grounding noted of it and of nothing else.
+
+    `effects` are with what makes two of them one, and where each is written.
+    """
+
+    ability: Ability
+    places: dict[str, Place]
+    effects: tuple[tuple[tuple[object, ...], Effect, Place], ...]
+    findings: tuple[Finding, ...]
+    activities: tuple[str, ...]
+
+
+class _Names(NamedTuple):
+    """What is declared: the types of all that can be read, variables, those that are wrong, and all else."""
+
+    types: Mapping[str, object]
+    variables: Mapping[str, object]
+    broken: frozenset[str]
+    others: object
+
+
+class GroundBefore:
+    """The meaning that the abilities of one station had when they were ground before.
+
+    An ability means the same for as long as its document is the same object and what is declared is the same, but for
+    names that are not in it.
+    """
+
+    def __init__(self) -> None:
+        self._declared: tuple[object, ...] | None = None
+        self._names: _Names | None = None
+        self._known: dict[tuple[str, str], tuple[SourceText, AbilityDocument, list[GroundAbility]]] = {}
+        self._words: dict[tuple[str, str], tuple[AbilityDocument, frozenset[str]]] = {}
+        self._used: set[tuple[str, str]] = set()
+
+    def begin(self, declarations: Declarations) -> None:
+        """The station is ground with these names now."""
+        declared = declarations.all()
+        if declared != self._declared:
+            words = self._changed_words(declarations)
+            self._known = {key: known for key, known in self._known.items() if self._is_unaffected(key, known, words)}
+        self._declared = declared
+        self._used = set()
+
+    def _changed_words(self, declarations: Declarations) -> set[str] | None:
+        """The last words of the names of variables that are others than before; None where more is."""
+        before, self._names = self._names, _Names(
+            declarations.types,
+            dict(declarations.variables),
+            frozenset(declarations.broken),
+            (dict(declarations.enumerations), declarations.vocabulary.declared()),
+        )  # fmt: skip
+        now = self._names
+        if before is None or before.others != now.others:
+            return None
+        changed = before.broken ^ now.broken
+        for old, new in ((before.types, now.types), (before.variables, now.variables)):
+            changed |= {name for name in old.keys() | new.keys() if old.get(name) != new.get(name)}
+        words = {without_arguments(name).rpartition(".")[2] for name in changed}
+        return None if words & _words_in(declarations.vocabulary.predicates) else words
+
+    def _is_unaffected(
+        self,
+        key: tuple[str, str],
+        known: tuple[SourceText, AbilityDocument, list[GroundAbility]],
+        words: set[str] | None,
+    ) -> bool:
+        """Return whether nothing is wrong with an ability, which would name others, and none of these words in it."""
+        _, document, ground = known
+        if words is None or any(each.findings for each in ground):
+            return False
+        if (found := self._words.get(key)) is None or found[0] is not document:
+            found = self._words[key] = document, frozenset(_words_in(document))
+        return found[1].isdisjoint(words)
+
+    def end(self) -> None:
+        """All abilities were asked for."""
+        self._known = {key: known for key, known in self._known.items() if key in self._used}
+        self._words = {key: words for key, words in self._words.items() if key in self._used}
+
+    def ground(
+        self, resource: str, name: SourceText, document: AbilityDocument, ground: Callable[[], list[GroundAbility]]
+    ) -> list[GroundAbility]:
+        """The ability for all choices of its parameters, made by `ground` unless it is known."""
+        key = resource, str(name)
+        self._used.add(key)
+        known = self._known.get(key)
+        if known is None or known[0] is not name or known[1] is not document:
+            known = self._known[key] = name, document, ground()
+        return known[2]
+
+
+def _words_in(written: object) -> set[str]:
+    """All words in texts of a document, or of what was made of one."""
+    return set(_WORD.findall(repr(written)))

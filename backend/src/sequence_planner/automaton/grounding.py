@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from graphlib import CycleError, TopologicalSorter
@@ -23,9 +22,10 @@ from sequence_planner.automaton.automaton import (
     Timeouts,
     VariableDeclaration,
     WorkMaster,
+    commanded,
     target,
 )
-from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
+from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations, GroundAbility, GroundBefore
 from sequence_planner.automaton.dependencies import ordered_flags
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, without_arguments
 from sequence_planner.automaton.sequences.expansion import StationSequences, Steps
@@ -52,6 +52,7 @@ from sequence_planner.language.syntax import (
     Or,
     Variable,
     conjunction,
+    conjuncts,
     occurrences,
     variables,
 )
@@ -133,11 +134,15 @@ class Meaning:
     def check_observable(self, text: SourceText, *read: Expression) -> None:
         """A device knows nothing of what we believe, and an emulated one only hears messages."""
         for seen in (each for expression in read for each in occurrences(expression)):
-            variable = self.declarations.variables.get(seen.name)
-            if variable is None or variable.kind is Kind.ESTIMATED:
+            if not self.is_observable(seen.name):
                 written = text[seen.span.start : seen.span.end]
                 message = f"an effect depends on measured and output variables only, and `{written}` is neither"
                 self.findings.add_within(text, seen.span, message)
+
+    def is_observable(self, name: str) -> bool:
+        """Return whether a device, or what emulates one, can know of a variable."""
+        variable = self.declarations.variables.get(name)
+        return variable is not None and variable.kind is not Kind.ESTIMATED
 
     @property
     def activities(self) -> dict[str, VariableDeclaration]:
@@ -209,110 +214,11 @@ def check_predicates(meaning: Meaning) -> None:
 
 # Ground abilities with their effects.
 
-_WORD = re.compile(r"\w+")
 _COMMANDS = (Kind.OUTPUT, Kind.ESTIMATED)
 START = Writing("a start", _COMMANDS)
 FINISH = Writing("a finish", _COMMANDS)
 CANCEL = Writing("a cancel", _COMMANDS)
 EFFECT = Writing("an effect", (Kind.MEASURED,))
-
-
-class GroundAbility(NamedTuple):
-    """An ability as its document means it, with all that grounding noted of it and of nothing else.
-
-    `effects` are with what makes two of them one, and where each is written.
-    """
-
-    ability: Ability
-    places: dict[str, Place]
-    effects: tuple[tuple[tuple[object, ...], Effect, Place], ...]
-    findings: tuple[Finding, ...]
-    activities: tuple[str, ...]
-
-
-class _Names(NamedTuple):
-    """What is declared: the types of all that can be read, variables, those that are wrong, and all else."""
-
-    types: Mapping[str, object]
-    variables: Mapping[str, object]
-    broken: frozenset[str]
-    others: object
-
-
-class GroundBefore:
-    """The meaning that the abilities of one station had when they were ground before.
-
-    An ability means the same for as long as its document is the same object and what is declared is the same, but for
-    names that are not in it.
-    """
-
-    def __init__(self) -> None:
-        self._declared: tuple[object, ...] | None = None
-        self._names: _Names | None = None
-        self._known: dict[tuple[str, str], tuple[SourceText, AbilityDocument, list[GroundAbility]]] = {}
-        self._words: dict[tuple[str, str], tuple[AbilityDocument, frozenset[str]]] = {}
-        self._used: set[tuple[str, str]] = set()
-
-    def begin(self, declarations: Declarations) -> None:
-        """The station is ground with these names now."""
-        declared = declarations.all()
-        if declared != self._declared:
-            words = self._changed_words(declarations)
-            self._known = {key: known for key, known in self._known.items() if self._is_unaffected(key, known, words)}
-        self._declared = declared
-        self._used = set()
-
-    def _changed_words(self, declarations: Declarations) -> set[str] | None:
-        """The last words of the names of variables that are others than before; None where more is."""
-        before, self._names = self._names, _Names(
-            declarations.types,
-            dict(declarations.variables),
-            frozenset(declarations.broken),
-            (dict(declarations.enumerations), declarations.vocabulary.declared()),
-        )  # fmt: skip
-        now = self._names
-        if before is None or before.others != now.others:
-            return None
-        changed = before.broken ^ now.broken
-        for old, new in ((before.types, now.types), (before.variables, now.variables)):
-            changed |= {name for name in old.keys() | new.keys() if old.get(name) != new.get(name)}
-        words = {without_arguments(name).rpartition(".")[2] for name in changed}
-        return None if words & _words_in(declarations.vocabulary.predicates) else words
-
-    def _is_unaffected(
-        self,
-        key: tuple[str, str],
-        known: tuple[SourceText, AbilityDocument, list[GroundAbility]],
-        words: set[str] | None,
-    ) -> bool:
-        """Return whether nothing is wrong with an ability, which would name others, and none of these words in it."""
-        _, document, ground = known
-        if words is None or any(each.findings for each in ground):
-            return False
-        if (found := self._words.get(key)) is None or found[0] is not document:
-            found = self._words[key] = document, frozenset(_words_in(document))
-        return found[1].isdisjoint(words)
-
-    def end(self) -> None:
-        """All abilities were asked for."""
-        self._known = {key: known for key, known in self._known.items() if key in self._used}
-        self._words = {key: words for key, words in self._words.items() if key in self._used}
-
-    def ground(
-        self, resource: str, name: SourceText, document: AbilityDocument, ground: Callable[[], list[GroundAbility]]
-    ) -> list[GroundAbility]:
-        """The ability for all choices of its parameters, made by `ground` unless it is known."""
-        key = resource, str(name)
-        self._used.add(key)
-        known = self._known.get(key)
-        if known is None or known[0] is not name or known[1] is not document:
-            known = self._known[key] = name, document, ground()
-        return known[2]
-
-
-def _words_in(written: object) -> set[str]:
-    """All words in texts of a document, or of what was made of one."""
-    return set(_WORD.findall(repr(written)))
 
 
 def ground_abilities(
@@ -363,7 +269,8 @@ def _instance(
     ability = _ability(meaning, resource, name, document, binding, scope)
     effects: list[tuple[tuple[object, ...], Effect, Place]] = []
     for effect_name, effect_document in document.effects.items():
-        effect = _effect(meaning, f"{ability.name}.{effect_name}", resource, effect_document, scope)
+        full = f"{ability.name}.{effect_name}"
+        effect = _effect(meaning, full, resource, effect_name, effect_document, scope, ability.executing)
         written = (resource, str(name), str(effect_name))
         effects.append(((written, effect.guard, effect.actions), effect, effect_name.place))
     places = _places(ability.name, name, document)
@@ -375,8 +282,9 @@ def _ability(
 ) -> Ability:
     enabled = meaning.predicate(document.enabled, scope)
     start_guard = meaning.predicate(document.start.when, scope)
+    start_actions = meaning.actions(document.start.do, scope, conjunction(enabled, start_guard), START)
+    executing, finish_guard = _course(meaning, resource, document, scope, start_actions)
     finish = document.finish
-    finish_guard = None if finish is None else meaning.predicate(finish.when, scope)
     cancelled = () if document.cancel is None else document.cancel.do
     return Ability(
         name=instance_name(f"{resource}.{name}", binding),
@@ -384,8 +292,8 @@ def _ability(
         title=readable(document.title, name, binding),
         enabled=enabled,
         start_guard=start_guard,
-        start_actions=meaning.actions(document.start.do, scope, conjunction(enabled, start_guard), START),
-        executing=meaning.predicate(document.executing, scope),
+        start_actions=start_actions,
+        executing=executing,
         finished=meaning.predicate(document.finished, scope),
         finish_guard=finish_guard,
         finish_actions=()
@@ -397,6 +305,27 @@ def _ability(
         duration=document.duration,
         cancel_actions=meaning.actions(cancelled, scope, TRUE, CANCEL),
     )
+
+
+def _course(
+    meaning: Meaning, resource: str, document: AbilityDocument, scope: NameScope, start: Sequence[Assignment]
+) -> tuple[Expression, Expression | None]:
+    """While what it executes, and when it finishes: as written, or what follows from its command and `until`."""
+    finish = None if document.finish is None else meaning.predicate(document.finish.when, scope)
+    if document.until is None:
+        return meaning.predicate(document.executing, scope), finish
+    until = meaning.predicate(document.until, scope)
+    variables = meaning.declarations.variables.values()
+    command = commanded(start, {v.name for v in variables if v.kind is Kind.OUTPUT and v.resource == resource})
+    if command == TRUE and isinstance(document.until, SourceText):
+        message = f"`until` needs a command: a start action that writes an output of `{resource}`"
+        meaning.findings.add(document.until, message)
+    if "executing" in document.model_fields_set:
+        executing = meaning.predicate(document.executing, scope)
+    else:
+        executing = simplify(conjunction(*conjuncts(command), Not(until)))
+    parts = (command, until, TRUE if finish is None else finish)
+    return executing, simplify(conjunction(*(each for part in parts for each in conjuncts(part))))
 
 
 def _timeouts(document: TimeoutsDocument) -> Timeouts:
@@ -421,8 +350,23 @@ def check_acknowledgement(meaning: Meaning, resource: str, text: SourceText) -> 
         meaning.findings.add(text, f"`{text}` must be a measured bool of `{resource}`{suggestion(text, own)}")
 
 
-def _effect(meaning: Meaning, name: str, resource: str, document: EffectDocument, scope: NameScope) -> Effect:
-    guard = observable_condition(meaning, document.when, scope)
+def _effect(
+    meaning: Meaning,
+    name: str,
+    resource: str,
+    written: SourceText,
+    document: EffectDocument,
+    scope: NameScope,
+    executing: Expression,
+) -> Effect:
+    if document.when is None:
+        guard = executing
+        unseen = (each for each in variables(guard) if not meaning.is_observable(each))
+        if (found := next(unseen, None)) is not None:
+            what = f"`{found}` is neither a measured nor an output variable"
+            meaning.findings.add(written, f"without `when` it happens while the ability executes, and {what}")
+    else:
+        guard = observable_condition(meaning, document.when, scope)
     actions = meaning.actions(document.do, scope, guard, EFFECT)
     shortest, longest = document.takes
     return Effect(name, resource, document.kind, guard, actions, shortest, longest, document.fault)
@@ -438,12 +382,12 @@ def observable_condition(meaning: Meaning, text: Predicate, scope: NameScope) ->
 
 def _places(ability: str, name: SourceText, document: AbilityDocument) -> dict[str, Place]:
     """Return where the ability and its parts were written; a part that is left out stands where the ability does."""
-    finish = document.finish
-    parts = {
-        **{flag: getattr(document, flag) for flag in FLAGS},
-        "start": document.start.when,
-        "finish": True if finish is None else finish.when,
-    }
+    written = {flag: getattr(document, flag) for flag in FLAGS}
+    finish = True if document.finish is None else document.finish.when
+    if document.until is not None:
+        finish = finish if isinstance(finish, SourceText) else document.until
+        written["executing"] = document.executing or document.until
+    parts = {**written, "start": document.start.when, "finish": finish}
     return {
         ability: name.place,
         **{f"{ability}.{part}": _ability_place(text, name.place) for part, text in parts.items()},

@@ -5,7 +5,7 @@ documents and checked.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.findings import Findings
@@ -25,6 +25,8 @@ from sequence_planner.model.documents import (
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
+
+D = TypeVar("D")
 
 # Words that a text would take for something else.
 RESERVED = frozenset({*STEPS, *ENDS, *QUANTIFIERS, "exactly", "where"})
@@ -91,6 +93,7 @@ class ShorthandReader:
     def __init__(self, declarations: DeclaredTypes, station: Station, findings: Findings) -> None:
         self._declarations = declarations
         self._station = station.station
+        self._resources = station.resources
         self._findings = findings
         self._domains = declarations.enumerations
 
@@ -145,11 +148,11 @@ class ShorthandReader:
 
     # Relations and maps
 
-    def read_relations(self) -> Iterator[tuple[SourceText, ValueRelation]]:
-        """Each relation with its pairs."""
-        for name, document in self._station.relations.items():
+    def read_relations(self) -> Iterator[tuple[str, ValueRelation]]:
+        """Each relation with its pairs, by its full name."""
+        for full, _, document in written_in(self._station.relations, self._of_resources("relations")):
             if (relation := self.read_relation(document)) is not None:
-                yield name, relation
+                yield full, relation
 
     def read_relation(self, document: RelationDocument) -> ValueRelation | None:
         """One relation; None where one of its enumerations is unknown."""
@@ -168,11 +171,14 @@ class ShorthandReader:
             self._findings.add(document.between[1], message)
         return ValueRelation((first, second), frozenset(pairs))
 
-    def read_maps(self) -> Iterator[tuple[SourceText, ValueMap]]:
-        """Each map with its table."""
-        for name, document in self._station.maps.items():
+    def read_maps(self) -> Iterator[tuple[str, ValueMap]]:
+        """Each map with its table, by its full name."""
+        for full, name, document in written_in(self._station.maps, self._of_resources("maps")):
             if (found := self.read_map(name, document)) is not None:
-                yield name, found
+                yield full, found
+
+    def _of_resources(self, section: str) -> Mapping[str, Mapping[SourceText, Any]]:
+        return {resource: getattr(document, section) for resource, document in self._resources.items()}
 
     def read_map(self, name: SourceText, document: ValueMapDocument) -> ValueMap | None:
         """One map; None where what it is from or to is unknown."""
@@ -247,6 +253,15 @@ def written_predicates(
     for resource, documents in ((None, station), *resources.items()):
         for name, document in documents.items():
             yield resource, name, document
+
+
+def written_in(
+    station: Mapping[SourceText, D], resources: Mapping[str, Mapping[SourceText, D]]
+) -> Iterator[tuple[str, SourceText, D]]:
+    """Each document of what the station and its resources declare: its full name, its name as written, and itself."""
+    yield from ((str(name), name, document) for name, document in station.items())
+    for resource, documents in resources.items():
+        yield from ((f"{resource}.{name}", name, document) for name, document in documents.items())
 
 
 def parts_of(document: Predicate | PredicateDocument) -> tuple[dict[SourceText, SourceText], Predicate]:

@@ -14,6 +14,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
 from operator import itemgetter
+from typing import TypeVar
 
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.language.evaluator import RELATIONS
@@ -76,6 +77,8 @@ from sequence_planner.language.types import (
     described,
     overlap,
 )
+
+T = TypeVar("T")
 
 # What is asked of the order of an enumeration.
 STEPS = {"previous": -1, "next": 1}
@@ -455,27 +458,34 @@ def _for_short(name: Name, scope: NameScope) -> tuple[Dependent, Type] | None:
     """The meaning of a name that is no variable, or None if it has none."""
     if (predicate := _predicate(name, scope)) is not None:
         return _expanded(name, predicate, scope), BOOLEAN
-    head = name.path[0]
-    if len(name.path) == 1 and head.arguments:
-        if head.indexed and (table := scope.vocabulary.maps.get(head.name)) is not None:
+    head = name.path[-1]
+    if head.arguments and not any(part.arguments for part in name.path[:-1]):
+        vocabulary = scope.vocabulary
+        if head.indexed and (table := _declared(name, vocabulary.maps, scope)) is not None:
             _require_arguments(name, head.name, ("a value",))
             argument = _argument_of(name, 0, table.source, scope)
             return mapped(argument, table.table, name.span), table.target
-        if not head.indexed and (relation := scope.vocabulary.relations.get(head.name)) is not None:
+        if not head.indexed and (relation := _declared(name, vocabulary.relations, scope)) is not None:
             _require_arguments(name, head.name, ("a value", "a value"))
             first, second = (_argument_of(name, index, type_, scope) for index, type_ in enumerate(relation.types))
             return related(first, second, relation.pairs, name.span), BOOLEAN
-        if not head.indexed and (head.name in STEPS or head.name in ENDS):
+        if len(name.path) == 1 and not head.indexed and (head.name in STEPS or head.name in ENDS):
             return _in_order(name, scope)
     return _dynamic(name, scope)
 
 
 def _predicate(name: Name, scope: NameScope) -> NamedPredicate | None:
-    predicates = scope.vocabulary.predicates
-    if not predicates or any(part.arguments for part in name.path[:-1]) or name.path[-1].indexed:
+    if any(part.arguments for part in name.path[:-1]) or name.path[-1].indexed:
+        return None
+    return _declared(name, scope.vocabulary.predicates, scope)
+
+
+def _declared(name: Name, table: Mapping[str, T], scope: NameScope) -> T | None:
+    """What a name stands for in a table of names for short, under one of the prefixes or as it is."""
+    if not table:
         return None
     skeleton = ".".join(part.name for part in name.path)
-    found = (predicates.get(prefix + skeleton) for prefix in (*scope.prefixes, ""))
+    found = (table.get(prefix + skeleton) for prefix in (*scope.prefixes, ""))
     return next((each for each in found if each is not None), None)
 
 

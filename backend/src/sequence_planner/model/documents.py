@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag,
 from sequence_planner.model.fields import Action, DocumentPart, Given, Predicate, Seconds, TypeName
 from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.stages.marks import ReadValue
 from sequence_planner.model.stages.registry import StageDocument
 
 # What the services and actions of a resource may hold: the station is their client, the device their server.
@@ -176,8 +177,8 @@ class StartDocument(DocumentPart):
 class FinishDocument(DocumentPart):
     """The finish of an ability: its guard and actions."""
 
-    when: Predicate
-    """As soon as this holds, the finish actions are taken."""
+    when: Predicate = True
+    """As soon as this holds, and what the ability goes on `until`, the finish actions are taken."""
     do: list[Action] = Field(default_factory=list)
     """Actions on outputs and estimates."""
 
@@ -185,10 +186,10 @@ class FinishDocument(DocumentPart):
 class EffectDocument(DocumentPart):
     """Expected reaction of measured variables; `takes` is its shortest and longest time in seconds."""
 
-    kind: Literal["starting", "executing", "finishing"]
+    kind: Literal["starting", "executing", "finishing"] = "executing"
     """For the reader: when in a run it is expected."""
-    when: Predicate
-    """The condition under which it happens, on measured and output variables."""
+    when: Given[Predicate] = None
+    """The condition under which it happens, on measured and output variables; without it while the ability executes."""
     do: list[Action] = Field(min_length=1)
     """Actions on measured variables, all taken at once."""
     takes: Duration = (0.5, 0.5)
@@ -253,8 +254,11 @@ class AbilityDocument(DocumentPart):
     """The ability can be used now."""
     start: StartDocument = StartDocument()
     """The start: a further guard, and its actions."""
+    until: Given[Predicate] = None
+    """It goes on from its command until this holds: it executes while the outputs of its resource are as the start has
+    set them and this does not hold, and finishes when both do."""
     executing: Predicate = False
-    """It is under way."""
+    """It is under way; where that is something else than what `until` says."""
     finished: Predicate = False
     """It is done; for use in other conditions."""
     finish: Given[FinishDocument] = None
@@ -266,8 +270,17 @@ class AbilityDocument(DocumentPart):
 
     @model_validator(mode="after")
     def _has_an_end(self) -> AbilityDocument:
-        if self.finish is None and self.timeouts != TimeoutsDocument():
-            raise ValueError("`timeouts` need a `finish`: without one the ability is done with its start")
+        if self.finish is None and self.until is None and self.timeouts != TimeoutsDocument():
+            raise ValueError("`timeouts` need a `finish` or an `until`: without one the ability is done with its start")
+        if self.until is None and self.finish is not None and "when" not in self.finish.model_fields_set:
+            raise ValueError("`finish` needs a `when`, or the ability something to go on `until`")
+        return self
+
+    @model_validator(mode="after")
+    def _effects_happen(self) -> AbilityDocument:
+        never = [name for name, each in self.effects.items() if each.when is None]
+        if never and self.until is None and "executing" not in self.model_fields_set:
+            raise ValueError(f"the effect `{never[0]}` needs a `when`: nothing says when the ability is executing")
         return self
 
 
@@ -407,13 +420,13 @@ class SetDocument(DocumentPart):
         return self
 
 
-Members = SourceText | Annotated[list[SourceText], Field(min_length=1)]
+Members = ReadValue | Annotated[list[ReadValue], Field(min_length=1)]
 
 
 class RelationDocument(DocumentPart):
     """A relation between the values of two enumerations, by its pairs."""
 
-    between: Annotated[list[SourceText], Field(min_length=2, max_length=2)]
+    between: Annotated[list[TypeName], Field(min_length=2, max_length=2)]
     """The two enumerations or sets."""
     symmetric: bool = False
     """Whether each pair holds the other way round as well."""
@@ -424,11 +437,11 @@ class RelationDocument(DocumentPart):
 class ValueMapDocument(DocumentPart):
     """A value for each value of an enumeration."""
 
-    source: SourceText = Field(alias="from")
+    source: TypeName = Field(alias="from")
     """The enumeration or set that it is from."""
-    to: SourceText
+    to: TypeName
     """What it is to: an enumeration, `bool` or a range such as `0..3`."""
-    values: dict[SourceText, bool | int | SourceText] = Field(default_factory=dict)
+    values: dict[ReadValue, bool | int | SourceText] = Field(default_factory=dict)
     """The value for each; a set among the keys stands for all of its values."""
     otherwise: Given[bool | int | SourceText] = None
     """The value for all others; without it each needs its own."""
@@ -490,6 +503,10 @@ class ResourceDocument(DocumentPart):
     """Abilities of the resource."""
     alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
     """What people are told of the resource when something is wrong with it."""
+    relations: dict[SourceText, RelationDocument] = Field(default_factory=dict)
+    """Pairs of values that belong together, by names of the resource."""
+    maps: dict[SourceText, ValueMapDocument] = Field(default_factory=dict)
+    """Tables of values for values, by names of the resource."""
     predicates: dict[SourceText, NamedCondition] = Field(default_factory=dict)
     """Conditions with a name, which other conditions use by it."""
 

@@ -186,9 +186,8 @@ class _FolderReader:
             for file in used.files_of(package):
                 found = self._once(file, BaseModel, partial(read_type, package=package))
                 types[f"{package}.{Path(file).stem}"] = cast("WrittenInstance | None", found)
-        if not used.enumerations:
-            return station, types
-        return station.model_copy(update={"enumerations": {**used.enumerations, **station.enumerations}}), types
+        declared = {section: {**brought, **getattr(station, section)} for section, brought in used.declared.items()}
+        return station.model_copy(update=declared), types
 
     def all_resources(
         self, station: StationDocument | None, of_packages: dict[str, WrittenInstance | None]

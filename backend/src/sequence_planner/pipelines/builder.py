@@ -421,7 +421,6 @@ class _Building:
         self._folder = station.folder
         self._automaton = automaton
         self._registry = registry
-        self._sets = {name: type_.values for name, type_ in automaton.vocabulary.domains.items()}
         self._resources = {name: Resource(name, automaton) for name in station.resources}
         self.chains: dict[str, ChainBuilding] = {}
         self._fed: dict[str, SourceText] = {}
@@ -454,7 +453,7 @@ class _Building:
             self._feed(topic.name, name, self.incoming[topic.name].variables, frozenset())
             self._note(topic.name, before)
         else:
-            chain = ChainBuilding(name, False, message, self._folder, self.findings, [of.all], self._sets)
+            chain = self._chain(name, False, message, of.all, of)
             chain.is_cut = topic.name in self._cut
             self.chains[topic.name] = chain
             self.outgoing[topic.name] = outgoing_pipeline(of, topic, document, chain, constants)
@@ -507,9 +506,15 @@ class _Building:
 
     def _begin(self, full: str, name: SourceText, fields: RecordType, of: Resource) -> ChainBuilding:
         """A chain for what comes in."""
-        self.chains[full] = ChainBuilding(name, True, of.measured, self._folder, self.findings, [fields], self._sets)
+        self.chains[full] = self._chain(name, True, of.measured, fields, of)
         self.chains[full].is_cut = full in self._cut
         return self.chains[full]
+
+    def _chain(
+        self, name: SourceText, is_incoming: bool, wanted: RecordType, fields: RecordType, of: Resource
+    ) -> ChainBuilding:
+        known = (self._automaton.vocabulary, of.name)
+        return ChainBuilding(name, is_incoming, wanted, self._folder, self.findings, [fields], *known)
 
     def _feed(self, full: str, name: SourceText, variables: tuple[str, ...], above: frozenset[str]) -> None:
         self._above[full] = above.union(variables)

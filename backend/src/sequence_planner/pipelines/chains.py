@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sequence_planner.language.records.field_paths import NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, RecordType
+from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.documents import ResourceDocument
 from sequence_planner.model.source import Finding, SourceText
@@ -46,7 +47,8 @@ class ChainBuilding:
     folder: Path
     findings: PipelineFindings
     fields: list[RecordType]
-    sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    vocabulary: Vocabulary = NO_VOCABULARY
+    resource: str = ""
     stages: list[Stage] = field(default_factory=list)
     documents: list[StageDocument] = field(default_factory=list)
     is_cut: bool = False
@@ -68,7 +70,8 @@ class ChainBuilding:
             self.findings.add(place, f"`{self.name}` → stage {number} `{document.kind}`: {message}")
 
         fields = self.fields[-1]
-        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found, self.sets)
+        known = (self.vocabulary, self.resource)
+        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found, *known)
         stage = document.check(context)
         if stage is None or len(self.findings.found) > before:
             self.is_sound = False

@@ -76,3 +76,23 @@ def test_all_of_it_is_in_the_graph() -> None:
     assert ("ability:arm.move", "relation:near") in used
     assert ("alarm:stuck", "predicate:all_tight") in used
     assert ("set:work", "set:free") in used
+
+
+def test_the_tables_of_stages_are_renamed_with_the_maps_and_relations_that_they_name() -> None:
+    files = {
+        "station.yaml": (
+            "name: tables\nenumerations: {mode: [off, on]}\nmaps:\n"
+            "  code_of: {from: mode, to: 0..3, values: {off: 0, on: 2}}\n"
+            "relations:\n  same: {between: [mode, mode], pairs: [[off, off], [on, on]]}\n"
+        ),
+        ARM: (
+            "topics:\n  /command:\n    type: arm_msgs/msg/Command\n    direction: out\n    pipeline:\n"
+            "      - map: {field: code, variable: wanted, values: code_of}\n"
+            "      - table: {fields: [wanted, last], variables: [calm], rows: [{when: same, gives: [true]}]}\n"
+            "output: {wanted: {type: mode}, last: {type: mode}}\n"
+        ),
+    }
+    for part, new in (("map:code_of", "number_of"), ("relation:same", "as_before")):
+        old = part.partition(":")[2]
+        assert len(usages(files, parse_part(part)).found) == 2
+        assert renamed(files, parse_part(part), new) == {name: text.replace(old, new) for name, text in files.items()}

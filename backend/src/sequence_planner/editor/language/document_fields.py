@@ -96,7 +96,7 @@ class _AbilityFields:
     def at(self, path: EntryPath) -> TextField | None:
         document, finish = self._document, self._document.finish
         match path:
-            case (str(flag),) if flag in FLAGS:
+            case (str(flag),) if flag in (*FLAGS, "until"):
                 return TextField(FieldKind.CONDITION, condition, **self._around)
             case ("start" | "finish", "when"):
                 return TextField(FieldKind.CONDITION, condition, **self._around)
@@ -105,7 +105,8 @@ class _AbilityFields:
                 return self._action(document.start.do, index, guards, START)
             case ("finish", "do", int(index)):
                 texts = [] if finish is None else finish.do
-                return self._action(texts, index, () if finish is None else (finish.when,), FINISH)
+                until = () if document.until is None else (document.until,)
+                return self._action(texts, index, until if finish is None else (*until, finish.when), FINISH)
             case ("cancel", "do", int(index)):
                 return self._action([] if document.cancel is None else document.cancel.do, index, (), CANCEL)
             case ("effects", str(), "when"):
@@ -114,7 +115,7 @@ class _AbilityFields:
                 effect = document.effects.get(placed(name))
                 if effect is None:
                     return self._action([], index, (), EFFECT)
-                return self._action(effect.do, index, (effect.when,), EFFECT)
+                return self._action(effect.do, index, () if effect.when is None else (effect.when,), EFFECT)
             case ("human", "acknowledgement"):
                 return TextField(FieldKind.ACKNOWLEDGEMENT, self._acknowledgement, **self._around)
             case ("parameters", str(name)):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.findings import with_arguments, without_arguments
-from sequence_planner.automaton.shorthand import parts_of, written_predicates
+from sequence_planner.automaton.shorthand import parts_of, written_in, written_predicates
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
@@ -123,13 +123,17 @@ def _short(station: Station, declarations: Declarations) -> Iterator[Family]:
             arguments = tuple(map(str, parts_of(document)[0].values()))
             title = str(document.title) if isinstance(document, PredicateDocument) and document.title else None
             yield Family(full, NameKind.PREDICATE, BOOLEAN, name.place, arguments, owner=resource, title=title)
-    for name, relation in written.relations.items():
-        if str(name) in vocabulary.relations:
-            yield Family(str(name), NameKind.RELATION, BOOLEAN, name.place, tuple(map(str, relation.between)))
-    for name, table in written.maps.items():
-        if str(name) in vocabulary.maps:
-            target = vocabulary.maps[str(name)].target
-            yield Family(str(name), NameKind.MAP, target, name.place, (str(table.source),), indexed=True)
+    relations = {resource: document.relations for resource, document in station.resources.items()}
+    for full, name, relation in written_in(written.relations, relations):
+        if full in vocabulary.relations:
+            arguments = tuple(map(str, relation.between))
+            owner = full.rpartition(".")[0] or None
+            yield Family(full, NameKind.RELATION, BOOLEAN, name.place, arguments, owner=owner)
+    maps = {resource: document.maps for resource, document in station.resources.items()}
+    for full, name, table in written_in(written.maps, maps):
+        if full in vocabulary.maps:
+            target, owner = vocabulary.maps[full].target, full.rpartition(".")[0] or None
+            yield Family(full, NameKind.MAP, target, name.place, (str(table.source),), indexed=True, owner=owner)
     for domain, type_ in declarations.enumerations.items():
         if type_ in vocabulary.ordered:
             for step in STEPS:

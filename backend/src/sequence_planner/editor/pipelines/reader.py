@@ -135,7 +135,7 @@ def _key(mapping: Mapping[SourceText, object], name: str) -> SourceText:
 MESSAGES, STATION, NOTHING = "messages/", "station.yaml", "name: draft\n"
 _OF_PACKAGE = f"/{MESSAGES}"  # in `packages/<name>/messages/`
 # Sections of a resource in which something has to do with pipelines.
-OURS = frozenset({*STAGES, "measured", "output", "estimated"})
+OURS = frozenset({*STAGES, "measured", "output", "estimated", "relations", "maps"})
 
 
 @dataclass(frozen=True)
@@ -280,11 +280,11 @@ def _resource(
 def _station(document: YamlDocument) -> StationDocument:
     """The names of the station; what is wrong with it is not said here, as it is no matter of pipelines."""
     content = document.content if isinstance(document.content, dict) else {}
-    whole = ("enumerations", "sets", "estimated")
+    whole = ("enumerations", "estimated", "sets", "maps", "relations")
     own = {key: value for key, value in content.items() if key in whole}
     place = document.place(())
     name = SourceText("draft", place, "draft")
-    for keys in (whole, whole[:2], whole[:1], ()):
+    for keys in (whole[:end] for end in range(len(whole), -1, -1)):
         try:
             chosen = {key: value for key, value in own.items() if key in keys}
             return StationDocument.model_validate({SourceText("name", place, "name"): name, **chosen})

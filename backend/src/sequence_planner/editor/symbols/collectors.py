@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -197,6 +197,14 @@ class Naming:
         if text is not None and str(name) in self.declared.homes:
             self.gathered.add(self.declared.domain(str(name)), where, text, span)
 
+    def note_table(self, kind: str, where: Where, text: SourceText, resource: str) -> None:
+        """Note that a whole text is the name of a map or a relation, of the resource or of the station, if it is."""
+        known: Container[str] = self.declared.maps if kind == "map" else self.declared.relations
+        if f"{resource}.{text}" in known:
+            self.gathered.add(ModelPart(kind, resource, str(text)), where, text)
+        elif str(text) in known:
+            self.gathered.add(ModelPart(kind, None, str(text)), where, text)
+
     def note_member(self, domain: object, where: Where, text: object) -> None:
         """Note that a whole text is a value of an enumeration or set, or a set of such values."""
         if isinstance(text, SourceText):
@@ -213,12 +221,8 @@ class Naming:
             yield self._variable(None, names[0], 0)
         elif len(names) == 1 and names[0] in self.declared.predicates:
             yield Named({0: ModelPart("predicate", None, names[0])}, (0, self.declared.predicates[names[0]]))
-        elif len(names) == 1 and names[0] in self.declared.relations:
-            yield Named({0: ModelPart("relation", None, names[0])}, (0, self.declared.relations[names[0]]))
-        elif len(names) == 1 and names[0] in self.declared.maps:
-            source, target = self.declared.maps[names[0]]
-            ranges = target if target in self.declared.homes else None
-            yield Named({0: ModelPart("map", None, names[0])}, (0, source), ranges)
+        elif len(names) == 1 and names[0] in (*self.declared.relations, *self.declared.maps):
+            yield self._table(None, names[0], 0)
         elif is_activity(names) and names[1] in self.declared.operations:
             yield Named({1: ModelPart("operation", None, names[1])}, (1, self.declared.operations[names[1]]))
         elif names[0] in self.declared.resources:
@@ -235,8 +239,19 @@ class Naming:
             yield self._variable(resource, name, first)
         elif not rest and full in self.declared.predicates:
             yield Named({first: ModelPart("predicate", resource, name)}, (first, self.declared.predicates[full]))
+        elif not rest and full in (*self.declared.relations, *self.declared.maps):
+            yield self._table(resource, name, first)
         elif len(rest) == 1 and rest[0].word.text in FLAGS and full in self.declared.abilities:
             yield Named({first: ModelPart("ability", resource, name)}, (first, self.declared.abilities[full]))
+
+    def _table(self, resource: str | None, name: str, index: int) -> Named:
+        """A relation or a map."""
+        full = name if resource is None else f"{resource}.{name}"
+        if full in self.declared.relations:
+            return Named({index: ModelPart("relation", resource, name)}, (index, self.declared.relations[full]))
+        source, target = self.declared.maps[full]
+        ranges = target if target in self.declared.homes else None
+        return Named({index: ModelPart("map", resource, name)}, (index, source), ranges)
 
     def _variable(self, resource: str | None, name: str, index: int) -> Named:
         part = variable_of(resource, name)

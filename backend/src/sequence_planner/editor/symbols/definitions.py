@@ -80,6 +80,7 @@ _BY_KEY = {
     "alarm": {"when": Manner.ALARMS},
     "ability": {
         "enabled": Manner.GUARD,
+        "until": Manner.PROGRESS,
         "executing": Manner.PROGRESS,
         "finished": Manner.PROGRESS,
         "human": Manner.ACKNOWLEDGEMENT,
@@ -152,7 +153,7 @@ def _is_outgoing(by: ModelPart, path: EntryPath, declared: Declared) -> bool:
 
 # The names in the files of a station, entry by entry: which texts there are, and what is around each.
 
-_CONDITIONS = (("enabled",), ("start", "when"), ("executing",), ("finished",), ("finish", "when"))
+_CONDITIONS = (("enabled",), ("start", "when"), ("until",), ("executing",), ("finished",), ("finish", "when"))
 _ACTIONS = (("start", "do"), ("finish", "do"), ("cancel", "do"))
 _IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
 
@@ -203,8 +204,8 @@ class _Walk:
             for index, each in enumerate(items(entry(values, "includes"))):
                 self._naming.note_domain(each, where.to("includes", index))
         self._sets(content, top)
-        self._relations(content, top)
-        self._maps(content, top)
+        self._relations(None, content, top)
+        self._maps(None, content, top)
         self._predicates(None, content, top)
         self._variables(None, entry(content, "estimated"), top.to("estimated"))
         self._alarms(None, content, top)
@@ -220,10 +221,11 @@ class _Walk:
                 for index, each in enumerate(items(entry(document, key))):
                     self._naming.note_member(of, at.to(key, index), each)
 
-    def _relations(self, content: object, top: Where) -> None:
+    def _relations(self, resource: str | None, content: object, top: Where) -> None:
         for name, document in pairs(entry(content, "relations")):
-            at = top.to("relations", name).within(f"relation {name}")
-            self._add(ModelPart("relation", None, str(name)), at, name, declares=True)
+            part = ModelPart("relation", resource, str(name))
+            at = top.to("relations", name).within(f"relation {part.full}")
+            self._add(part, at, name, declares=True)
             between = items(entry(document, "between"))
             for index, each in enumerate(between):
                 self._naming.note_domain(each, at.to("between", index))
@@ -236,10 +238,11 @@ class _Walk:
             if entry(document, "symmetric") is True and len(between) > 1:
                 self._naming.link(str(between[0]), str(between[1]))
 
-    def _maps(self, content: object, top: Where) -> None:
+    def _maps(self, resource: str | None, content: object, top: Where) -> None:
         for name, document in pairs(entry(content, "maps")):
-            at = top.to("maps", name).within(f"map {name}")
-            self._add(ModelPart("map", None, str(name)), at, name, declares=True)
+            part = ModelPart("map", resource, str(name))
+            at = top.to("maps", name).within(f"map {part.full}")
+            self._add(part, at, name, declares=True)
             source, target = entry(document, "from"), entry(document, "to")
             self._naming.note_domain(source, at.to("from"))
             self._naming.note_domain(target, at.to("to"))
@@ -269,6 +272,8 @@ class _Walk:
             self._variables(resource, entry(content, section), top.to(section))
         for name, ability in pairs(entry(content, "abilities")):
             self._ability(resource, name, ability, top.to("abilities", name))
+        self._relations(resource, content, top)
+        self._maps(resource, content, top)
         self._predicates(resource, content, top)
         self._alarms(resource, content, top)
 

@@ -59,7 +59,7 @@ KINDS: Mapping[str, str] = {
 }
 # Kinds whose names are those of ROS 2, and known in the whole station.
 ROS_KINDS = frozenset({"topic", "service", "action", "message"})
-_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm", "predicate"})
+_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm", "predicate", "relation", "map"})
 _WITHIN = frozenset({"effect", "parameter"})
 
 
@@ -181,7 +181,7 @@ class Declared:
         self.sent: set[str] = set()  # topics on which the station speaks
         station = content.get(STATION)
         self._read_enumerations(station)
-        self._read_short(station)
+        self._read_short(None, station)
         self._read_variables(None, "estimated", entry(station, "estimated"))
         self.parts += [ModelPart("alarm", None, str(each)) for each, _ in pairs(entry(station, "alarms"))]
         for resource, found in self.resources.items():
@@ -252,17 +252,16 @@ class Declared:
 
         self.homes |= {name: contents(name, ()) for name in self.sets}
 
-    def _read_short(self, station: object) -> None:
-        for name, document in pairs(entry(station, "relations")):
+    def _read_short(self, resource: str | None, written: object) -> None:
+        for name, document in pairs(entry(written, "relations")):
             between = items(entry(document, "between"))
-            self.relations[str(name)] = {str(index): str(each) for index, each in enumerate(between)}
-            self.parts.append(ModelPart("relation", None, str(name)))
-        for name, document in pairs(entry(station, "maps")):
-            self.maps[str(name)] = {"0": str(entry(document, "from"))}, str(entry(document, "to"))
-            self.parts.append(ModelPart("map", None, str(name)))
-        self._read_predicates(None, station)
-
-    def _read_predicates(self, resource: str | None, written: object) -> None:
+            part = ModelPart("relation", resource, str(name))
+            self.relations[part.full] = {str(index): str(each) for index, each in enumerate(between)}
+            self.parts.append(part)
+        for name, document in pairs(entry(written, "maps")):
+            part = ModelPart("map", resource, str(name))
+            self.maps[part.full] = {"0": str(entry(document, "from"))}, str(entry(document, "to"))
+            self.parts.append(part)
         for name, document in pairs(entry(written, "predicates")):
             part = ModelPart("predicate", resource, str(name))
             self.predicates[part.full] = parameters(entry(document, "parameters"))
@@ -280,7 +279,7 @@ class Declared:
         self.parts.append(ModelPart("resource", None, resource))
         for section in SECTIONS:
             self._read_variables(resource, section, entry(found, section))
-        self._read_predicates(resource, found)
+        self._read_short(resource, found)
         for name, document in pairs(entry(found, "abilities")):
             part = ModelPart("ability", resource, str(name))
             self.abilities[part.full] = parameters(entry(document, "parameters"))

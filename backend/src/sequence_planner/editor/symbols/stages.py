@@ -9,7 +9,7 @@ from sequence_planner.editor.symbols.collectors import Names, read_calculation
 from sequence_planner.editor.symbols.index import Declared, Where
 from sequence_planner.editor.symbols.texts import MarkedStages
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.marks import EntryPath, FormulaMark, Marked, NameMark, NameUse, ValueMark
+from sequence_planner.model.stages.marks import EntryPath, FormulaMark, Marked, NameMark, NameUse, TableMark, ValueMark
 
 T = TypeVar("T")
 
@@ -85,6 +85,8 @@ class Stages:
         }
         ranges = {path: each.enumeration for path, each in read.items()}
         for text, path, mark in marked:
+            if isinstance(mark, TableMark):
+                self.names.naming.note_table(mark.kind, where.to(*path), text, self.names.resource)
             if isinstance(mark, ValueMark) and text != mark.but:
                 enumeration = _of_entry(path, made if mark.of_given else ranges)
                 self.names.naming.note_value(enumeration, where.to(*path), text)

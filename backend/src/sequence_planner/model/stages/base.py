@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -21,11 +21,14 @@ from typing import (
     ClassVar,
     Literal,
     Protocol,
+    TypeVar,
     runtime_checkable,
 )
 
 from sequence_planner.language.records.field_paths import FieldPath, NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, Record, RecordType
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.types import Place
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.source import SourceText
@@ -43,6 +46,8 @@ from sequence_planner.model.stages.marks import (
 )
 from sequence_planner.model.stages.suggestions import MOST_SUGGESTED, Candidate, Spot
 
+T = TypeVar("T")
+
 # What a stage is: as written, as checked, and as it runs.
 
 
@@ -56,8 +61,9 @@ class Context:
 
     `is_incoming` holds for incoming topics and flows. `fields` are those of the record before the stage. `wanted` are
     the names for which there is a use at the end, with their types: the measured variables of the resource without its
-    name (incoming), or the fields of the message (outgoing). A stage may give others, which a later one reads. `sets`
-    are the values of the enumerations and named sets of the station.
+    name (incoming), or the fields of the message (outgoing). A stage may give others, which a later one reads.
+    `vocabulary` has the enumerations, named sets, maps and relations of the station; those of the `resource` are known
+    there by their own names.
     `found` notes what is wrong at a place; it adds which pipeline and which stage.
     """
 
@@ -67,7 +73,19 @@ class Context:
     folder: Path
     place: Place
     found: Callable[[Place, str], None]
-    sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    vocabulary: Vocabulary = NO_VOCABULARY
+    resource: str = ""
+
+    def named(self, name: SourceText, table: Mapping[str, T]) -> T | None:
+        """A map or a relation by its name in the resource or in the station; None, and a finding, without one."""
+        own = f"{self.resource}."
+        found = table.get(own + str(name), table.get(str(name)))
+        if found is None:
+            what = "relation" if table is self.vocabulary.relations else "map"
+            near = suggestion(name, [*table, *(each.removeprefix(own) for each in table)])
+            where = f"`{what}s` of station.yaml or of the resource declares them"
+            self.found(name.place, f"there is no {what} `{name}`: {where}{near}")
+        return found
 
     def field(self, path: SourceText) -> tuple[FieldPath, FieldType] | None:
         """A field that the stage reads, by its path; None, and a finding, when there is none."""

@@ -15,9 +15,16 @@ from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration, StageInstance
-from sequence_planner.model.stages.marks import ExampleValue, GivenValue, MessageField, ModelVariable, ReadValue
+from sequence_planner.model.stages.marks import (
+    ExampleValue,
+    GivenValue,
+    MessageField,
+    ModelVariable,
+    NamedMap,
+    ReadValue,
+)
 from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, has_numbers
-from sequence_planner.model.stages.support import ImmediateStage, values_of, wanted_type
+from sequence_planner.model.stages.support import ImmediateStage, briefly, values_of, wanted_type
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
 
@@ -170,8 +177,8 @@ class DiscretiseDocument(StageDeclaration):
     """An array of numbers in the message, or a single number."""
     variable: ModelVariable
     """What gets the name of the point."""
-    values: Given[dict[GivenValue, Point]] = None
-    """The coordinates of each named point."""
+    values: Given[NamedMap | dict[GivenValue, Point]] = None
+    """The coordinates of each named point; or the name of a map of the station to numbers, of which each is a point."""
     ranges: Annotated[
         Given[dict[GivenValue, Annotated[Bounds, Field(strict=False)]]], ExampleValue({"low": [None, 0]})
     ] = None
@@ -198,14 +205,17 @@ class DiscretiseDocument(StageDeclaration):
         if not self.is_for(context):
             return None
         found = context.field(self.field)
-        names = [*(self.values or self.ranges or {})]
+        points = points_of(self.values, context)
+        if points is None:
+            return None
+        names = [*(points or self.ranges or {})]
         names += [] if self.otherwise is None else [self.otherwise]
         type_ = wanted_type(context, self.variable) or EnumerationType(tuple(dict.fromkeys(map(str, names))))
         named = _are_names(context, self.field, names, type_)
         if found is None or not named or not isinstance(type_, EnumerationType):
             return None
         path, field = found
-        regions = _regions(self, field, context)
+        regions = _regions(self, points, field, context)
         if regions is None:
             return None
         otherwise = None if self.otherwise is None else str(self.otherwise)
@@ -227,13 +237,26 @@ class DiscretiseDocument(StageDeclaration):
                 yield Candidate({cls.kind: made}, declares)
 
 
-def _regions(document: DiscretiseDocument, field: FieldType, context: Context) -> Regions | None:
+def points_of(values: SourceText | Coordinates | None, context: Context) -> Coordinates | None:
+    """Points as they are written, or those that a map of the station has on one axis; None after a finding."""
+    if not isinstance(values, SourceText):
+        return values or {}
+    if (found := context.named(values, context.vocabulary.maps)) is None:
+        return None
+    if not isinstance(found.target, IntegerRange):
+        said = f"`{values}` is to {briefly(found.target)}, and a point is a number"
+        context.found(values.place, f"{said}: take a map to a range such as 0..360, or write the coordinates here")
+        return None
+    return {SourceText(name, values.place, name): [float(at)] for name, at in found.table.items()}
+
+
+def _regions(document: DiscretiseDocument, values: Coordinates, field: FieldType, context: Context) -> Regions | None:
     if document.ranges is not None:
         if not is_numeric(field):
             context.found(document.field.place, f"`{document.field}` is {field}, and ranges are of a single number")
             return None
         return _ranges(document.ranges, context)
-    values, tolerance = document.values or {}, document.tolerance or 0.0
+    tolerance = document.tolerance or 0.0
     if not _fit(context, document.field, values, field) or not _are_apart(context, values, tolerance):
         return None
     return Points({str(name): tuple(point) for name, point in values.items()}, tolerance)
@@ -400,26 +423,29 @@ class UndiscretiseDocument(StageDeclaration):
     """The variable whose value names a point."""
     field: MessageField
     """The array of numbers in the message."""
-    values: dict[ReadValue, Point]
-    """The coordinates of every value."""
+    values: NamedMap | dict[ReadValue, Point]
+    """The coordinates of every value; or the name of a map of the station to numbers, of which each is a point."""
 
     def check(self, context: Context) -> UndiscretiseStage | None:
         """From names to numbers."""
         if not self.is_for(context):
             return None
         found = context.field(self.variable)
-        axes = {len(point) for point in self.values.values()}
+        values = points_of(self.values, context)
+        if values is None:
+            return None
+        axes = {len(point) for point in values.values()}
         field = wanted_type(context, self.field) or ListType(REAL, next(iter(axes)) if len(axes) == 1 else None)
-        fits = _fit(context, self.field, self.values, field)
-        if found is None or not _are_names(context, self.field, self.values, found[1]) or not fits:
+        fits = _fit(context, self.field, values, field)
+        if found is None or not _are_names(context, self.field, values, found[1]) or not fits:
             return None
         path, type_ = found
-        missing = sorted(set(type_.values if isinstance(type_, EnumerationType) else ()) - set(map(str, self.values)))
+        missing = sorted(set(type_.values if isinstance(type_, EnumerationType) else ()) - set(map(str, values)))
         if missing:
             context.found(self.variable.place, f"no coordinates for {', '.join(missing)}")
             return None
         element = field.element if isinstance(field, ListType) else field
-        points = {str(name): _coordinates(context, name, at, element) for name, at in self.values.items()}
+        points = {str(name): _coordinates(context, name, at, element) for name, at in values.items()}
         known = {name: point for name, point in points.items() if point is not None}
         return UndiscretiseStage(context.place, path, str(self.field), field, known) if known == points else None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Annotated, ClassVar
@@ -19,7 +19,7 @@ from sequence_planner.language.records.field_paths import (
     written,
 )
 from sequence_planner.language.records.record import FieldType, ListType, Record
-from sequence_planner.language.types import EnumerationType
+from sequence_planner.language.types import EnumerationType, Value
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration
@@ -30,6 +30,8 @@ from sequence_planner.model.stages.marks import (
     GivenField,
     MessageField,
     ModelVariable,
+    NamedMap,
+    NamedRelation,
     ReadValue,
     Scalar,
     ValueMark,
@@ -38,6 +40,7 @@ from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Sp
 from sequence_planner.model.stages.support import (
     ImmediateStage,
     Passing,
+    briefly,
     candidates,
     passing,
     place_of,
@@ -45,9 +48,12 @@ from sequence_planner.model.stages.support import (
     type_for,
     value_of,
     values_of,
+    wanted_type,
 )
 
 # `map`: each value becomes another.
+
+ValueTable = Mapping[SourceText, Scalar]
 
 
 def is_same(one: object, other: object) -> bool:
@@ -65,9 +71,10 @@ class MapDocument(StageDeclaration):
     """The field of the message."""
     variable: ModelVariable
     """The variable that corresponds to it."""
-    values: Given[Annotated[dict[ReadValue, Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]] = None
+    values: Given[NamedMap | Annotated[dict[ReadValue, Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]] = None
     """What each value of the message means; for an outgoing topic, what is sent for each value of the variable. A named
-    set among the keys stands for its values. Without it each name is the same on both sides."""
+    set among the keys stands for its values. Or the name of a map of the station, read the way round that fits. Without
+    it each name is the same on both sides."""
     otherwise: Given[Annotated[Scalar, GIVEN_VALUE]] = None
     """What all other values become; without it they are unknown."""
 
@@ -76,13 +83,19 @@ class MapDocument(StageDeclaration):
         names = (self.field, self.variable)
         source, target = names if context.is_incoming else reversed(names)
         found = context.field(source)
-        rest = [] if self.otherwise is None else [self.otherwise]
-        meanings = [*(self.values or {}).values(), *rest]
-        target_type = type_for(context, target, meanings)
-        if found is None or target_type is None:
+        if found is None:
             return None
         path, source_type = found
-        values = self._written_out(source, source_type, target_type, context)
+        rest = [] if self.otherwise is None else [self.otherwise]
+        table = self.values
+        if isinstance(table, SourceText):
+            table = table_of_map(table, source, source_type, target, context)
+            if table is None:
+                return None
+        target_type = type_for(context, target, [*(table or {}).values(), *rest])
+        if target_type is None:
+            return None
+        values = self._written_out(table, source, source_type, target_type, context)
         given = values_of(context, source_type, list(values), source.place)
         meant = values_of(context, target_type, [*values.values(), *rest], target.place)
         if not values or given is None or meant is None or _are_twice(list(values), given, context):
@@ -96,11 +109,11 @@ class MapDocument(StageDeclaration):
         return MapStage(context.place, path, source_type, str(target), target_type, pairs, otherwise)
 
     def _written_out(
-        self, source: SourceText, of: FieldType, to: FieldType, context: Context
-    ) -> dict[SourceText, Scalar]:
+        self, table: ValueTable | None, source: SourceText, of: FieldType, to: FieldType, context: Context
+    ) -> ValueTable:
         """The value for each value, where sets and names that are the same stand for several; empty after a finding."""
-        if self.values is not None:
-            return {each: meant for key, meant in self.values.items() for each in meant_by(key, of, context)}
+        if table is not None:
+            return {each: meant for key, meant in table.items() for each in meant_by(key, of, context)}
         names = to if context.is_incoming else of
         if not isinstance(names, EnumerationType):
             context.found(source.place, "without `values` the variable is an enumeration, whose names the message has")
@@ -133,9 +146,45 @@ class MapDocument(StageDeclaration):
 
 def meant_by(text: SourceText, type_: FieldType, context: Context) -> list[SourceText]:
     """The values that a text stands for: itself, or those of the set that it names and that is no value itself."""
-    if written(type_, text) is not None or str(text) not in context.sets:
+    named = context.vocabulary.domains.get(str(text))
+    if named is None or written(type_, text) is not None:
         return [text]
-    return [SourceText(member, text.place, member) for member in context.sets[str(text)]]
+    return [SourceText(member, text.place, member) for member in named.values]
+
+
+def table_of_map(
+    name: SourceText, source: SourceText, of: FieldType, target: SourceText, context: Context
+) -> ValueTable | None:
+    """The table of a map of the station, from the values of `source` to those of `target`: as it is declared, or the
+    other way round where only that fits. None after a finding.
+    """
+    found = context.named(name, context.vocabulary.maps)
+    if found is None:
+        return None
+    to = wanted_type(context, target)
+    pairs = [(as_written(key), found.table[key]) for key in found.source.values if key in found.table]
+    forwards = _fitting(pairs, of, to)
+    backwards = _fitting([(as_written(value), key) for key, value in pairs], of, to)
+    if forwards:
+        return {SourceText(key, name.place, key): meant for key, meant in forwards}
+    if not backwards:
+        sides = f"from {briefly(found.source)} to {briefly(found.target)}"
+        types = f"`{source}` is {briefly(of)}" + (f" and `{target}` {briefly(to)}" if to is not None else "")
+        context.found(name.place, f"`{name}` is {sides}, and {types}: it fits neither way round")
+        return None
+    first: dict[str, object] = {}
+    for value, key in backwards:
+        if (other := first.setdefault(value, key)) is not key:
+            message = f"`{name}` has `{value}` for both `{other}` and `{key}`, so it cannot be read backwards here"
+            context.found(name.place, f"{message}: give each a value of its own")
+            return None
+    return {SourceText(value, name.place, value): key for value, key in backwards}
+
+
+def _fitting(pairs: Iterable[tuple[str, Value]], of: FieldType, to: FieldType | None) -> list[tuple[str, Value]]:
+    """The pairs whose first value the source can have; none where a second one is no value of the target."""
+    known = [(key, meant) for key, meant in pairs if written(of, key) is not None]
+    return known if all(to is None or written(to, meant) is not None for _, meant in known) else []
 
 
 def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
@@ -207,8 +256,9 @@ ANY = "any"
 class TableRowDocument(DocumentPart):
     """One row of a table."""
 
-    when: Annotated[list[Annotated[Scalar, ValueMark(of_given=False, but=ANY)]], Field(min_length=1)]
-    """A value for each of `fields`, or a named set of them; `any` fits everything."""
+    when: NamedRelation | Annotated[list[Annotated[Scalar, ValueMark(of_given=False, but=ANY)]], Field(min_length=1)]
+    """A value for each of `fields`, or a named set of them; `any` fits everything. Or, of two fields, the name of a
+    relation of the station, whose pairs fit."""
     gives: Annotated[list[Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]
     """A value for each of `variables`."""
 
@@ -281,9 +331,13 @@ def _cells(names: Sequence[SourceText]) -> str:
 
 
 def _has_cells(row: TableRowDocument, document: TableDocument, context: Context) -> bool:
-    place = place_of([*row.when, *row.gives], document.fields[0].place)
+    place = place_of(_cells_of(row), document.fields[0].place)
     for key, cells, names in (("when", row.when, document.fields), ("gives", row.gives, document.variables)):
-        if len(cells) != len(names):
+        if isinstance(cells, SourceText):
+            if len(names) != 2:
+                context.found(place, f"the relation `{cells}` is between two fields, and the table has {len(names)}")
+                return False
+        elif len(cells) != len(names):
             context.found(place, f"`{key}` needs {_cells(names)}")
             return False
     return True
@@ -293,8 +347,14 @@ def _rows(
     row: TableRowDocument, sources: Sequence[Passing], gives: Mapping[str, FieldType], context: Context
 ) -> Iterator[Row | None]:
     """The row for each choice of values of the sets in it; None after a finding."""
-    place = place_of([*row.when, *row.gives], context.place)
+    place = place_of(_cells_of(row), context.place)
     meant = _values(row.gives, list(gives.values()), context)
+    if isinstance(row.when, SourceText):
+        pairs = pairs_of_relation(row.when, sources, context)
+        yield from (Row(pair, meant) for pair in pairs if meant is not None)
+        if meant is None or not pairs:
+            yield None
+        return
     columns = [
         meant_by(cell, source.type, context) if isinstance(cell, SourceText) and cell != ANY else [cell]
         for cell, source in zip(row.when, sources, strict=True)
@@ -306,6 +366,29 @@ def _rows(
         ]
         wrong = any(value is None and cell != ANY for value, cell in zip(when, cells, strict=True))
         yield None if wrong or meant is None else Row(tuple(when), meant)
+
+
+def _cells_of(row: TableRowDocument) -> list[object]:
+    return [*([row.when] if isinstance(row.when, SourceText) else row.when), *row.gives]
+
+
+def pairs_of_relation(name: SourceText, sources: Sequence[Passing], context: Context) -> list[tuple[object, object]]:
+    """The pairs of a relation of the station that two fields can have, in order; none after a finding."""
+    relation = context.named(name, context.vocabulary.relations)
+    if relation is None:
+        return []
+    first, second = (source.type for source in sources)
+    pairs = [
+        (written(first, one), written(second, other))
+        for one, other in product(*(type_.values for type_ in relation.types))
+        if (one, other) in relation.pairs
+    ]
+    known = [pair for pair in pairs if None not in pair]
+    if not known:
+        between = " and ".join(map(briefly, relation.types))
+        fields = " and ".join(f"`{source.path}` is {briefly(source.type)}" for source in sources)
+        context.found(name.place, f"`{name}` is between {between}, and {fields}: no pair fits")
+    return known
 
 
 def _values(cells: Sequence[object], types: Sequence[FieldType], context: Context) -> tuple[object, ...] | None:

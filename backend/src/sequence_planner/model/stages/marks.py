@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from types import UnionType
-from typing import Annotated, NamedTuple, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Literal, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
 
@@ -62,6 +62,13 @@ class FormulaMark:
     """Marks a text as an expression over the record; the name that is given at the same place has its value."""
 
 
+@dataclass(frozen=True)
+class TableMark:
+    """Marks a text as the name of a map or a relation of the station, whose table is meant: its `kind`."""
+
+    kind: Literal["map", "relation"]
+
+
 @dataclass(frozen=True, eq=False)  # equal only to itself: a value may be a mapping
 class ExampleValue:
     """Marks a setting with a value to begin with, where a stage is suggested."""
@@ -83,6 +90,10 @@ READ_VALUE, GIVEN_VALUE = ValueMark(of_given=False), ValueMark(of_given=True)
 ReadValue = Annotated[SourceText, READ_VALUE]
 GivenValue = Annotated[SourceText, GIVEN_VALUE]
 
+# Tables of the station, by their names.
+NamedMap = Annotated[SourceText, TableMark("map")]
+NamedRelation = Annotated[SourceText, TableMark("relation")]
+
 
 class Within(Enum):
     """A step into a mapping or a list, whatever is in it."""
@@ -91,7 +102,7 @@ class Within(Enum):
     ENTRIES = "entries"
 
 
-Mark = NameMark | ValueMark | FormulaMark
+Mark = NameMark | ValueMark | FormulaMark | TableMark
 Steps = tuple[str | Within, ...]
 EntryPath = tuple[str | int, ...]
 
@@ -108,7 +119,7 @@ def _marks(annotation: object, steps: Steps) -> Iterator[tuple[Steps, Mark]]:
     """The marks within an annotation, each with the steps to what it marks."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
-        found = (each for each in arguments[1:] if isinstance(each, NameMark | ValueMark | FormulaMark))
+        found = (each for each in arguments[1:] if isinstance(each, Mark))
         yield from ((steps, each) for each in found)
         yield from _marks(arguments[0], steps)
     elif origin in (Union, UnionType):

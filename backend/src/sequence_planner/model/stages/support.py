@@ -62,6 +62,7 @@ class ImmediateStage(ABC):
 # Reading a stage backwards by trying: which values of its fields give what is wanted.
 
 MOST_TRIED = 5000
+MOST_NAMED = 5  # values of an enumeration in a finding
 
 
 def candidates(type_: FieldType, mentioned: Iterable[object]) -> list[object]:
@@ -127,6 +128,17 @@ def solve(
             values |= given
             return
     raise NotInvertibleError(complaint)
+
+
+# Types in findings about tables of the station.
+
+
+def briefly(type_: FieldType) -> str:
+    """A type for people, of which not all of many values are named."""
+    if isinstance(type_, EnumerationType) and len(type_.values) > MOST_NAMED:
+        first = ", ".join(type_.values[: MOST_NAMED - 1])
+        return f"{{{first}, … {type_.values[-1]}}}"
+    return str(type_)
 
 
 # Stages through which the same fields pass, with other values or at other times.

@@ -7,19 +7,28 @@ import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError
 from pydantic.types import StringConstraints
 
 from sequence_planner.language.types import Place
-from sequence_planner.model.documents import EnumerationForm, StationDocument
+from sequence_planner.model.documents import (
+    EnumerationForm,
+    NamedCondition,
+    RelationDocument,
+    SetDocument,
+    StationDocument,
+    ValueMapDocument,
+)
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.files import is_package_name, package_files
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.reader import YamlDocument, read_text
 
+# What a package declares for a station.
+SECTIONS = ("enumerations", "sets", "relations", "maps", "predicates")
 MANIFEST, LOCK, FOLDER = "package.yaml", "packages.lock", "packages"
 VERSION = r"\d+(\.\d+)*"
 _RANGE = rf"(?:==|>=|<=|>|<) *{VERSION}"
@@ -48,6 +57,14 @@ class PackageDocument(DocumentPart):
     """Other packages, each with its versions: `">=1.0, <2"`."""
     enumerations: dict[SourceText, EnumerationForm] = Field(default_factory=dict)
     """Enumerations that a station has with it."""
+    sets: dict[SourceText, SetDocument] = Field(default_factory=dict)
+    """Named sets of values that a station has with it."""
+    relations: dict[SourceText, RelationDocument] = Field(default_factory=dict)
+    """Relations between values that a station has with it."""
+    maps: dict[SourceText, ValueMapDocument] = Field(default_factory=dict)
+    """Maps of values that a station has with it."""
+    predicates: dict[SourceText, NamedCondition] = Field(default_factory=dict)
+    """Conditions with a name that a station has with it."""
 
 
 class LockedPackage(DocumentPart):
@@ -72,7 +89,7 @@ class UsedPackages:
     def __init__(self, folder: Path, station: StationDocument) -> None:
         self._folder = folder
         self.findings: list[Finding] = []
-        self.enumerations: dict[SourceText, EnumerationForm] = {}
+        self.declared: dict[str, dict[SourceText, Any]] = {section: {} for section in SECTIONS}
         self.brought: dict[str, list[str]] = {}  # the enumerations of each package
         self.packages: dict[str, PackageDocument] = {}
         self._files: dict[str, Files] = {}
@@ -81,7 +98,7 @@ class UsedPackages:
             self._add(name, locked)
         for each, package in self.packages.items():
             self._check_needs(each, station)
-            self._add_enumerations(each, package, station)
+            self._add_declared(each, package, station)
         self._require_named(station)
 
     def files_of(self, name: str) -> Iterator[str]:
@@ -137,15 +154,15 @@ class UsedPackages:
             elif (found := self.packages.get(other)) is not None and not satisfies(found.version, wanted):
                 self._note(wanted.place, f"`{name}` needs `{other}` {wanted}, and {found.version} is here: update it")
 
-    def _add_enumerations(self, name: str, package: PackageDocument, station: StationDocument) -> None:
+    def _add_declared(self, name: str, package: PackageDocument, station: StationDocument) -> None:
+        """What a package declares becomes the station's, unless that or another package has something of the name."""
         self.brought[name] = list(map(str, package.enumerations))
-        for enumeration, values in package.enumerations.items():
-            others = [*self.enumerations, *station.enumerations]
-            if (other := next((each for each in others if each == enumeration), None)) is not None:
-                self._note(
-                    enumeration.place, f"duplicate name `{enumeration}`, first declared at {other.place}: rename one"
-                )
-            self.enumerations[enumeration] = values
+        for section, known in self.declared.items():
+            for each, document in getattr(package, section).items():
+                others = [*known, *getattr(station, section)]
+                if (other := next((one for one in others if one == each), None)) is not None:
+                    self._note(each.place, f"duplicate name `{each}`, first declared at {other.place}: rename one")
+                known[each] = document
 
     def _require_named(self, station: StationDocument) -> None:
         for manifest in sorted((self._folder / FOLDER).glob(f"*/{MANIFEST}")):
