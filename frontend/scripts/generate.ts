@@ -49,9 +49,15 @@ const isPredicate = (schema: Schema | undefined): boolean =>
 
 const isScalar = (schema: Schema | undefined): boolean =>
 	schema?.anyOf?.map((each) => each.type).join() === 'string,boolean,integer,number';
+/** A value of a variable. */
+const isValue = (schema: Schema | undefined): boolean =>
+	schema?.anyOf?.map((each) => each.type).join() === 'boolean,integer,string';
 /** A list of numbers, some of which may be missing. */
 const isNumbers = (schema: Schema | undefined): boolean =>
 	schema?.type === 'array' && (schema.items?.type === 'number' || schema.prefixItems !== undefined);
+/** A list of pairs, each side of which is a name or several. */
+const isCouples = (schema: Schema): boolean =>
+	schema.type === 'array' && schema.items?.type === 'array' && schema.items.items?.anyOf?.map((each) => each.type).join() === 'string,array';
 /** What a definition is called that is written in a way of its own. */
 const refersTo = (schema: Schema | undefined, name: string): boolean => schema?.$ref?.endsWith(`/${name}Document`) ?? false;
 
@@ -61,8 +67,9 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	if (refersTo(schema.items, 'TableRow')) return { kind: 'rows' };
 	if (isScalar(schema)) return { kind: 'scalar' };
 	if (schema.type === 'array' && isScalar(schema.items)) return { kind: 'scalars' };
-	if (isScalar(within) || schema.additionalProperties === true) return { kind: 'named' };
+	if (isScalar(within) || isValue(within) || schema.additionalProperties === true) return { kind: 'named' };
 	if (isNumbers(within)) return { kind: 'numbers' };
+	if (isCouples(schema)) return { kind: 'couples' };
 	if (schema.$ref !== undefined) return { kind: 'part', part: partName(schema.$ref) };
 	if (schema.enum !== undefined) return { kind: 'choice', choices: schema.enum };
 	if (isPredicate(schema)) return { kind: 'predicate' };
@@ -79,7 +86,7 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	const choice = ways.find((each) => each.enum !== undefined);
 	if (choice?.enum !== undefined) return { kind: 'choice', choices: choice.enum };
 	if (ways.map((each) => each.type).join() === 'number,array') return { kind: 'interval' };
-	if (ways.map((each) => each.type).join() === 'boolean,integer,string') return { kind: 'value' };
+	if (isValue(schema)) return { kind: 'value' };
 	return { kind: 'yaml' };
 }
 
@@ -121,7 +128,7 @@ function within(names: readonly string[]): Set<string> {
 }
 // Only what a form is made of. What stages name are fields of messages, which may be paths, and their texts.
 const stages = within(['stage']);
-const used = within(['station', 'resource', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
+const used = within(['station', 'enumeration', 'predicate', 'resource', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
 const loosened = (field: FieldShape): FieldShape =>
 	field.kind === 'names' ? { ...field, loose: true } : field.kind === 'lists' ? { ...field, kind: 'words' } : field;
 const kept = Object.fromEntries(

@@ -1,5 +1,7 @@
 /** What the parts of this page share: the tree, what is chosen in it, what was found, and whether it can be edited. */
 import { createContext, tick } from 'svelte';
+import type { Finding } from '#lib/contract.ts';
+import { same, type Path } from './content.ts';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
 import type { Spot } from './language.ts';
@@ -90,6 +92,14 @@ export class Bench {
 		this.sought = null;
 		this.choose(this.entryAt(sight.file, sight.line));
 		void tick().then(() => (this.sight = { ...sight }));
+	}
+
+	/** What was found at the entry at `path` of a file and, with `within`, in it. */
+	problems(file: string, path: Path, within = true): readonly Finding[] {
+		return this.found.flatMap(({ finding, path: at }) => {
+			const isThere = within ? path.every((step, depth) => at[depth] === step) : same(path, at);
+			return finding.file === file && isThere ? [finding] : [];
+		});
 	}
 
 	/** What a part is called where there is no room for more. */

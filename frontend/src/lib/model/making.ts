@@ -29,6 +29,9 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 	const elsewhere: Place[] = [
 		{ kind: 'resource', file: '', path: null, section: 'resources' },
 		{ kind: 'enumeration', file: STATION, path: ['enumerations'], section: 'enumerations' },
+		{ kind: 'set', file: STATION, path: ['sets'], section: 'sets' },
+		{ kind: 'relation', file: STATION, path: ['relations'], section: 'relations' },
+		{ kind: 'map', file: STATION, path: ['maps'], section: 'maps' },
 		{ kind: 'variable', file: STATION, path: ['estimated'], section: 'variables' },
 		{ kind: 'predicate', file: STATION, path: ['predicates'], section: 'station_predicates' },
 		{ kind: 'alarm', file: STATION, path: ['alarms'], section: 'station_alarms' },
@@ -75,8 +78,10 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 			return { ...title, operations: {} };
 		case 'resource':
 			return title;
-		default:
+		case 'enumeration':
 			return given['values'] ?? given;
+		default:
+			return given;
 	}
 }
 

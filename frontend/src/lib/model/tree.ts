@@ -297,12 +297,13 @@ export function parameterOf(node: Node, name: string): string | null {
 	return others.includes(kind) ? `parameter:${kind}:${owner}.${name}` : null;
 }
 
-/** What has no form of fields: it is written as text, or has an editor of its own. */
-const WITHOUT_FORM: readonly string[] = ['section', 'enumeration', 'message', ...SHORT.map(([, , kind]) => kind)];
+/** What has no form of fields: it is written as text. */
+const WITHOUT_FORM: readonly string[] = ['section', 'message'];
 
 /** The shape of a node's document: what its form has. */
 export function shapeOf(node: Node): string | null {
-	return WITHOUT_FORM.includes(node.kind) ? null : node.kind;
+	if (WITHOUT_FORM.includes(node.kind)) return null;
+	return node.kind === 'map' ? 'value_map' : node.kind;
 }
 
 /** A row of the tree as it is seen: how deep it is, and its place among its siblings. */
