@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sequence_planner.editor.language.field import FieldKind
-from sequence_planner.editor.language.hover import Hover, hover
+from sequence_planner.editor.language.hover import Hover
 from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.editor.language.types.places import text_place
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Place
 from sequence_planner.language_server.documents.cursor import read_at
@@ -33,9 +34,9 @@ def explanation(
     cursor = read_at(text, index)
     if cursor is None:
         return None
-    field = snapshot.lexicon.field(file, cursor.path, cursor.parameters)
-    if field is not None and (not cursor.is_name or field.kind is FieldKind.OPERATION):
-        found = hover(snapshot.lexicon, field, str(cursor.text), cursor.offset)
+    place = text_place(snapshot.lexicon, file, cursor.path, cursor.parameters)
+    if place is not None and (not cursor.is_name or place.kind is FieldKind.OPERATION):
+        found = place.hover(str(cursor.text), cursor.offset)
         if found is not None:
             return Explanation(*cursor.span_in_file(found.start, found.end), _told(found), found.place)
     about = schemas.description(file, cursor.path) if cursor.is_name else ""
