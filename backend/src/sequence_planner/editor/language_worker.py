@@ -9,7 +9,7 @@ from sequence_planner.analysis.report import FindingDocument, error_document
 from sequence_planner.editor.language.draft import LanguageDraft
 from sequence_planner.editor.language.schemas import CompletionView
 from sequence_planner.editor.language.service import completion_view, hover_view, problem_view
-from sequence_planner.editor.language.types.places import TextPlace, text_place
+from sequence_planner.editor.language.types.places import AskedPlace, text_place
 from sequence_planner.editor.model_graph import graph, graph_view, station_of
 from sequence_planner.editor.processes import (
     FormatView,
@@ -42,7 +42,7 @@ def answer(draft: LanguageDraft, kind: LanguageQuestionKind, asked: TextAt) -> L
             LanguageQuestionKind.FORMAT: FormatView(text=asked.text),
         }
         return nothing[kind]
-    answers: dict[LanguageQuestionKind, Callable[[TextPlace], LanguageAnswer]] = {
+    answers: dict[LanguageQuestionKind, Callable[[AskedPlace], LanguageAnswer]] = {
         LanguageQuestionKind.CHECK: lambda place: ProblemsView(
             problems=tuple(map(problem_view, place.problems(asked.text)))
         ),

@@ -72,6 +72,13 @@ def resource_shape() -> DocumentShape:
     return _shape_of(ResourceDocument)
 
 
+def _pieces_of(text: SourceText, made: SourceText) -> Iterator[tuple[str, Span]]:
+    for piece in made.pieces if isinstance(made, ExpandedText) else ():
+        written = text[piece.begin : piece.stop]
+        inset = len(written) - len(written.lstrip("{"))
+        yield written.strip("{}"), Span(piece.begin + inset, piece.stop - inset)
+
+
 def _shape_at(path: EntryPath) -> DocumentShape:
     shape = resource_shape()
     for step in path:
@@ -205,6 +212,21 @@ class Expansion:
             step if isinstance(step, int) else str(self._text(_placed(step), _shape_at(path[:depth]).keys))
             for depth, step in enumerate(path)
         )
+
+    def parameters_in(self, text: SourceText, path: EntryPath, *, is_name: bool) -> Iterator[tuple[str, Span]]:
+        """The parameters that stand in a text at an entry of the type, or in its name, each with where."""
+        shape = _shape_at(path[:-1] if is_name else path)
+        if not is_name and shape.is_number and text in self._arguments and self._arguments[text].kind == "number":
+            yield str(text), Span(0, len(text))
+        else:
+            yield from _pieces_of(text, self._text(text, shape.keys if is_name else shape.text))
+
+    def parameters_given(self, text: SourceText) -> Iterator[tuple[str, Span]]:
+        """The same in an argument that is given to another type."""
+        if text in self._arguments:
+            yield str(text), Span(0, len(text))
+        else:
+            yield from _pieces_of(text, self.with_arguments(text))
 
     def with_arguments(self, text: SourceText) -> SourceText:
         """A text that is given to another type."""

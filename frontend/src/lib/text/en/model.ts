@@ -282,6 +282,7 @@ export const model = {
 		},
 		domain: (values: string, isCut: boolean): string => `One of ${values}${isCut ? ' …' : ''}`,
 		nowOf: (name: string, value: string): string => `${name} now: ${value}`,
+		definition: (text: string): string => `Is ${text}`,
 		expansion: (text: string): string => `Stands for ${text}`,
 		type: (type: string): string => `Type: ${type}`,
 		initial: (value: string): string => `First value: ${value}`,

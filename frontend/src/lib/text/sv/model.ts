@@ -273,6 +273,7 @@ export const model: Text['model'] = {
 			map: 'Avbildning',
 			predicate: 'Predikat'
 		},
+		definition: (text) => `Är ${text}`,
 		expansion: (text: string): string => `Står för ${text}`,
 		domain: (values, isCut) => `Ett av ${values}${isCut ? ' …' : ''}`,
 		nowOf: (name, value) => `${name} nu: ${value}`,

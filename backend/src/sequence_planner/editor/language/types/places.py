@@ -17,7 +17,7 @@ from sequence_planner.editor.language.completion import (
     option,
     word_at,
 )
-from sequence_planner.editor.language.field import FieldKind, TextField
+from sequence_planner.editor.language.field import FieldKind, TextField, condition, placed
 from sequence_planner.editor.language.hover import Hover, hover
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.scope import Lexicon
@@ -34,12 +34,12 @@ from sequence_planner.model.yaml.reader import EntryPath
 _MOST_INSTANCES = 10  # for which a text of a type is looked at while it is typed
 
 
-class TextPlace(ABC):
+class AskedPlace(ABC):
     """A place for a text in a document, and what can be asked of a text there."""
 
     @property
     @abstractmethod
-    def kind(self) -> FieldKind:
+    def field_kind(self) -> FieldKind:
         """The kind of text that stands there."""
 
     @abstractmethod
@@ -61,7 +61,7 @@ class TextPlace(ABC):
 
 def text_place(
     lexicon: Lexicon, file: str, path: EntryPath, parameters: Mapping[str, str] | None = None
-) -> TextPlace | None:
+) -> AskedPlace | None:
     """The place for a text at an entry of a file, or None where no names stand.
 
     A text of a type is what it is for each instance. Of a type without instances nothing is known but its form.
@@ -72,6 +72,38 @@ def text_place(
     if field is None and path[:1] == ("arguments",) and len(path) == 2:
         field = _field_of_argument(lexicon, resource_of(file) or "", str(path[1]))
     return None if field is None else _PlainPlace(lexicon, field)
+
+
+def hover_of_part(lexicon: Lexicon, kind: str, full: str) -> Hover | None:
+    """Say what a part of the model is, by its kind and its full name; None where there is nothing more to be said."""
+    text, name = full, full.rpartition(".")[2]
+    match kind:
+        case "variable" | "relation" | "map":
+            field = TextField(FieldKind.CONDITION, condition)
+        case "predicate" if full in lexicon.short:
+            words = [chr(ord("a") + index) for index in range(len(lexicon.short[full].arguments))]
+            parameters = zip(map(placed, words), map(placed, lexicon.short[full].arguments), strict=True)
+            field = TextField(FieldKind.CONDITION, condition, dict(parameters))
+            text = f"{full}({', '.join(words)})" if words else full
+        case "ability":
+            field = TextField(FieldKind.ABILITY, condition)
+        case "operation" | "sequence":
+            field = TextField(FieldKind.OPERATION, condition)
+        case "enumeration" | "set":
+            field = TextField(FieldKind.ENUMERATION, condition)
+        case "value":
+            type_ = lexicon.declarations.enumerations.get(full.rpartition(".")[0])
+            field, text = TextField(FieldKind.INITIAL, condition, type=type_), name
+        case "parameter" if full.startswith("type:"):
+            return _parameter_of_type(lexicon, full.removeprefix("type:").rpartition(".")[0], name)
+        case _:
+            return None
+    return hover(lexicon, field, text, len(full) if text != name else len(text))
+
+
+def _parameter_of_type(lexicon: Lexicon, type_: str, name: str) -> Hover | None:
+    place = _place_in_type(lexicon, type_, ("title",), None, TextField(FieldKind.CONDITION, condition))
+    return None if place is None else place.parameter(Span(0, len(name)), name)
 
 
 def parameters_of(lexicon: Lexicon, file: str) -> Mapping[SourceText, ParameterDocument]:
@@ -85,14 +117,14 @@ def parameters_of(lexicon: Lexicon, file: str) -> Mapping[SourceText, ParameterD
 
 
 @dataclass(frozen=True)
-class _PlainPlace(TextPlace):
+class _PlainPlace(AskedPlace):
     """A place in a document that means what is written in it."""
 
     lexicon: Lexicon
     field: TextField
 
     @property
-    def kind(self) -> FieldKind:
+    def field_kind(self) -> FieldKind:
         return self.field.kind
 
     def problems(self, text: str) -> tuple[TextProblem, ...]:
@@ -154,13 +186,13 @@ class _Instance:
 
 
 @dataclass(frozen=True)
-class _PlaceInType(TextPlace):
+class _PlaceInType(AskedPlace):
     lexicon: Lexicon
     type: str
     instances: tuple[_Instance, ...]
 
     @property
-    def kind(self) -> FieldKind:
+    def field_kind(self) -> FieldKind:
         return self.instances[0].field.kind
 
     def problems(self, text: str) -> tuple[TextProblem, ...]:
@@ -205,7 +237,7 @@ class _PlaceInType(TextPlace):
                 yield option(str(name), NameKind.PARAMETER, parameter.kind if given is None else f"here {given.text}")
 
     def _can_stand(self, parameter: ParameterDocument) -> bool:
-        match self.kind:
+        match self.field_kind:
             case FieldKind.CONDITION | FieldKind.FORMULA | FieldKind.ACTION:
                 return parameter.kind in ("value", "number", "resource")
             case FieldKind.TYPE | FieldKind.ENUMERATION:
@@ -219,7 +251,7 @@ class _PlaceInType(TextPlace):
         if isinstance(made.made, ExpandedText):
             for piece in made.made.pieces:
                 if piece.begin <= offset <= piece.stop:
-                    return self._parameter(Span(piece.begin, piece.stop), text[piece.begin : piece.stop])
+                    return self.parameter(Span(piece.begin, piece.stop), text[piece.begin : piece.stop])
         found = hover(self.lexicon, self.instances[0].field, str(made.made), self._offset(made, offset))
         if found is None:
             return None
@@ -235,7 +267,7 @@ class _PlaceInType(TextPlace):
                 shift = piece.end - piece.stop
         return offset + shift
 
-    def _parameter(self, span: Span, written: str) -> Hover:
+    def parameter(self, span: Span, written: str) -> Hover:
         """A parameter of the type, with what it is for instances."""
         name = written.strip("{}")
         layer = self.instances[0].layer
@@ -264,8 +296,13 @@ def _told(given: GivenArgument) -> str:
 
 
 def _place_in_type(
-    lexicon: Lexicon, name: str, path: EntryPath, parameters: Mapping[str, str] | None
-) -> TextPlace | None:
+    lexicon: Lexicon,
+    name: str,
+    path: EntryPath,
+    parameters: Mapping[str, str] | None,
+    anyway: TextField | None = None,
+) -> _PlaceInType | None:
+    """The place at an entry of a type; `anyway` is the field where there is none."""
     found: list[_Instance] = []
     for resource, layers in lexicon.station.layers.items():
         for layer in layers[1:]:
@@ -275,7 +312,7 @@ def _place_in_type(
                 key: layer.arguments[each].text if each in layer.arguments else each for key, each in parameters.items()
             }
             at = Expansion(resource, layer.arguments).made_path(path)
-            field = lexicon.field(f"resources/{resource}.yaml", at, given)
+            field = lexicon.field(f"resources/{resource}.yaml", at, given) or anyway
             if field is not None:
                 found.append(_Instance(resource, layer, field, path))
     return _PlaceInType(lexicon, name, tuple(found)) if found else None
