@@ -30,7 +30,7 @@ interface Schema {
 const FOLDER = join(import.meta.dirname, '../../docs/schemas');
 const INTERFACE = join(import.meta.dirname, '../openapi.json');
 const LIBRARY = join(import.meta.dirname, '../src/lib');
-const FILES = ['station', 'resource', 'operations', 'specifications', 'work_masters'];
+const FILES = ['station', 'resource', 'instance', 'type', 'operations', 'specifications', 'work_masters'];
 const HEAD = `/** What the documents of a model may hold. Made by \`scripts/generate.ts\` from \`docs/schemas\`: do not edit. */
 import type { PartShape } from './shape.ts';
 
@@ -52,6 +52,9 @@ const isScalar = (schema: Schema | undefined): boolean =>
 /** A value of a variable. */
 const isValue = (schema: Schema | undefined): boolean =>
 	schema?.anyOf?.map((each) => each.type).join() === 'boolean,integer,string';
+/** What a parameter of a type of resources is given. */
+const isArgument = (schema: Schema | undefined): boolean =>
+	schema?.anyOf?.map((each) => each.type).join() === 'string,integer,number';
 /** A list of numbers, some of which may be missing. */
 const isNumbers = (schema: Schema | undefined): boolean =>
 	schema?.type === 'array' && (schema.items?.type === 'number' || schema.prefixItems !== undefined);
@@ -67,7 +70,7 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	if (refersTo(schema.items, 'TableRow')) return { kind: 'rows' };
 	if (isScalar(schema)) return { kind: 'scalar' };
 	if (schema.type === 'array' && isScalar(schema.items)) return { kind: 'scalars' };
-	if (isScalar(within) || isValue(within) || schema.additionalProperties === true) return { kind: 'named' };
+	if (isScalar(within) || isValue(within) || isArgument(within) || schema.additionalProperties === true) return { kind: 'named' };
 	if (isNumbers(within)) return { kind: 'numbers' };
 	if (isCouples(schema)) return { kind: 'couples' };
 	if (schema.$ref !== undefined) return { kind: 'part', part: partName(schema.$ref) };
@@ -128,7 +131,7 @@ function within(names: readonly string[]): Set<string> {
 }
 // Only what a form is made of. What stages name are fields of messages, which may be paths, and their texts.
 const stages = within(['stage']);
-const used = within(['station', 'enumeration', 'predicate', 'resource', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
+const used = within(['station', 'enumeration', 'predicate', 'resource', 'instance', 'type', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
 const loosened = (field: FieldShape): FieldShape =>
 	field.kind === 'names' ? { ...field, loose: true } : field.kind === 'lists' ? { ...field, kind: 'words' } : field;
 const kept = Object.fromEntries(

@@ -6,6 +6,7 @@ import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
 import type { Spot } from './language.ts';
 import { pathAt, placesOf } from './places.ts';
+import { inherited, layersOf } from './types.ts';
 import { lookupOf, nodeAt, STATION, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
@@ -94,6 +95,11 @@ export class Bench {
 		void tick().then(() => (this.sight = { ...sight }));
 	}
 
+	/** What an instance has of its type at `path` of its file; null where that is nothing. */
+	ofType(file: string, path: Path): ReturnType<typeof inherited> {
+		return inherited(layersOf(file, this.draft.contents), path);
+	}
+
 	/** What was found at the entry at `path` of a file and, with `within`, in it. */
 	problems(file: string, path: Path, within = true): readonly Finding[] {
 		return this.found.flatMap(({ finding, path: at }) => {
@@ -105,7 +111,7 @@ export class Bench {
 	/** What a part is called where there is no room for more. */
 	label(node: Node): string {
 		const { name, file, kind, path } = node;
-		const resource = /^resources\/(\w+)\.yaml$/.exec(file)?.[1];
+		const resource = /^(?:packages\/\w+\/)?(?:resources|types)\/(\w+)\.yaml$/.exec(file)?.[1];
 		if (kind === 'effect') return `${resource ?? ''}.${String(path[1])}.${name}`;
 		return resource !== undefined && path.length > 0 ? `${resource}.${name}` : name;
 	}

@@ -2,6 +2,7 @@
 import { entriesOf, isList, textAt, valueAt, type Json } from './content.ts';
 import type { Spot } from './language.ts';
 import { messageOf, resourceOf, STATION } from './tree.ts';
+import { layersOf, typeOf } from './types.ts';
 
 type Contents = Readonly<Record<string, Json | undefined>>;
 
@@ -40,6 +41,10 @@ function setsWithin(contents: Contents, values: readonly string[]): string[] {
 
 /** The names that each have a value in the table at a place, and what is so for all others; null where it is no such table. */
 export function keysFor({ file, path }: Spot, contents: Contents): { names: string[]; otherwise: string } | null {
+	if (path.length === 1 && path[0] === 'arguments') {
+		const [type] = layersOf(file, contents);
+		return type ? { names: namesAt(type.content, 'parameters'), otherwise: '' } : null;
+	}
 	if (file !== STATION || path[0] !== 'maps' || path.at(-1) !== 'values') return null;
 	const map = valueAt(contents[STATION], path.slice(0, -1));
 	return { names: valuesOf(contents, textAt(map, ['from'])), otherwise: String(valueAt(map, ['otherwise']) ?? '') };
@@ -47,7 +52,7 @@ export function keysFor({ file, path }: Spot, contents: Contents): { names: stri
 
 /** The sets that stand for several names of that table. */
 export function groupsFor(spot: Spot, contents: Contents): string[] {
-	return setsWithin(contents, keysFor(spot, contents)?.names ?? []);
+	return spot.file === STATION ? setsWithin(contents, keysFor(spot, contents)?.names ?? []) : [];
 }
 
 /** What could be written in a set, a relation, a map or an enumeration of the station; null for all else. */
@@ -92,7 +97,12 @@ export function suggestionsFor(name: string, { file, path }: Spot, contents: Con
 	const inShort = file === STATION ? inShorthand(name, path, contents) : null;
 	if (inShort !== null) return inShort;
 	switch (name) {
+		case 'arguments':
+			return [...enumerations, ...Object.keys(contents).flatMap((each) => resourceOf(each) ?? [])].toSorted();
+		case 'remove':
+			return [];
 		case 'type': {
+			if (path.length === 1) return files.flatMap((each) => typeOf(each) ?? []).toSorted();
 			const kind = { topics: 'msg', services: 'srv', actions: 'action' }[String(section)];
 			if (kind === undefined) return ['bool', ...enumerations.toSorted()];
 			return files.flatMap((each) => messageOf(each) ?? []).filter((each) => each.split('/')[1] === kind).toSorted();

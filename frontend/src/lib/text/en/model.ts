@@ -30,6 +30,7 @@ export const model = {
 		predicate: 'Predicate',
 		variable: 'Variable',
 		resource: 'Resource',
+		type: 'Type of resources',
 		topic: 'Topic',
 		flow: 'Flow',
 		service: 'Service',
@@ -47,6 +48,7 @@ export const model = {
 		enumerations: 'Enumerations',
 		variables: 'Variables of the station',
 		resources: 'Resources',
+		types: 'Types of resources',
 		topics: 'Topics',
 		flows: 'Flows',
 		services: 'Services',
@@ -71,6 +73,7 @@ export const model = {
 	aboutSection: {
 		enumerations: 'Types with named values, in order.',
 		variables: 'Estimated values of the station as a whole.',
+		types: 'What resources that differ in a few words have in common, with parameters. Each is a file of its own.',
 		resources: 'The devices and people of the station, each in a file of its own.',
 		topics: 'The ROS 2 topics that the resource is reached by.',
 		flows: 'Records of several topics brought together.',
@@ -106,6 +109,8 @@ export const model = {
 		initial: 'First value',
 		for: 'One for each',
 		parameters: 'Parameters',
+		arguments: 'Arguments',
+		remove: 'Without',
 		restart: 'Only for restart',
 		human: 'Done by a person',
 		task: 'What the watch says',
@@ -187,6 +192,15 @@ export const model = {
 		expression: 'Expressions',
 		filter: 'Goes on where',
 		fold: 'Fields that keep their value'
+	},
+	/** What an instance has of the type that it is of. */
+	ofType: {
+		tag: (type: string): string => `of ${type}`,
+		whole: (type: string): string => `From type ${type}. What is written here is of this instance alone.`,
+		from: (type: string): string => `From type ${type}:`,
+		changed: (type: string): string => `Changed here. Type ${type} has:`,
+		reset: 'Reset to the type’s',
+		resetOf: (field: string): string => `Reset ${field} to the type’s`
 	},
 	required: 'needed',
 	otherwise: (value: string): string => `without it: ${value}`,
@@ -312,6 +326,7 @@ export const model = {
 		when: 'Output of type bool by which it is called',
 		status: 'Measured variable for its status',
 		from: 'Topic or flow that it is made from',
+		ofType: 'Of type',
 		between: ['First enumeration or set', 'Second enumeration or set'],
 		pair: ['First pair: a value of the first', 'First pair: a value of the second'],
 		symmetric: 'Each pair holds the other way round, too',
