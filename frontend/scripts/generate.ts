@@ -25,12 +25,15 @@ interface Schema {
 	readonly minimum?: number;
 	readonly exclusiveMinimum?: number;
 	readonly maximum?: number;
+	readonly minItems?: number;
+	readonly maxItems?: number;
 }
 
 const FOLDER = join(import.meta.dirname, '../../docs/schemas');
 const INTERFACE = join(import.meta.dirname, '../openapi.json');
 const LIBRARY = join(import.meta.dirname, '../src/lib');
-const FILES = ['station', 'resource', 'instance', 'type', 'operations', 'specifications', 'work_masters'];
+// What is in a type may be a parameter; where others have a part of the same name, it is theirs that has a form.
+const FILES = ['type', 'instance', 'station', 'resource', 'operations', 'specifications', 'work_masters'];
 const HEAD = `/** What the documents of a model may hold. Made by \`scripts/generate.ts\` from \`docs/schemas\`: do not edit. */
 import type { PartShape } from './shape.ts';
 
@@ -101,6 +104,7 @@ function fieldOf(schema: Schema, required: boolean): FieldShape {
 		help: (schema.description ?? '').replaceAll(/\s+/g, ' '),
 		required,
 		...(isScalar && { otherwise: schema.default as string | number | boolean }),
+		...(schema.maxItems !== undefined && schema.maxItems === schema.minItems && { count: schema.maxItems }),
 		...(schema.type === 'integer' && { whole: true }),
 		...(bound.minimum !== undefined && { least: bound.minimum }),
 		...(bound.exclusiveMinimum !== undefined && { above: bound.exclusiveMinimum }),

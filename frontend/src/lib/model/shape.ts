@@ -42,6 +42,8 @@ export interface FieldShape {
 	readonly otherwise?: string | number | boolean;
 	/** Its names are fields of messages, or texts, which have more signs than names of a model. */
 	readonly loose?: boolean;
+	/** It has exactly so many entries. */
+	readonly count?: number;
 	/** Only whole numbers. */
 	readonly whole?: boolean;
 	readonly least?: number;
