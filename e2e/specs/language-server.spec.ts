@@ -88,6 +88,7 @@ const shown = new Map<string, readonly Diagnostic[]>();
 test.beforeEach(async () => {
 	folder = mkdtempSync(join(tmpdir(), 'language-server-'));
 	cpSync(join(ROOT, 'models/bolt_tightening'), join(folder, 'station'), { recursive: true });
+	cpSync(join(ROOT, 'models/robots_with_buffer'), join(folder, 'robots'), { recursive: true });
 	program = spawn(EXECUTABLE, ['language-server'], { stdio: ['pipe', 'pipe', 'inherit'] });
 	if (program.stdout === null || program.stdin === null) throw new Error('the program has no streams');
 	connection = createProtocolConnection(new StreamMessageReader(program.stdout), new StreamMessageWriter(program.stdin));
@@ -121,8 +122,8 @@ test.afterEach(async () => {
 	rmSync(folder, { recursive: true });
 });
 
-const open = (file: string): Written => {
-	const path = join(folder, 'station', file);
+const open = (file: string, station = 'station'): Written => {
+	const path = join(folder, station, file);
 	return new Written(connection, pathToFileURL(path).href, readFileSync(path, 'utf8'));
 };
 
@@ -157,6 +158,42 @@ test('a wrong name is underlined, in a condition and in a set, and mended by wha
 	await station.type('\n# No sensor', '\nsets:\n  at_pairs: {of: pose, values: [bolt_pair_1, bolt_pair_22]}\n\n# No sensor');
 	const second = await wrong(station, 'bolt_pair_22');
 	expect(station.written(second.range)).toBe('bolt_pair_22');
+});
+
+test('a wrong name is underlined in a set used inside a resource type, and where the type uses it', async () => {
+	const station = open('station.yaml', 'robots');
+	await station.type('\n# No sensor', '\nsets:\n  conveyors: {of: place, except: [between, buffer]}\n\n# No sensor');
+	const type = open('types/robot.yaml', 'robots');
+	await type.type('enabled: at == target and', 'enabled: at == target and not at in conveyors and');
+	await expect.poll(() => shown.get(type.uri)?.length ?? 0, { timeout: 30_000 }).toBe(0);
+
+	await station.type('except: [between, buffer]', 'except: [between, bufer]');
+	const inSet = await wrong(station, 'bufer');
+	expect(station.written(inSet.range)).toBe('bufer');
+	expect(said(inSet)).toContain('did you mean `buffer`?');
+	await station.type('except: [between, bufer]', 'except: [between, buffer]');
+
+	await type.type('not at in conveyors', 'not at in conveyers');
+	const inType = await wrong(type, 'there is no set `conveyers`');
+	expect(type.written(inType.range)).toBe('conveyers');
+	expect(said(inType)).toContain('did you mean `conveyors`?');
+	const actions = await connection.sendRequest(CodeActionRequest.type, {
+		textDocument: { uri: type.uri },
+		range: inType.range,
+		context: { diagnostics: [inType] }
+	});
+	const fix = actions?.find((each): each is CodeAction => 'edit' in each && each.title === 'Write `conveyors`');
+	expect(fix?.edit?.changes?.[type.uri]?.[0]?.newText).toBe('conveyors');
+	await type.type('not at in conveyers', 'not at in conveyors');
+	await expect.poll(() => shown.get(type.uri)?.length ?? 0, { timeout: 30_000 }).toBe(0);
+
+	const options = (await connection.sendRequest(CompletionRequest.type, type.place('not at in conv'))) as CompletionList;
+	expect(options.items.map((each) => each.label)).toContain('conveyors');
+	const hover = await connection.sendRequest(HoverRequest.type, type.place('initial: conveyor'));
+	expect(JSON.stringify(hover?.contents)).toContain('infeed in robot_1, outfeed in robot_2');
+	const edit = await connection.sendRequest(RenameRequest.type, { ...station.place('  conveyors:', 4), newName: 'belts' });
+	const files = Object.keys(edit?.changes ?? {}).map((each) => each.split('/').at(-1));
+	expect(files.toSorted()).toEqual(['robot.yaml', 'station.yaml']);
 });
 
 test('names are completed, explained, found and renamed', async () => {

@@ -25,12 +25,15 @@ interface Schema {
 	readonly minimum?: number;
 	readonly exclusiveMinimum?: number;
 	readonly maximum?: number;
+	readonly minItems?: number;
+	readonly maxItems?: number;
 }
 
 const FOLDER = join(import.meta.dirname, '../../docs/schemas');
 const INTERFACE = join(import.meta.dirname, '../openapi.json');
 const LIBRARY = join(import.meta.dirname, '../src/lib');
-const FILES = ['station', 'resource', 'operations', 'specifications', 'work_masters'];
+// What is in a type may be a parameter; where others have a part of the same name, it is theirs that has a form.
+const FILES = ['type', 'instance', 'station', 'resource', 'operations', 'specifications', 'work_masters'];
 const HEAD = `/** What the documents of a model may hold. Made by \`scripts/generate.ts\` from \`docs/schemas\`: do not edit. */
 import type { PartShape } from './shape.ts';
 
@@ -49,9 +52,18 @@ const isPredicate = (schema: Schema | undefined): boolean =>
 
 const isScalar = (schema: Schema | undefined): boolean =>
 	schema?.anyOf?.map((each) => each.type).join() === 'string,boolean,integer,number';
+/** A value of a variable. */
+const isValue = (schema: Schema | undefined): boolean =>
+	schema?.anyOf?.map((each) => each.type).join() === 'boolean,integer,string';
+/** What a parameter of a type of resources is given. */
+const isArgument = (schema: Schema | undefined): boolean =>
+	schema?.anyOf?.map((each) => each.type).join() === 'string,integer,number';
 /** A list of numbers, some of which may be missing. */
 const isNumbers = (schema: Schema | undefined): boolean =>
 	schema?.type === 'array' && (schema.items?.type === 'number' || schema.prefixItems !== undefined);
+/** A list of pairs, each side of which is a name or several. */
+const isCouples = (schema: Schema): boolean =>
+	schema.type === 'array' && schema.items?.type === 'array' && schema.items.items?.anyOf?.map((each) => each.type).join() === 'string,array';
 /** What a definition is called that is written in a way of its own. */
 const refersTo = (schema: Schema | undefined, name: string): boolean => schema?.$ref?.endsWith(`/${name}Document`) ?? false;
 
@@ -61,8 +73,9 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	if (refersTo(schema.items, 'TableRow')) return { kind: 'rows' };
 	if (isScalar(schema)) return { kind: 'scalar' };
 	if (schema.type === 'array' && isScalar(schema.items)) return { kind: 'scalars' };
-	if (isScalar(within) || schema.additionalProperties === true) return { kind: 'named' };
+	if (isScalar(within) || isValue(within) || isArgument(within) || schema.additionalProperties === true) return { kind: 'named' };
 	if (isNumbers(within)) return { kind: 'numbers' };
+	if (isCouples(schema)) return { kind: 'couples' };
 	if (schema.$ref !== undefined) return { kind: 'part', part: partName(schema.$ref) };
 	if (schema.enum !== undefined) return { kind: 'choice', choices: schema.enum };
 	if (isPredicate(schema)) return { kind: 'predicate' };
@@ -79,7 +92,7 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	const choice = ways.find((each) => each.enum !== undefined);
 	if (choice?.enum !== undefined) return { kind: 'choice', choices: choice.enum };
 	if (ways.map((each) => each.type).join() === 'number,array') return { kind: 'interval' };
-	if (ways.map((each) => each.type).join() === 'boolean,integer,string') return { kind: 'value' };
+	if (isValue(schema)) return { kind: 'value' };
 	return { kind: 'yaml' };
 }
 
@@ -91,6 +104,7 @@ function fieldOf(schema: Schema, required: boolean): FieldShape {
 		help: (schema.description ?? '').replaceAll(/\s+/g, ' '),
 		required,
 		...(isScalar && { otherwise: schema.default as string | number | boolean }),
+		...(schema.maxItems !== undefined && schema.maxItems === schema.minItems && { count: schema.maxItems }),
 		...(schema.type === 'integer' && { whole: true }),
 		...(bound.minimum !== undefined && { least: bound.minimum }),
 		...(bound.exclusiveMinimum !== undefined && { above: bound.exclusiveMinimum }),
@@ -121,7 +135,7 @@ function within(names: readonly string[]): Set<string> {
 }
 // Only what a form is made of. What stages name are fields of messages, which may be paths, and their texts.
 const stages = within(['stage']);
-const used = within(['station', 'resource', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
+const used = within(['station', 'enumeration', 'predicate', 'resource', 'instance', 'type', 'operation', 'sequence', 'specification', 'work_master', 'stage']);
 const loosened = (field: FieldShape): FieldShape =>
 	field.kind === 'names' ? { ...field, loose: true } : field.kind === 'lists' ? { ...field, kind: 'words' } : field;
 const kept = Object.fromEntries(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from editor.models import bolts
 from sequence_planner.editor.checks import simulated
 from sequence_planner.editor.schemas.what_if import WhatIfView
 from sequence_planner.language.types import Value
-from support.places import BOLT_TIGHTENING
+from sequence_planner.model.files import read_files
+from support.places import BOLT_TIGHTENING, MODELS
 
 PLACED: dict[str, Value | None] = {f"bolts[bolt_pair_{number}]": "placed" for number in (1, 2, 3)}
 
@@ -52,3 +54,62 @@ def test_what_cannot_be_used_says_so(tmp_path: Path) -> None:
     found = simulate(tmp_path, bolts(operations=("priority: 1", "priority: one")), {})
     assert (found.seconds, found.runs) == (0.0, [])
     assert "operations.yaml" in str(found.obstacle)
+
+
+def _each_in(folder: Path, *models: dict[str, str]) -> Iterator[tuple[Path, dict[str, str]]]:
+    """Each model with an empty folder of its own."""
+    for number, files in enumerate(models):
+        (folder / str(number)).mkdir()
+        yield folder / str(number), files
+
+
+TYPE = "types/robot.yaml"
+NAMES = """
+sets:
+  at_engine: {of: named_pose, except: [home]}
+relations:
+  adjacent: {between: [named_pose, named_pose], symmetric: true, pairs: [[above_engine, named_pose]]}
+maps:
+  pose_of: {from: bolt_pair, to: pose, values: {bolt_pair_1: bolt_pair_1}, otherwise: bolt_pair_2}
+predicates:
+  all_tight: "all pair in bolt_pair: bolts[pair] == tightened"
+
+# No sensor"""
+
+
+def test_a_draft_with_names_for_what_is_said_more_than_once_goes_on_like_one_without(tmp_path: Path) -> None:
+    tight = " and ".join(f"bolts[bolt_pair_{number}] == tightened" for number in (1, 2, 3))
+    written = "pose != position and (pose == above_engine or position == above_engine)"
+    short = bolts(
+        station=("\n# No sensor", NAMES),
+        operations=(f">-\n    {tight}", "all_tight"),
+        robot=(written, "pose != position and free(position)"),
+    )
+    robot = short["resources/robot.yaml"]
+    assert "\nabilities:" in robot
+    free = "\npredicates:\n  free: {parameters: {to: named_pose}, when: 'adjacent(pose, to)'}\n\nabilities:"
+    short["resources/robot.yaml"] = robot.replace("\nabilities:", free, 1)
+    found, plain = (simulate(folder, files, PLACED) for folder, files in _each_in(tmp_path, short, bolts()))
+    assert found.obstacle is None
+    # Which of the pairs comes first is the planner's choice.
+    assert [_plain(each.ability) for each in found.runs] == [_plain(each.ability) for each in plain.runs]
+    tightened = {each.operation for each in found.completed if each.operation.startswith("tighten")}
+    assert tightened and len(found.completed) == len(plain.completed)
+
+
+def _plain(ability: str) -> str:
+    return ability.partition("(")[0]
+
+
+def test_a_draft_with_instances_of_a_type_goes_on(tmp_path: Path) -> None:
+    robots = MODELS / "robots_with_buffer"
+    files = read_files(robots)
+    slow = {**files, TYPE: files[TYPE].replace("takes: [1, 2]", "takes: [8, 9]")}
+    found, later = (
+        next(iter(simulated(each, robots, {}, 30.0, 60.0, folder))) for folder, each in _each_in(tmp_path, files, slow)
+    )
+    assert found.obstacle is None
+    assert {"robot_1.pick", "robot_1.move_to(buffer)", "robot_2.move_to(buffer)"} <= {
+        each.ability for each in found.runs
+    }
+    assert len(later.completed) < len(found.completed)

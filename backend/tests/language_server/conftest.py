@@ -24,3 +24,11 @@ def station(tmp_path: Path) -> Path:
     folder = tmp_path / "bolt_tightening"
     shutil.copytree(MODELS / "bolt_tightening", folder)
     return folder
+
+
+@pytest.fixture
+def robots(tmp_path: Path) -> Path:
+    """A copy of the station whose two robots are of one type."""
+    folder = tmp_path / "robots_with_buffer"
+    shutil.copytree(MODELS / "robots_with_buffer", folder)
+    return folder

@@ -6,18 +6,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.report import FindingDocument, error_document
-from sequence_planner.editor.language.completion import complete
 from sequence_planner.editor.language.draft import LanguageDraft
-from sequence_planner.editor.language.field import TextField as EditorField
-from sequence_planner.editor.language.hover import hover
 from sequence_planner.editor.language.schemas import CompletionView
-from sequence_planner.editor.language.service import (
-    check,
-    completion_view,
-    formatted,
-    hover_view,
-    problem_view,
-)
+from sequence_planner.editor.language.service import completion_view, hover_view, problem_view
+from sequence_planner.editor.language.types.places import AskedPlace, text_place
 from sequence_planner.editor.model_graph import graph, graph_view, station_of
 from sequence_planner.editor.processes import (
     FormatView,
@@ -40,10 +32,9 @@ LanguageQuestion = tuple[Mapping[str, str | None], str, tuple[object, ...]]
 
 def answer(draft: LanguageDraft, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
     """Return what is answered; what is no text that names stand in has nothing to be said of."""
-    lexicon = draft.lexicon
-    field = lexicon.field(asked.file, tuple(asked.path), asked.parameters)
+    place = text_place(draft.lexicon, asked.file, tuple(asked.path), asked.parameters)
     offset = min(asked.offset, len(asked.text)) if isinstance(asked, PlaceInText) else 0
-    if field is None:
+    if place is None:
         nothing: dict[LanguageQuestionKind, LanguageAnswer] = {
             LanguageQuestionKind.CHECK: ProblemsView(problems=()),
             LanguageQuestionKind.COMPLETION: CompletionView(start=offset, end=offset, options=()),
@@ -51,17 +42,17 @@ def answer(draft: LanguageDraft, kind: LanguageQuestionKind, asked: TextAt) -> L
             LanguageQuestionKind.FORMAT: FormatView(text=asked.text),
         }
         return nothing[kind]
-    answers: dict[LanguageQuestionKind, Callable[[EditorField], LanguageAnswer]] = {
-        LanguageQuestionKind.CHECK: lambda field: ProblemsView(
-            problems=tuple(map(problem_view, check(lexicon, field, asked.text)))
+    answers: dict[LanguageQuestionKind, Callable[[AskedPlace], LanguageAnswer]] = {
+        LanguageQuestionKind.CHECK: lambda place: ProblemsView(
+            problems=tuple(map(problem_view, place.problems(asked.text)))
         ),
-        LanguageQuestionKind.COMPLETION: lambda field: completion_view(complete(lexicon, field, asked.text, offset)),
-        LanguageQuestionKind.HOVER: lambda field: HoverAnswer(
-            hover=None if (found := hover(lexicon, field, asked.text, offset)) is None else hover_view(found)
+        LanguageQuestionKind.COMPLETION: lambda place: completion_view(place.completion(asked.text, offset)),
+        LanguageQuestionKind.HOVER: lambda place: HoverAnswer(
+            hover=None if (found := place.hover(asked.text, offset)) is None else hover_view(found)
         ),
-        LanguageQuestionKind.FORMAT: lambda field: FormatView(text=formatted(field, asked.text)),
+        LanguageQuestionKind.FORMAT: lambda place: FormatView(text=place.formatted(asked.text)),
     }
-    return answers[kind](field)
+    return answers[kind](place)
 
 
 def errors(draft: LanguageDraft) -> list[FindingDocument]:

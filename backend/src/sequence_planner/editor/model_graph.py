@@ -28,7 +28,8 @@ from sequence_planner.editor.symbols.texts import (
     message_of,
     text_at,
 )
-from sequence_planner.model.paths import resource_of, shown_path
+from sequence_planner.editor.symbols.types import type_part
+from sequence_planner.model.paths import resource_of, shown_path, type_of
 from sequence_planner.model.source import Finding
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE
@@ -140,8 +141,10 @@ def user(where: Where) -> ModelPart | None:
         return ModelPart(kind, None, str(path[0]))
     if (message := message_of(file)) is not None:
         return ModelPart("message", None, message)
+    if (type_ := type_of(file)) is not None:
+        return type_part(type_)
     resource = resource_of(file)
-    if len(path) < 2:
+    if len(path) < 2 or path[0] == "arguments":
         return None if resource is None else ModelPart("resource", None, resource)
     section, name = str(path[0]), str(path[1])
     if resource is None:

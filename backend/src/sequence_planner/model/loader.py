@@ -6,7 +6,7 @@ messages/<package>/msg/*.msg  messages/<package>/srv/*.srv  messages/<package>/a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -32,7 +32,7 @@ from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_tex
 
 if TYPE_CHECKING:
     from sequence_planner.model.types.instances import InstancesBefore
-    from sequence_planner.model.types.layers import WrittenInstance
+    from sequence_planner.model.types.layers import Layer, WrittenInstance
 
 D = TypeVar("D", bound=BaseModel)
 
@@ -40,7 +40,8 @@ D = TypeVar("D", bound=BaseModel)
 @dataclass(frozen=True)
 class Station:
     """A station as written. `messages` is the folder of its message definitions; `empty` are the places of files of
-    entries that are there and have none. `sequences` stand among the operations.
+    entries that are there and have none. `sequences` stand among the operations. `layers` are
+    each instance and its types.
     """
 
     folder: Path
@@ -51,6 +52,7 @@ class Station:
     work_masters: dict[SourceText, WorkMasterDocument]
     empty: tuple[Place, ...] = ()
     sequences: dict[SourceText, SequenceDocument] = field(default_factory=dict)
+    layers: Mapping[str, Sequence[Layer]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def messages(self) -> Path:
@@ -114,7 +116,9 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     if reader.findings or station is None:
         raise ModelError(reader.findings)
     empty = tuple(reader.empty)
-    return Station(folder, station, resources, operations, specifications, work_masters, empty, sequences)
+    return Station(
+        folder, station, resources, operations, specifications, work_masters, empty, sequences, reader.layers
+    )
 
 
 def _is_file(path: Path) -> bool:
@@ -161,6 +165,7 @@ class _FolderReader:
         self._brought: dict[str, list[str]] = {}
         self.findings: list[Finding] = []
         self.empty: list[Place] = []
+        self.layers: Mapping[str, Sequence[Layer]] = {}
 
     def whole(self, name: str, kind: type[D]) -> D | None:
         """A file that is one document."""
@@ -227,6 +232,7 @@ class _FolderReader:
             for name, each in found.items()
         }
         self.findings.extend(instances.findings)
+        self.layers = instances.layers
         return made
 
     def entries(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from sequence_planner.editor.symbols.index import parse_part
@@ -11,6 +13,8 @@ from sequence_planner.model.loader import load_station
 from sequence_planner.model.paths import EditError
 from sequence_planner.pipelines.builder import load_messages
 from support.places import MODELS
+
+from .stations import write
 
 ROBOTS = MODELS / "robots_with_buffer"
 FILES = read_files(ROBOTS)
@@ -44,3 +48,54 @@ def test_usages_are_where_they_are_written() -> None:
     for each in found:
         line = FILES[each.file].split("\n")[each.line - 1]
         assert line[each.column - 1 :].startswith("target"), each
+
+
+@pytest.mark.parametrize(("name", "new"), [("stops", "goals"), ("conveyor", "belt"), ("namespace", "prefix")])
+def test_a_parameter_is_renamed_in_the_type_and_in_the_arguments(name: str, new: str, tmp_path: Path) -> None:
+    changed = renamed(FILES, parse_part(f"parameter:type:robot.{name}"), new, MESSAGES)
+    assert changed.keys() == {TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml"}
+    write({file: text for file, text in {**FILES, **changed}.items() if text is not None}, tmp_path)
+    assert load_station(tmp_path).resources == load_station(ROBOTS).resources
+    back = renamed({**FILES, **changed}, parse_part(f"parameter:type:robot.{new}"), name, MESSAGES)
+    assert back == {file: FILES[file] for file in changed}
+
+
+def test_a_type_takes_its_file_along(tmp_path: Path) -> None:
+    changed = renamed(FILES, parse_part("type:robot"), "arm", MESSAGES)
+    assert changed[TYPE] is None
+    assert changed["types/arm.yaml"] == FILES[TYPE]
+    write({file: text for file, text in {**FILES, **changed}.items() if text is not None}, tmp_path)
+    assert load_station(tmp_path).resources == load_station(ROBOTS).resources
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "why"),
+    [
+        ("parameter:type:robot.stops", "conveyor", "is there already"),
+        ("parameter:type:robot.conveyor", "at", "would hide the variable"),
+        ("parameter:type:robot.conveyor", "buffer", "would hide the value"),
+        ("parameter:type:robot.conveyor", "parts_on_buffer", "would hide the variable"),
+        ("variable:robot_1.at", "conveyor", "would hide the variable"),
+        ("parameter:type:robot.conveyor", "executing", "is a flag"),
+    ],
+)
+def test_a_name_that_would_be_taken_for_something_else_is_refused(part: str, name: str, why: str) -> None:
+    with pytest.raises(EditError, match=why):
+        renamed(FILES, parse_part(part), name, MESSAGES)
+
+
+def test_a_type_of_a_package_keeps_its_name() -> None:
+    packaged = {
+        **{file: text for file, text in FILES.items() if file != TYPE},
+        "packages/arms/types/robot.yaml": FILES[TYPE],
+    }
+    for file in ("resources/robot_1.yaml", "resources/robot_2.yaml"):
+        packaged[file] = packaged[file].replace("type: robot", "type: arms.robot")
+    found = usages(packaged, parse_part("type:arms.robot"), MESSAGES)
+    assert [(each.file, each.written) for each in found.found][:2] == [
+        ("packages/arms/types/robot.yaml", "robot"),
+        ("resources/robot_1.yaml", "robot"),
+    ]
+    for part in ("type:arms.robot", "parameter:type:arms.robot.stops"):
+        with pytest.raises(EditError, match="belongs to the package `arms`"):
+            renamed(packaged, parse_part(part), "other", MESSAGES)

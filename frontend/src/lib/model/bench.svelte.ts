@@ -1,9 +1,12 @@
 /** What the parts of this page share: the tree, what is chosen in it, what was found, and whether it can be edited. */
 import { createContext, tick } from 'svelte';
+import type { Finding } from '#lib/contract.ts';
+import { same, type Path } from './content.ts';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
 import type { Spot } from './language.ts';
 import { pathAt, placesOf } from './places.ts';
+import { inherited, layersOf } from './types.ts';
 import { lookupOf, nodeAt, STATION, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
@@ -92,10 +95,23 @@ export class Bench {
 		void tick().then(() => (this.sight = { ...sight }));
 	}
 
+	/** What an instance has of its type at `path` of its file; null where that is nothing. */
+	ofType(file: string, path: Path): ReturnType<typeof inherited> {
+		return inherited(layersOf(file, this.draft.contents), path);
+	}
+
+	/** What was found at the entry at `path` of a file and, with `within`, in it. */
+	problems(file: string, path: Path, within = true): readonly Finding[] {
+		return this.found.flatMap(({ finding, path: at }) => {
+			const isThere = within ? path.every((step, depth) => at[depth] === step) : same(path, at);
+			return finding.file === file && isThere ? [finding] : [];
+		});
+	}
+
 	/** What a part is called where there is no room for more. */
 	label(node: Node): string {
 		const { name, file, kind, path } = node;
-		const resource = /^resources\/(\w+)\.yaml$/.exec(file)?.[1];
+		const resource = /^(?:packages\/\w+\/)?(?:resources|types)\/(\w+)\.yaml$/.exec(file)?.[1];
 		if (kind === 'effect') return `${resource ?? ''}.${String(path[1])}.${name}`;
 		return resource !== undefined && path.length > 0 ? `${resource}.${name}` : name;
 	}

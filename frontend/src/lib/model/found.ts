@@ -1,5 +1,6 @@
 /** Which entries the findings of a check are about. */
 import type { Finding } from '#lib/contract.ts';
+import type { Path } from './content.ts';
 import { pathAt, placesOf, type Placed } from './places.ts';
 import { around, nodeAt, type Lookup, type Node } from './tree.ts';
 
@@ -7,6 +8,8 @@ import { around, nodeAt, type Lookup, type Node } from './tree.ts';
 export interface Found {
 	readonly finding: Finding;
 	readonly node: Node | null;
+	/** The entry at whose place it is. */
+	readonly path: Path;
 }
 
 export interface Count {
@@ -22,7 +25,8 @@ export function foundIn(
 ): Found[] {
 	return findings.map((finding) => {
 		const { file, line } = finding;
-		return { finding, node: nodeAt(lookup, file, pathAt(placesIn(files[file]), line)) };
+		const path = pathAt(placesIn(files[file]), line);
+		return { finding, node: nodeAt(lookup, file, path), path };
 	});
 }
 

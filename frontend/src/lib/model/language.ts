@@ -45,7 +45,9 @@ export interface Hover extends Span {
 	readonly domain: readonly Value[];
 	readonly initial: Value | null;
 	readonly title: string | null;
-	/** What it stands for, where it is written for short. */
+	/** The condition that it was given, where it is written for short. */
+	readonly definition: string | null;
+	/** What it stands for in the end. */
 	readonly expansion: string | null;
 	/** The id by which it is looked for in the model; null for a parameter. */
 	readonly part: string | null;

@@ -1,7 +1,8 @@
 /** What is made, copied, moved and taken away: each as the edits that do it. */
 import type { Edit } from '#lib/contract.ts';
-import { isMapping, same, valueAt, type Json, type Path } from './content.ts';
+import { isList, isMapping, same, shownPath, valueAt, type Json, type Path } from './content.ts';
 import { SPECIFICATIONS } from './specification.ts';
+import { typeFile } from './types.ts';
 import { IN_RESOURCE, messageFile, STATION, type EntryKind, type InResource, type Node } from './tree.ts';
 
 /** Where something can be made: below which path of which file, and what. */
@@ -16,7 +17,8 @@ export interface Place {
 
 /** Where something can be made at a node, what is nearest first. */
 export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
-	const resource = node?.kind === 'resource' ? node : around.find((each) => each.kind === 'resource');
+	const isWhole = (each: Node): boolean => each.kind === 'resource' || each.kind === 'type';
+	const resource = node && isWhole(node) ? node : around.find(isWhole);
 	const ability = node?.kind === 'ability' ? node : around.find((each) => each.kind === 'ability');
 	const inAbility: Place[] = ability
 		? [{ kind: 'effect', file: ability.file, path: [...ability.path, 'effects'], section: 'effects' }]
@@ -28,7 +30,11 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 		: [];
 	const elsewhere: Place[] = [
 		{ kind: 'resource', file: '', path: null, section: 'resources' },
+		{ kind: 'type', file: '', path: null, section: 'types' },
 		{ kind: 'enumeration', file: STATION, path: ['enumerations'], section: 'enumerations' },
+		{ kind: 'set', file: STATION, path: ['sets'], section: 'sets' },
+		{ kind: 'relation', file: STATION, path: ['relations'], section: 'relations' },
+		{ kind: 'map', file: STATION, path: ['maps'], section: 'maps' },
 		{ kind: 'variable', file: STATION, path: ['estimated'], section: 'variables' },
 		{ kind: 'predicate', file: STATION, path: ['predicates'], section: 'station_predicates' },
 		{ kind: 'alarm', file: STATION, path: ['alarms'], section: 'station_alarms' },
@@ -74,11 +80,18 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 		case 'work_master':
 			return { ...title, operations: {} };
 		case 'resource':
-			return title;
-		default:
+		case 'type':
+			return { ...given, ...title };
+		case 'enumeration':
 			return given['values'] ?? given;
+		default:
+			return given;
 	}
 }
+
+/** The file of a resource, or of a type of some. */
+const ownFile = (kind: 'resource' | EntryKind, name: string): string =>
+	kind === 'type' ? typeFile(name) : `resources/${name}.yaml`;
 
 /** Edits that make it. */
 export function made(place: Place, name: string, given: Readonly<Record<string, Json>>): Edit[] {
@@ -86,7 +99,7 @@ export function made(place: Place, name: string, given: Readonly<Record<string, 
 	if (place.kind === 'message') return [{ kind: 'text', file: messageFile(name), was: null, text: '' }];
 	if (place.path === null)
 		return Object.entries(isMapping(value) ? value : {}).map(([key, inner]) => {
-			return { kind: 'add', file: `resources/${name}.yaml`, path: [key], value: inner };
+			return { kind: 'add', file: ownFile(place.kind, name), path: [key], value: inner };
 		});
 	return [{ kind: 'add', file: place.file, path: [...place.path, name], value }];
 }
@@ -94,13 +107,13 @@ export function made(place: Place, name: string, given: Readonly<Record<string, 
 /** Where it would be found that was made there. */
 export function madeAt(place: Place, name: string): { file: string; path: Path } {
 	if (place.kind === 'message') return { file: messageFile(name), path: [] };
-	if (place.path === null) return { file: `resources/${name}.yaml`, path: [] };
+	if (place.path === null) return { file: ownFile(place.kind, name), path: [] };
 	return { file: place.file, path: [...place.path, name] };
 }
 
 /** Edits that make another one like it, called `name`. */
 export function copied(node: Node, name: string, content: Json | undefined, text: string): Edit[] {
-	if (node.kind === 'resource') return [{ kind: 'text', file: `resources/${name}.yaml`, was: null, text }];
+	if (node.kind === 'resource' || node.kind === 'type') return [{ kind: 'text', file: ownFile(node.kind, name), was: null, text }];
 	if (node.kind === 'message') return [{ kind: 'text', file: messageFile(name), was: null, text }];
 	const value = valueAt(content, node.path) ?? null;
 	return [{ kind: 'add', file: node.file, path: [...node.path.slice(0, -1), name], value, after: node.name }];
@@ -108,7 +121,7 @@ export function copied(node: Node, name: string, content: Json | undefined, text
 
 /** Where a copy would be found. */
 export function copiedAt(node: Node, name: string): { file: string; path: Path } {
-	if (node.kind === 'resource') return { file: `resources/${name}.yaml`, path: [] };
+	if (node.kind === 'resource' || node.kind === 'type') return { file: ownFile(node.kind, name), path: [] };
 	if (node.kind === 'message') return { file: messageFile(name), path: [] };
 	return { file: node.file, path: [...node.path.slice(0, -1), name] };
 }
@@ -116,7 +129,12 @@ export function copiedAt(node: Node, name: string): { file: string; path: Path }
 /** Edits that take it out; with the last of its kind its section goes too. */
 export function removed(node: Node, content: Json | undefined, text: string): Edit[] {
 	if (node.path.length === 0) return [{ kind: 'text', file: node.file, was: text, text: null }];
-	return taken(node.file, content, node.path, 0);
+	if (node.of === undefined) return taken(node.file, content, node.path, 0);
+	// It is the type's: the instance says that it has none.
+	const list = valueAt(content, ['remove']);
+	const path = shownPath(node.path);
+	if (isList(list)) return [{ kind: 'set', file: node.file, path: ['remove'], was: list, value: [...list, path] }];
+	return [{ kind: 'add', file: node.file, path: ['remove'], value: [path] }];
 }
 
 /** Edits that take the entry at `path` out, and what has nothing in it then, as far as it is deeper than `keep` steps. */
@@ -135,7 +153,7 @@ export function taken(file: string, content: Json | undefined, path: Path, keep:
 export function moved(node: Node, siblings: readonly Node[], content: Json | undefined, by: 1 | -1): Edit[] {
 	const at = siblings.findIndex((each) => each.id === node.id);
 	const beside = siblings[at + by];
-	if (at < 0 || beside === undefined || node.path.length === 0) return [];
+	if (at < 0 || beside === undefined || node.path.length === 0 || node.of !== undefined || beside.of !== undefined) return [];
 	const step = String(beside.path.at(-1));
 	const was = valueAt(content, node.path) ?? null;
 	return [{ kind: 'move', file: node.file, path: [...node.path], was, ...(by < 0 ? { before: step } : { after: step }) }];

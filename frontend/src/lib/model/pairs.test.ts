@@ -6,6 +6,10 @@ const number = fc.double({ noNaN: true, noDefaultInfinity: true }).map((each) =>
 const word = fc.string().filter((each) => !each.includes("'") && each === each.trim() && each !== '');
 const scalar = fc.oneof(fc.boolean(), number, word);
 const name = word;
+/** A name of a model, or several. */
+const member = fc
+	.array(fc.stringMatching(/^[A-Za-z_]\w*$/), { minLength: 1 })
+	.map((names) => (names.length === 1 ? names[0] : names));
 
 describe('what is written is read as it was', () => {
 	test('scalars', () => {
@@ -22,7 +26,8 @@ describe('what is written is read as it was', () => {
 			'bounds',
 			fc.dictionary(name, fc.oneof(fc.record({ between: fc.tuple(number, number) }), fc.record({ in: fc.array(fc.boolean(), { minLength: 1 }) })))
 		],
-		['rows', fc.array(fc.record({ when: fc.array(scalar, { minLength: 1 }), gives: fc.array(scalar, { minLength: 1 }) }))]
+		['rows', fc.array(fc.record({ when: fc.array(scalar, { minLength: 1 }), gives: fc.array(scalar, { minLength: 1 }) }))],
+		['couples', fc.array(fc.tuple(member, member))]
 	] as const)('%s', (kind, values) => {
 		fc.assert(
 			fc.property(values as fc.Arbitrary<never>, (value) => {

@@ -7,10 +7,10 @@ import { isList, isMapping, type Json } from './content.ts';
 import type { FieldKind } from './shape.ts';
 
 export type Pair = readonly [string, string];
-type PairKind = 'named' | 'numbers' | 'words' | 'bounds' | 'rows';
+type PairKind = 'named' | 'numbers' | 'words' | 'bounds' | 'rows' | 'couples';
 
 const NUMBER = /^[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$/;
-const KINDS: ReadonlySet<FieldKind> = new Set<PairKind>(['named', 'numbers', 'words', 'bounds', 'rows']);
+const KINDS: ReadonlySet<FieldKind> = new Set<PairKind>(['named', 'numbers', 'words', 'bounds', 'rows', 'couples']);
 
 /** Whether it is written as rows of two texts each. */
 export function isPairs(kind: FieldKind): kind is PairKind {
@@ -67,12 +67,24 @@ function boundsRead(written: string): Json {
 	return NUMBER.test(least) && NUMBER.test(most) ? { between: [Number(least), Number(most)] } : { in: listRead(written) };
 }
 
+/** A name, or several with commas between. */
+const memberShown = (value: Json | undefined): string => listShown(isList(value) ? value : [value ?? '']);
+
+function memberRead(written: string): Json {
+	const found = listRead(written).map(String);
+	return found.length === 1 ? (found[0] ?? '') : found;
+}
+
 /** What can be written so that nothing of it is lost. */
 export function pairsFit(kind: PairKind, value: Json): boolean {
 	const scalars = (list: Json | undefined): boolean =>
 		isList(list) && list.every((each) => isScalar(each) && !(typeof each === 'string' && each.includes("'")));
 	if (kind === 'rows')
 		return isList(value) && value.every((row) => isMapping(row) && scalars(row['when']) && scalars(row['gives']));
+	if (kind === 'couples') {
+		const isMember = (side: Json | undefined): boolean => (isList(side) ? scalars(side) : scalars([side ?? null]));
+		return isList(value) && value.every((pair) => isList(pair) && pair.length === 2 && pair.every(isMember));
+	}
 	if (!isMapping(value)) return false;
 	return Object.values(value).every((each) => {
 		switch (kind) {
@@ -94,6 +106,10 @@ export function pairsShown(kind: PairKind, value: Json | undefined): Pair[] {
 			const { when, gives } = isMapping(row) ? row : { when: [], gives: [] };
 			return [listShown(isList(when) ? when : []), listShown(isList(gives) ? gives : [])];
 		});
+	if (kind === 'couples')
+		return (isList(value) ? value : []).map((pair) =>
+			isList(pair) ? [memberShown(pair[0]), memberShown(pair[1])] : ['', '']
+		);
 	return Object.entries(isMapping(value) ? value : {}).map(([name, each]): Pair => {
 		if (kind === 'named') return [name, scalarShown(each)];
 		return [name, kind === 'bounds' ? boundsShown(each) : listShown(isList(each) ? each : [])];
@@ -102,6 +118,7 @@ export function pairsShown(kind: PairKind, value: Json | undefined): Pair[] {
 
 export function pairsRead(kind: PairKind, pairs: readonly Pair[]): Json {
 	if (kind === 'rows') return pairs.map(([when, gives]) => ({ when: listRead(when), gives: listRead(gives) }));
+	if (kind === 'couples') return pairs.map(([one, other]) => [memberRead(one), memberRead(other)]);
 	return Object.fromEntries(
 		pairs.map(([name, each]): [string, Json] => {
 			switch (kind) {
@@ -122,6 +139,6 @@ export function pairsRead(kind: PairKind, pairs: readonly Pair[]): Json {
 export function pairsBad(kind: PairKind, pairs: readonly Pair[]): 'pair' | 'number' | 'twice' | null {
 	if (pairs.some(([name, each]) => !name.trim() || !each.trim())) return 'pair';
 	if (kind === 'numbers' && pairs.some(([, each]) => numbersRead(each).some((item) => Number.isNaN(item)))) return 'number';
-	if (kind === 'rows') return null;
+	if (kind === 'rows' || kind === 'couples') return null;
 	return new Set(pairs.map(([name]) => name.trim())).size < pairs.length ? 'twice' : null;
 }

@@ -3,7 +3,7 @@
 /**
  * How a field is written. `part` is one part below its name, `parts` are any number, each below a name of its own. Behind
  * the names of `named` is a scalar each, of `numbers` and `words` a list, of `bounds` what a person may set; `rows` are
- * those of a table.
+ * those of a table, and `couples` those of a relation: a name, or several, on each side.
  */
 export type FieldKind =
 	| 'text'
@@ -19,6 +19,7 @@ export type FieldKind =
 	| 'words'
 	| 'bounds'
 	| 'rows'
+	| 'couples'
 	| 'names'
 	| 'texts'
 	| 'lists'
@@ -41,6 +42,8 @@ export interface FieldShape {
 	readonly otherwise?: string | number | boolean;
 	/** Its names are fields of messages, or texts, which have more signs than names of a model. */
 	readonly loose?: boolean;
+	/** It has exactly so many entries. */
+	readonly count?: number;
 	/** Only whole numbers. */
 	readonly whole?: boolean;
 	readonly least?: number;

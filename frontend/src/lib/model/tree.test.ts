@@ -1,8 +1,9 @@
 import { describe, expect, test } from 'vitest';
+import { PARTS } from './documents.ts';
 import { made, placesAt, type Place } from './making.ts';
 import { pathAt, placesOf } from './places.ts';
-import { suggestionsFor } from './suggesting.ts';
-import { around, idOf, lookupOf, nodeAt, nodesOf, parameterOf, partOf, rowsOf, treeOf } from './tree.ts';
+import { groupsFor, keysFor, suggestionsFor } from './suggesting.ts';
+import { around, idOf, lookupOf, nodeAt, nodesOf, parameterOf, partOf, rowsOf, shapeOf, treeOf } from './tree.ts';
 
 const FILES = {
 	'station.yaml': { digest: '1' },
@@ -164,6 +165,43 @@ describe('what a station says for short', () => {
 		expect(made(places[1] as Place, 'all_done', {})).toEqual([
 			{ kind: 'add', file: 'station.yaml', path: ['predicates', 'all_done'], value: { title: 'All done', when: false } }
 		]);
+	});
+
+	test('is made as it is asked for, and has a form', () => {
+		const at = (kind: string): Place => placesAt(null, []).find((place) => place.kind === kind) as Place;
+		const relation = { between: ['spot', 'spot'], pairs: [['home', 'out']] };
+		expect(made(at('set'), 'far', { of: 'spot', values: ['out'] })).toEqual([
+			{ kind: 'add', file: 'station.yaml', path: ['sets', 'far'], value: { of: 'spot', values: ['out'] } }
+		]);
+		expect(made(at('relation'), 'beside', relation)).toEqual([
+			{ kind: 'add', file: 'station.yaml', path: ['relations', 'beside'], value: relation }
+		]);
+		expect(made(at('map'), 'tool', { from: 'spot', to: 'bool', values: {} })).toMatchObject([{ path: ['maps', 'tool'] }]);
+		for (const node of nodesOf(tree)) {
+			const shape = shapeOf(node);
+			expect([node.kind, shape !== null && Object.hasOwn(PARTS, shape)]).toEqual([node.kind, node.kind !== 'section']);
+		}
+	});
+
+	test('what is written in it is suggested: values, sets of them, and other names', () => {
+		const suggested = (...path: string[]): string[] =>
+			suggestionsFor(path.at(-1) ?? '', { file: 'station.yaml', path }, contents, Object.keys(files));
+		expect(suggested('sets', 'free', 'of')).toEqual(['pose', 'spot']);
+		expect(suggested('sets', 'free', 'values')).toEqual(['home', 'out']);
+		expect(suggested('relations', 'near', 'between')).toEqual(['free', 'pose', 'spot']);
+		expect(suggested('relations', 'near', 'pairs')).toEqual(['home', 'out', 'free']);
+		expect(suggested('maps', 'place_of', 'to')).toEqual(['bool', 'free', 'pose', 'spot']);
+		expect(suggested('enumerations', 'spot', 'includes')).toEqual(['pose']);
+		const rest = { ...station, sets: { free: { of: 'pose', except: ['out'] }, all: { of: 'pose', values: ['free', 'out'] } } };
+		const others = { ...contents, 'station.yaml': rest };
+		const spot = { file: 'station.yaml', path: ['maps', 'm', 'values'] };
+		expect(suggestionsFor('initial', { file: 'x', path: ['initial'] }, { ...others, x: { type: 'all' } }, [])).toEqual(
+			['nowhere', 'home', 'out']
+		);
+		const mapped = { ...others, 'station.yaml': { ...rest, maps: { m: { from: 'free', to: 'bool', otherwise: false } } } };
+		expect(keysFor(spot, mapped)).toEqual({ names: ['nowhere', 'home'], otherwise: 'false' });
+		expect(groupsFor(spot, mapped)).toEqual(['free']);
+		expect(keysFor({ file: 'resources/robot.yaml', path: spot.path }, mapped)).toBeNull();
 	});
 
 	test('its names and the values of enumerations that are included are suggested', () => {

@@ -1,12 +1,14 @@
 /** The parts of a model as a tree: made from what its files hold. */
 import type { FileMark } from '#lib/contract.ts';
 import { entriesOf, isMapping, textAt, valueAt, type Json, type Path } from './content.ts';
+import { inherited, layersOf, namesIn, removedFrom, typeOf, type Layer } from './types.ts';
 
 /** What a person can make, name and delete. */
 export type EntryKind =
 	| 'enumeration'
 	| 'variable'
 	| 'resource'
+	| 'type'
 	| 'topic'
 	| 'flow'
 	| 'service'
@@ -29,6 +31,7 @@ export type SectionName =
 	| 'enumerations'
 	| 'variables'
 	| 'resources'
+	| 'types'
 	| 'topics'
 	| 'flows'
 	| 'services'
@@ -60,6 +63,10 @@ export interface Node {
 	readonly file: string;
 	readonly path: Path;
 	readonly children: readonly Node[];
+	/** The type of which an instance has it, and says nothing of it itself. */
+	readonly of?: string;
+	/** The resource by which it is named: for what is in a type, an instance of that; null where there is none. */
+	readonly owner?: string | null;
 }
 
 export const STATION = 'station.yaml';
@@ -112,31 +119,51 @@ function section(name: SectionName, file: string, path: Path, children: readonly
 	return { id, kind: 'section', name, title: null, file, path, children };
 }
 
-function entriesIn(kind: EntryKind, file: string, path: Path, content: Json | undefined): Node[] {
-	return entriesOf(valueAt(content, path)).map(([name, value]) => {
-		const here = [...path, name];
-		if (kind === 'operation' && isSequence(value)) return entry('sequence', file, here, value);
-		return entry(kind, file, here, value, kind === 'ability' ? entriesIn('effect', file, [...here, 'effects'], content) : []);
-	});
+function entriesIn(kind: EntryKind, file: string, path: Path, content: Json | undefined, layers: readonly Layer[] = []): Node[] {
+	const own = entriesOf(valueAt(content, path));
+	const others = namesIn(layers, path, removedFrom(content)).filter(([name]) => own.every(([each]) => each !== name));
+	const within = (here: Path): Node[] => (kind === 'ability' ? entriesIn('effect', file, [...here, 'effects'], content, layers) : []);
+	return [
+		...own.map(([name, value]) => {
+			const here = [...path, name];
+			if (kind === 'operation' && isSequence(value)) return entry('sequence', file, here, value);
+			return entry(kind, file, here, value, within(here));
+		}),
+		...others.map(([name, of]) => {
+			const here = [...path, name];
+			return { ...entry(kind, file, here, inherited(layers, here)?.value ?? null, within(here)), of };
+		})
+	];
 }
 
-/** The resource of each content that was made into one: an edit of one file leaves all others what they were. */
-const RESOURCES = new WeakMap<object, Node>();
+/**
+ * The resource of each content that was made into one, and the contents of its types: an edit of one file leaves all
+ * others what they were.
+ */
+const RESOURCES = new WeakMap<object, readonly [made: Node, of: readonly (Json | undefined)[]]>();
 
-function resource(file: string, name: string, content: Json | undefined): Node {
-	if (!isMapping(content)) return resourceFrom(file, name, content);
-	const before = RESOURCES.get(content);
-	if (before?.file === file) return before;
-	const made = resourceFrom(file, name, content);
-	RESOURCES.set(content, made);
+function resource(file: string, name: string, content: Json | undefined, layers: readonly Layer[]): Node {
+	if (!isMapping(content)) return resourceFrom(file, name, content, layers);
+	const [before, of = []] = RESOURCES.get(content) ?? [];
+	if (before?.file === file && of.length === layers.length && layers.every((each, at) => each.content === of[at])) return before;
+	const made = resourceFrom(file, name, content, layers);
+	RESOURCES.set(content, [made, layers.map((each) => each.content)]);
 	return made;
 }
 
-function resourceFrom(file: string, name: string, content: Json | undefined): Node {
+function resourceFrom(file: string, name: string, content: Json | undefined, layers: readonly Layer[]): Node {
 	const sections = (Object.keys(IN_RESOURCE) as InResource[])
-		.map((key) => section(key, file, [key], entriesIn(IN_RESOURCE[key], file, [key], content)))
+		.map((key) => section(key, file, [key], entriesIn(IN_RESOURCE[key], file, [key], content, layers)))
 		.filter(({ children }) => children.length > 0);
-	return { ...entry('resource', file, [], isMapping(content) ? content : {}, sections), name };
+	const title = textAt(content, ['title']) ?? inherited(layers, ['title'])?.value;
+	return { ...entry('resource', file, [], isMapping(content) ? content : {}, sections), name, title: typeof title === 'string' ? title : null };
+}
+
+/** A type; what is in it is named by the resource `owner`, the first of the instances. */
+function typeFrom(file: string, name: string, content: Json | undefined, owner: string | null): Node {
+	const owned = (node: Node): Node => ({ ...node, owner, children: node.children.map(owned) });
+	const made = resourceFrom(file, name, content, []);
+	return { ...made, kind: 'type', children: made.children.map(owned) };
 }
 
 /** The tree of a model of these files; `contents` has what was last read of each. */
@@ -148,7 +175,14 @@ export function treeOf(
 	const station = contents[STATION];
 	const resources = there.flatMap((file) => {
 		const name = resourceOf(file);
-		return name === null ? [] : [resource(file, name, contents[file])];
+		return name === null ? [] : [resource(file, name, contents[file], layersOf(file, contents))];
+	});
+	const owners = new Map<string, string>();
+	for (const file of there.toReversed())
+		for (const layer of layersOf(file, contents)) owners.set(layer.file, resourceOf(file) ?? owners.get(file) ?? '');
+	const types = there.flatMap((file): Node[] => {
+		const name = typeOf(file);
+		return name === null ? [] : [typeFrom(file, name, contents[file], owners.get(file) || null)];
 	});
 	const messages = there.flatMap((file): Node[] => {
 		const name = messageOf(file);
@@ -172,6 +206,7 @@ export function treeOf(
 			]
 		},
 		section('resources', '', [], resources),
+		...(types.length > 0 ? [section('types', '', [], types)] : []),
 		...(Object.entries(IN_FILES) as [keyof typeof IN_FILES, EntryKind][]).map(([name, kind]) => {
 			const file = `${name}.yaml`;
 			return section(name, file, [], entriesIn(kind, file, [], contents[file]));
@@ -219,11 +254,14 @@ function partFrom(tree: Iterable<Node>): Part {
 	return part;
 }
 
-/** All nodes but those within resources, each before those in it. */
+/** Whether what is in it is looked up by its file: it is a resource, or a type of some. */
+const hasFile = ({ kind }: Node): boolean => kind === 'resource' || kind === 'type';
+
+/** All nodes but those within resources and types, each before those in it. */
 function* aroundResources(tree: readonly Node[]): Generator<Node> {
 	for (const node of tree) {
 		yield node;
-		if (node.kind !== 'resource') yield* aroundResources(node.children);
+		if (!hasFile(node)) yield* aroundResources(node.children);
 	}
 }
 
@@ -231,7 +269,7 @@ export function lookupOf(tree: readonly Node[]): Lookup {
 	const rest = partFrom(aroundResources(tree));
 	const within = new Map<string, Part>();
 	for (const node of rest.byId.values()) {
-		if (node.kind !== 'resource') continue;
+		if (!hasFile(node)) continue;
 		const part = PARTS.get(node) ?? partFrom(nodesOf([node]));
 		PARTS.set(node, part);
 		within.set(node.file, part);
@@ -240,7 +278,7 @@ export function lookupOf(tree: readonly Node[]): Lookup {
 	const get = (id: string): Node | undefined => partOf(id)?.byId.get(id) ?? rest.byId.get(id);
 	function* values(): Generator<Node> {
 		for (const node of rest.byId.values()) {
-			const part = node.kind === 'resource' ? within.get(node.file) : undefined;
+			const part = hasFile(node) ? within.get(node.file) : undefined;
 			if (part) yield* part.byId.values();
 			else yield node;
 		}
@@ -268,7 +306,9 @@ export function nodeAt(lookup: Lookup, file: string, path: Path): Node | null {
 
 /** Which part of the model it is, for what is asked and done by name; null for what has no such name. */
 export function partOf(node: Node): string | null {
-	const resource = resourceOf(node.file);
+	const resource = node.owner ?? resourceOf(node.file);
+	// What is in a type is named by an instance.
+	if (resource === null && node.path.length > 0 && typeOf(node.file) !== null) return null;
 	const own = (name: string): string => (resource === null ? name : `${resource}.${name}`);
 	switch (node.kind) {
 		case 'station':
@@ -297,12 +337,13 @@ export function parameterOf(node: Node, name: string): string | null {
 	return others.includes(kind) ? `parameter:${kind}:${owner}.${name}` : null;
 }
 
-/** What has no form of fields: it is written as text, or has an editor of its own. */
-const WITHOUT_FORM: readonly string[] = ['section', 'enumeration', 'message', ...SHORT.map(([, , kind]) => kind)];
+/** What has no form of fields: it is written as text. */
+const WITHOUT_FORM: readonly string[] = ['section', 'message'];
 
 /** The shape of a node's document: what its form has. */
 export function shapeOf(node: Node): string | null {
-	return WITHOUT_FORM.includes(node.kind) ? null : node.kind;
+	if (WITHOUT_FORM.includes(node.kind)) return null;
+	return node.kind === 'map' ? 'value_map' : node.kind;
 }
 
 /** A row of the tree as it is seen: how deep it is, and its place among its siblings. */

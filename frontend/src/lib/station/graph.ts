@@ -34,6 +34,7 @@ const KINDS = {
 	value: false,
 	parameter: false,
 	resource: false,
+	type: false,
 	message: true
 } as const;
 

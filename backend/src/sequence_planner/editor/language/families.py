@@ -13,11 +13,13 @@ from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declaratio
 from sequence_planner.automaton.findings import with_arguments, without_arguments
 from sequence_planner.automaton.shorthand import parts_of, written_in, written_predicates
 from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
 from sequence_planner.model.documents import AbilityDocument, Parameters, PredicateDocument, VariableDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.types.expansion import Expansion, GivenArgument
 
 # What is declared in a draft, one entry for each declaration: a variable, a flag or an activity.
 
@@ -141,6 +143,21 @@ def _short(station: Station, declarations: Declarations) -> Iterator[Family]:
         if vocabulary.order_of(type_) is not None:
             for end in ENDS:
                 yield Family(f"{end}({domain})", NameKind.KEYWORD, type_, Place("", 1, 1))
+
+
+def definition_of(station: Station, family: Family, arguments: tuple[str, ...]) -> str:
+    """The condition of a predicate as it is written, with arguments in the place of its parameters."""
+    owner = station.station if family.owner is None else station.resources[family.owner]
+    key = next(each for each in owner.predicates if f"{family.step}{each}" == family.name)
+    parameters, condition = parts_of(owner.predicates[key])
+    if not isinstance(condition, SourceText):
+        return print_value(condition)
+    given = {
+        str(parameter): GivenArgument("value", condition, None, word)
+        for parameter, word in zip(parameters, arguments, strict=False)
+    }
+    plain = SourceText(" ".join(condition.split()), condition.place, str(condition))
+    return str(Expansion("", given).text_at(plain, ("predicates", str(key), "when")))
 
 
 def _variable(

@@ -8,7 +8,7 @@ from itertools import islice, product
 
 from sequence_planner.automaton.declarations import OPERATION
 from sequence_planner.editor.language.completion import chain_at, word_at, words_of
-from sequence_planner.editor.language.families import SHORT, Family
+from sequence_planner.editor.language.families import SHORT, Family, definition_of
 from sequence_planner.editor.language.field import FieldKind, TextField
 from sequence_planner.editor.language.quantifiers import quantifiers_before
 from sequence_planner.editor.language.schemas import NameKind
@@ -79,7 +79,8 @@ class Hover:
 
     `names` are the full names it has for the choices of the parameters, and `pattern` is all of them at once, with the
     parameters as they are written. `place` is where it is declared, within the station; `part` is the id by which it is
-    looked for there, but for a parameter. `expansion` is what it stands for, where it is written for short.
+    looked for there, but for a parameter. Where it is written for short, `definition` is the condition that it was
+    given, and `expansion` what it stands for in the end.
     """
 
     start: int
@@ -95,6 +96,7 @@ class Hover:
     place: Place | None = None
     part: str | None = None
     expansion: str | None = None
+    definition: str | None = None
 
 
 def hover(lexicon: Lexicon, field: TextField, text: str, offset: int) -> Hover | None:
@@ -325,11 +327,14 @@ class _Hovering:
                 return None
             return Hover(span.start, span.end, word, family.kind, word, type=family.type)
         expansion: str | None = None
+        definition: str | None = None
         match family.kind:
             case NameKind.KEYWORD:
                 return Hover(span.start, span.end, word, family.kind, word, type=family.type)
             case NameKind.PREDICATE:
                 expansion = self._expansion(lambda scope: resolve_predicate(name, scope), *name.path[-1].arguments)
+                words = tuple(map(str, name.path[-1].arguments))
+                definition = _shortened(definition_of(self._lexicon.station, family, words))
             case NameKind.RELATION:
                 expansion = _shortened(", ".join(map(" – ".join, sorted(vocabulary.relations[full].pairs))))
             case NameKind.MAP:
@@ -338,7 +343,7 @@ class _Hovering:
         return Hover(
             span.start, span.end, word, family.kind, f"{full}{word[len(skeleton):]}", (), family.type,
             resource=family.owner, title=family.title, place=self._lexicon.within(family.place),
-            part=f"{family.kind}:{full}", expansion=expansion,
+            part=f"{family.kind}:{full}", expansion=expansion, definition=definition,
         )  # fmt: skip
 
     def _of_array(self, span: Span, name: Name) -> Hover | None:

@@ -66,8 +66,8 @@ class HoverView(View):
 
     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
-    by which it is looked for in the model, but for a parameter. `expansion` is what it stands for, where it is written
-    for short.
+    by which it is looked for in the model, but for a parameter. Where it is written for short, `definition` is the
+    condition that it was given, and `expansion` what it stands for in the end.
     """
 
     start: int
@@ -82,5 +82,6 @@ class HoverView(View):
     resource: str | None
     title: str | None
     part: str | None
+    definition: str | None
     expansion: str | None
     declared: DeclarationView | None

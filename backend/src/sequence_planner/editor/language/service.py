@@ -119,6 +119,7 @@ def hover_view(hover: Hover) -> HoverView:
         resource=hover.resource,
         title=hover.title,
         part=hover.part,
+        definition=hover.definition,
         expansion=hover.expansion,
         declared=place and DeclarationView(file=place.file, line=place.line, column=place.column),
     )

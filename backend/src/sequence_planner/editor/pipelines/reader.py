@@ -18,7 +18,7 @@ from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.loader import Station
 from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.model.types.layers import written_out
+from sequence_planner.model.types.layers import WrittenOut
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text
 from sequence_planner.pipelines.builder import Built, build_what_is_sound, flow_name
@@ -182,7 +182,7 @@ class DraftReader:
         """The draft that consists of these files."""
         registry, findings = self._messages(files)
         documents, unread, wrong = self._documents(files)
-        return _sketch(self.folder, written_out(documents), unread, registry, [*findings, *wrong])
+        return _sketch(self.folder, WrittenOut(documents).documents, unread, registry, [*findings, *wrong])
 
     def _documents(self, files: Files) -> tuple[dict[str, YamlDocument], tuple[str, ...], list[Finding]]:
         """The documents; one that cannot be read stands as it was when it could be."""

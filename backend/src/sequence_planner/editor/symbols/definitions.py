@@ -34,6 +34,7 @@ from sequence_planner.editor.symbols.texts import (
     pairs,
     text_at,
 )
+from sequence_planner.editor.symbols.types import TypeCollector
 from sequence_planner.language.parser import parse
 from sequence_planner.language.syntax import ExpressionError, Name, Span
 from sequence_planner.model.source import SourceText
@@ -103,7 +104,7 @@ def manner_of(part: ModelPart, by: ModelPart | None, path: EntryPath, declared: 
     """
     if part.kind in ("enumeration", "set"):
         return Manner.RANGES
-    if part.kind in ("value", "parameter", "resource", "word"):
+    if part.kind in ("value", "parameter", "resource", "type", "word"):
         return Manner.NAMES
     if by is None:
         return Manner.REST
@@ -171,10 +172,11 @@ def gather(
     if file in (None, STATION):
         walk.station(content.get(STATION))
     for resource, at, found in content.resources():
-        if file in (None, at):
+        if file is None or content.is_made_of(at, file):
             walk.resource(resource, at, found)
             walk.changed_in_instance(resource, at, content.get(at), found)
     PipelineCollector(naming, content).read(file)
+    TypeCollector(declared, gathered, content).collect(file)
     if file in (None, OPERATIONS):
         walk.operations(content.get(OPERATIONS))
     if file in (None, SPECIFICATIONS):

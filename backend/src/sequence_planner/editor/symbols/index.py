@@ -42,6 +42,7 @@ KINDS: Mapping[str, str] = {
     "predicate": "the predicate",
     "word": "the word",
     "resource": "the resource",
+    "type": "the type",
     "variable": "the variable",
     "ability": "the ability",
     "effect": "the effect",
@@ -66,9 +67,10 @@ _WITHIN = frozenset({"effect", "parameter"})
 class ModelPart(NamedTuple):
     """Something with a name. `owner` is what it belongs to, without which the name does not tell it:
 
-    the enumeration of a value; the resource of a variable, an ability or a flow; the ability of an effect; and for a
-    parameter the full name of its ability, variable or predicate, or the id of what else it belongs to, such as
-    `operation:press`. The word of a quantifier belongs to that: the file, the entry, and its number in the text.
+    the enumeration of a value; the resource of a variable, an ability or a flow; the ability of an effect; the package
+    of a type, where it has one; and for a parameter the full name of its ability, variable or predicate, or the id of
+    what else it belongs to, such as `operation:press`. The word of a quantifier belongs to that: the file, the entry,
+    and its number in the text.
     """
 
     kind: str
@@ -129,7 +131,9 @@ def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
             return part._replace(owner=new.name)
         case "ability" | "variable" | "predicate" if part.kind in _WITHIN and owner == old.full:
             return part._replace(owner=new.full)
-        case "operation" | "specification" | "sequence" | "work_master" if part.kind == "parameter" and owner == old.id:
+        case "operation" | "specification" | "sequence" | "work_master" | "type" if (
+            part.kind == "parameter" and owner == old.id
+        ):
             return part._replace(owner=new.id)
     return part
 

@@ -226,8 +226,8 @@ def require_free(new: ModelPart, declared: Declared, gathered: Gathered, content
     rivals = set(_rivals(new))
     if (used := next((each for each in gathered.occurrences if each.part in rivals), None)) is not None:
         raise EditError(f"{new} is named already, by {used.where.said}: choose another name")
-    if new.kind == "resource" and file_of(new.name) in content.texts:
-        raise EditError(f"the file {file_of(new.name)} is there already: choose another name")
+    if new.kind in ("resource", "type") and (file := file_of_part(new)) in content.texts:
+        raise EditError(f"the file {file} is there already: choose another name")
 
 
 def _rivals(new: ModelPart) -> Iterator[ModelPart]:
@@ -363,6 +363,13 @@ def _cannot(place: Place, why: str) -> EditError:
     return EditError(f"the name at {place} cannot be written otherwise here: {why}; nothing was changed")
 
 
+def file_of_part(part: ModelPart) -> str:
+    """The file whose name is that of a resource or a type."""
+    if part.kind == "resource":
+        return file_of(part.name)
+    return f"types/{part.name}.yaml" if part.owner is None else f"packages/{part.owner}/types/{part.name}.yaml"
+
+
 def by_file(changes: Iterable[tuple[Occurrence, str]]) -> dict[str, list[tuple[Occurrence, str]]]:
     """Changes by the file in which they are."""
     found: dict[str, list[tuple[Occurrence, str]]] = defaultdict(list)
@@ -422,8 +429,8 @@ def _written(
     for file, found in changes.items():
         new[file] = rewritten(content.texts[file], content[file], found)
     for part in parts:
-        if part.kind == "resource":
-            old, file = file_of(part.name), file_of(name)
+        if part.kind in ("resource", "type"):
+            old, file = file_of_part(part), file_of_part(part._replace(name=name))
             new[file] = new.get(old) or content.texts[old]
             new[old] = None
     return new
@@ -479,7 +486,8 @@ def _meaning(content: ModelContent, declared: Declared, gathered: Gathered, call
             file = each.home_file
             place = each.text.place
             found.setdefault(file, {}).setdefault((place.line, place.column, each.span.start, part), each.declares)
-    moved = {file_of(name): file_of(called(ModelPart("resource", None, name)).name) for name in declared.resources}
+    movable = [each for each in declared.parts if each.kind in ("resource", "type")]
+    moved = {file_of_part(each): file_of_part(called(each)) for each in movable}
     return _Meaning(
         {moved.get(file, file): _in_order(places) for file, places in found.items()},
         Counter(map(called, declared.parts)),

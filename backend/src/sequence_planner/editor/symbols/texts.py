@@ -10,7 +10,7 @@ from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
 from sequence_planner.model.stages.registry import KINDS
-from sequence_planner.model.types.layers import written_out
+from sequence_planner.model.types.layers import WrittenOut
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text
 
 STATION = "station.yaml"
@@ -26,7 +26,7 @@ class ModelContent(Mapping[str, object]):
     """The things that the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
 
     `definitions` are those of types of messages, by their files. `whole` is what resources hold that are instances,
-    with all that they have of their types.
+    with all that they have of their types; `types` and `instances` are as they are written, by name and by file.
     """
 
     def __init__(self, files: Mapping[str, str]) -> None:
@@ -39,7 +39,10 @@ class ModelContent(Mapping[str, object]):
             self.skipped += findings
             if document is not None:
                 self._read[file] = document
-        self.whole = {file: each.content for file, each in written_out(self._read).items()}
+        made = WrittenOut(self._read)
+        self.whole = {file: each.content for file, each in made.documents.items()}
+        self.types, self.instances = made.types, made.instances
+        self._files_of = made.files_of
         self._paths: dict[str, dict[tuple[int, int], EntryPath]] = {}
 
     def __getitem__(self, file: str) -> object:
@@ -56,6 +59,10 @@ class ModelContent(Mapping[str, object]):
         for file, content in self.whole.items():
             if (name := resource_of(file)) is not None:
                 yield name, file, content
+
+    def is_made_of(self, resource_file: str, file: str) -> bool:
+        """Return whether what the file of a resource holds stands in a file: in itself, or in one of its types."""
+        return file == resource_file or file in self._files_of.get(resource_file, ())
 
     def path_of(self, text: SourceText) -> EntryPath:
         """Return where a text stands in its file: at the entry that it is the name or the value of."""

@@ -9,7 +9,7 @@ from lsprotocol import types
 from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.editor.language.completion import MOST_OPTIONS
 from sequence_planner.editor.language.schemas import NameKind
-from sequence_planner.editor.language.service import formatted
+from sequence_planner.editor.language.types.places import text_place
 from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.language_server.answers.completing import Proposal, proposals
 from sequence_planner.language_server.answers.findings import diagnostics_of, new_name, range_of, replacements
@@ -145,8 +145,8 @@ class Assistance:
         cursor = read_at(text.text, index)
         if cursor is None or "\n" in cursor.text.raw or cursor.text.raw[:1] in "'\"":
             return
-        field = snapshot.lexicon.field(file.name, cursor.path, cursor.parameters)
-        if field is None or (new := formatted(field, str(cursor.text))) == cursor.text:
+        place = text_place(snapshot.lexicon, file.name, cursor.path, cursor.parameters)
+        if place is None or (new := place.formatted(str(cursor.text))) == cursor.text:
             return
         edit = types.TextEdit(text.range(*cursor.span_in_file(0, len(cursor.text))), new)
         yield types.CodeAction(

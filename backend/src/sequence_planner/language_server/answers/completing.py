@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from sequence_planner.editor.language.completion import NO_MATCH, complete, likeness
+from sequence_planner.editor.language.completion import NO_MATCH, likeness
 from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.editor.language.types.places import parameters_of, text_place
 from sequence_planner.editor.symbols.texts import message_of
 from sequence_planner.language_server.documents.cursor import Cursor, typed_at
 from sequence_planner.language_server.documents.schemas import DocumentSchemas
 from sequence_planner.language_server.snapshot import StationSnapshot
 from sequence_planner.model.documents import ResourceDocument
-from sequence_planner.model.paths import resource_of
+from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 
@@ -48,9 +49,9 @@ def _at(snapshot: StationSnapshot, schemas: DocumentSchemas, file: str, cursor: 
         yield from _names(schemas, file, cursor, cursor.path[:-1])
         yield from _known(cursor, _free_names(snapshot, file, cursor.path))
         return
-    field = snapshot.lexicon.field(file, cursor.path, cursor.parameters)
-    if field is not None:
-        found = complete(snapshot.lexicon, field, str(cursor.text), cursor.offset)
+    place = text_place(snapshot.lexicon, file, cursor.path, cursor.parameters)
+    if place is not None:
+        found = place.completion(str(cursor.text), cursor.offset)
         start, end = cursor.span_in_file(found.start, found.end)
         for option in found.options:
             yield Proposal(option.label, option.insert, start, end, option.kind, option.detail)
@@ -87,10 +88,19 @@ def _free_names(snapshot: StationSnapshot, file: str, path: EntryPath) -> Iterat
             yield from ((name, NameKind.RESOURCE) for name in sorted(snapshot.lexicon.station.resources))
         case "work_masters.yaml", (str(), "operations", str()):
             yield from ((name, NameKind.OPERATION) for name in snapshot.lexicon.operations)
+        case _, ("arguments", str()):
+            yield from ((str(name), NameKind.PARAMETER) for name in parameters_of(snapshot.lexicon, file))
 
 
 def _values(snapshot: StationSnapshot, file: str, path: EntryPath) -> Iterator[tuple[str, NameKind]]:
     """The names that stand as values outside of conditions."""
+    match path:
+        case ("type",) if resource_of(file) or type_of(file):
+            yield from ((name, NameKind.RESOURCE) for name in sorted(filter(None, map(type_of, snapshot.files))))
+        case ("arguments", str(name)):
+            given = parameters_of(snapshot.lexicon, file)
+            if any(key == name and each.kind == "resource" for key, each in given.items()):
+                yield from ((each, NameKind.RESOURCE) for each in sorted(snapshot.lexicon.station.resources))
     resource = snapshot.lexicon.station.resources.get(resource_of(file) or "")
     if resource is None:
         return

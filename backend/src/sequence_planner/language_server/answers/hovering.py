@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sequence_planner.editor.language.field import FieldKind
-from sequence_planner.editor.language.hover import Hover, hover
+from sequence_planner.editor.language.hover import Hover
 from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.editor.language.types.places import hover_of_part, text_place
+from sequence_planner.editor.symbols.rename import Usage
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Place
+from sequence_planner.language_server.answers.naming import declarations_of, named_in, part_at
 from sequence_planner.language_server.documents.cursor import read_at
 from sequence_planner.language_server.documents.schemas import DocumentSchemas
 from sequence_planner.language_server.snapshot import StationSnapshot
@@ -33,16 +36,29 @@ def explanation(
     cursor = read_at(text, index)
     if cursor is None:
         return None
-    field = snapshot.lexicon.field(file, cursor.path, cursor.parameters)
-    if field is not None and (not cursor.is_name or field.kind is FieldKind.OPERATION):
-        found = hover(snapshot.lexicon, field, str(cursor.text), cursor.offset)
+    place = text_place(snapshot.lexicon, file, cursor.path, cursor.parameters)
+    if place is not None and (not cursor.is_name or place.field_kind is FieldKind.OPERATION):
+        found = place.hover(str(cursor.text), cursor.offset)
         if found is not None:
             return Explanation(*cursor.span_in_file(found.start, found.end), _told(found), found.place)
-    about = schemas.description(file, cursor.path) if cursor.is_name else ""
-    if not about:
-        return None
     start, end = cursor.span_in_file(0, len(cursor.text))
-    return Explanation(start, end, f"`{cursor.text}`: {about}")
+    if about := schemas.description(file, cursor.path) if cursor.is_name else "":
+        return Explanation(start, end, f"`{cursor.text}`: {about}")
+    line = text.count("\n", 0, index) + 1
+    usage = part_at(named_in(snapshot, file), line, index - text.rfind("\n", 0, index))
+    return None if usage is None else _declared(snapshot, usage, text)
+
+
+def _declared(snapshot: StationSnapshot, usage: Usage, text: str) -> Explanation | None:
+    """Say what a part is that is named, or declared, where no condition stands."""
+    begin = sum(len(line) + 1 for line in text.split("\n")[: usage.line - 1]) + usage.column - 1
+    home = next(declarations_of(snapshot, usage.part), usage)
+    place = Place(home.file, home.line, home.column)
+    found = hover_of_part(snapshot.lexicon, usage.part.kind, usage.part.full)
+    if found is None:
+        said = f"**{usage.part.kind.replace('_', ' ')}** `{usage.part.full.rpartition(':')[2]}`"
+        return Explanation(begin, begin + usage.length, f"{said}\n\ndeclared in {place.file}:{place.line}", place)
+    return Explanation(begin, begin + usage.length, _told(replace(found, place=place)), place)
 
 
 def _told(found: Hover) -> str:
@@ -60,6 +76,8 @@ def _told(found: Hover) -> str:
         lines.append(
             ", ".join(f"`{each}`" for each in values[:_MOST_VALUES]) + (" …" if len(values) > _MOST_VALUES else "")
         )
+    if found.definition is not None and found.definition != found.expansion:
+        lines.append(f"is `{found.definition}`")
     if found.expansion is not None:
         lines.append(f"stands for `{found.expansion}`")
     if len(found.names) > 1:

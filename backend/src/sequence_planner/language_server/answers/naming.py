@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from sequence_planner.editor.symbols.definitions import gather
 from sequence_planner.editor.symbols.index import ModelPart, Occurrence
-from sequence_planner.editor.symbols.rename import Usage, usage_of, usages
+from sequence_planner.editor.symbols.rename import Usage, file_of_part, usage_of, usages
 from sequence_planner.editor.symbols.texts import (
     OPERATIONS,
     SPECIFICATIONS,
@@ -16,12 +16,16 @@ from sequence_planner.editor.symbols.texts import (
     file_of,
     message_of,
 )
+from sequence_planner.editor.symbols.types import type_part
 from sequence_planner.language_server.snapshot import StationSnapshot
 from sequence_planner.model.yaml.reader import EntryPath
 
 _HOMES = {
     "enumeration": STATION,
     "value": STATION,
+    "set": STATION,
+    "relation": STATION,
+    "map": STATION,
     "operation": OPERATIONS,
     "sequence": OPERATIONS,
     "specification": SPECIFICATIONS,
@@ -43,7 +47,7 @@ def named_in(snapshot: StationSnapshot, file: str) -> list[Usage]:
     _, gathered = gather(snapshot.content, snapshot.messages, file=file)
     unique: dict[tuple[int, int, int], Occurrence] = {}
     for each in gathered.occurrences:
-        if each.where.file == file and each.text is not None:
+        if each.home_file == file and each.text is not None:
             found = usage_of(each)
             unique.setdefault((found.line, found.column, found.length), each)
     return [usage_of(each) for each in unique.values()]
@@ -81,14 +85,22 @@ def _homes(snapshot: StationSnapshot, part: ModelPart) -> list[str]:
         return [file for file in snapshot.content.definitions if message_of(file) == part.name]
     if part.kind == "resource":
         return [file_of(part.name)]
+    if part.kind == "type":
+        return [file_of_part(part)]
     owner, _, name = (part.owner or "").partition(":")
+    if owner == "type" and name:
+        return [file_of_part(type_part(name))]
     if name:  # the parameter of an operation, say
         return [_HOMES[owner]]
     if part.kind in _HOMES:
         return [_HOMES[part.kind]]
     if part.owner is not None:
         return [file_of(part.owner.partition(".")[0])]
-    return [STATION] if part.kind in ("variable", "alarm") else [file for _, file, _ in snapshot.content.resources()]
+    return (
+        [STATION]
+        if part.kind in ("variable", "alarm", "predicate")
+        else [file for _, file, _ in snapshot.content.resources()]
+    )
 
 
 def used_places(snapshot: StationSnapshot, files: Mapping[str, str], part: ModelPart) -> list[Usage]:

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from sequence_planner.model.json_schema import FILES, schema_of
+from sequence_planner.model.paths import type_of
 from sequence_planner.model.yaml.reader import EntryPath
 
 Schema = Mapping[str, Any]
@@ -87,7 +88,9 @@ def schema_name(file: str) -> str | None:
     at = PurePosixPath(file)
     if at.suffix != ".yaml":
         return None
-    return "resource" if at.parts[:1] == ("resources",) else at.stem if at.stem in FILES else None
+    if at.parts[:1] == ("resources",):
+        return "instance"
+    return "type" if type_of(file) is not None else at.stem if at.stem in FILES else None
 
 
 @cache

@@ -18,6 +18,7 @@ from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sequence_planner.language.syntax import Span
+from sequence_planner.language.types import Place
 from sequence_planner.model.documents import ResourceDocument
 from sequence_planner.model.fields import TextUse
 from sequence_planner.model.source import ExpandedText, Piece, SourceText, with_given_at
@@ -69,6 +70,24 @@ _MARKED = {TextUse.TYPE: _InText.TYPE, TextUse.CONDITION: _InText.EXPRESSION, Te
 def resource_shape() -> DocumentShape:
     """The shape of a resource."""
     return _shape_of(ResourceDocument)
+
+
+def _pieces_of(text: SourceText, made: SourceText) -> Iterator[tuple[str, Span]]:
+    for piece in made.pieces if isinstance(made, ExpandedText) else ():
+        written = text[piece.begin : piece.stop]
+        inset = len(written) - len(written.lstrip("{"))
+        yield written.strip("{}"), Span(piece.begin + inset, piece.stop - inset)
+
+
+def _shape_at(path: EntryPath) -> DocumentShape:
+    shape = resource_shape()
+    for step in path:
+        shape = shape.step_into(step)
+    return shape
+
+
+def _placed(name: str) -> SourceText:
+    return SourceText(name, Place("", 1, 1), name)
 
 
 def _shape_of(annotation: object) -> DocumentShape:
@@ -182,6 +201,32 @@ class Expansion:
                 self.expanded(each, entries, (*path, index), (*made_at, index)) for index, each in enumerate(content)
             ]
         return content
+
+    def text_at(self, text: SourceText, path: EntryPath) -> SourceText:
+        """A text that stands at an entry of the type, with arguments in the place of parameters."""
+        return self._text(text, _shape_at(path).text)
+
+    def made_path(self, path: EntryPath) -> EntryPath:
+        """Return where an entry of the type stands in the resource that is made."""
+        return tuple(
+            step if isinstance(step, int) else str(self._text(_placed(step), _shape_at(path[:depth]).keys))
+            for depth, step in enumerate(path)
+        )
+
+    def parameters_in(self, text: SourceText, path: EntryPath, *, is_name: bool) -> Iterator[tuple[str, Span]]:
+        """The parameters that stand in a text at an entry of the type, or in its name, each with where."""
+        shape = _shape_at(path[:-1] if is_name else path)
+        if not is_name and shape.is_number and text in self._arguments and self._arguments[text].kind == "number":
+            yield str(text), Span(0, len(text))
+        else:
+            yield from _pieces_of(text, self._text(text, shape.keys if is_name else shape.text))
+
+    def parameters_given(self, text: SourceText) -> Iterator[tuple[str, Span]]:
+        """The same in an argument that is given to another type."""
+        if text in self._arguments:
+            yield str(text), Span(0, len(text))
+        else:
+            yield from _pieces_of(text, self.with_arguments(text))
 
     def with_arguments(self, text: SourceText) -> SourceText:
         """A text that is given to another type."""

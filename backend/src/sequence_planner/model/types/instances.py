@@ -42,7 +42,8 @@ class InstancesBefore:
 
 class Instances:
     """The instances of a station. `types` are known by their names, those of packages as `package.name`; None is one
-    of which something is wrong. `brought` are the enumerations of each package. What is found is noted in `findings`.
+    of which something is wrong. `brought` are the enumerations of each package. What is found is noted in `findings`,
+    and in `layers` what each instance is made of.
     """
 
     def __init__(
@@ -58,6 +59,7 @@ class Instances:
         self._resources = resources
         self._before = before
         self.findings: list[Finding] = []
+        self.layers: dict[str, list[Layer]] = {}
         self._enumerations = {str(name): values for name, values in station.enumeration_values().items()}
         self._ranges = [*map(str, station.enumerations), *map(str, station.sets)]
         self._brought = brought
@@ -68,6 +70,7 @@ class Instances:
         assert written.head.type is not None
         instance = f"{name} ({written.head.type.place})"
         layers, wrong, is_whole = layers_of(instance, written, self._types)
+        self.layers[name] = layers
         before = len(self.findings)
         self.findings += [] if wrong is None else [wrong]
         if not is_whole or any(each.name not in self._sound for each in layers[1:]):

@@ -219,19 +219,32 @@ def document_of(instance: str, layers: list[Layer]) -> YamlDocument:
     return YamlDocument(layers[0].written.document.file, content, places.names, places.values)
 
 
-def written_out(documents: Mapping[str, YamlDocument]) -> dict[str, YamlDocument]:
-    """The files of a station with its instances written out, as far as that can be done."""
-    read = {
-        name: read_type(each, name.rpartition(".")[0])[0] for file, each in documents.items() if (name := type_of(file))
-    }
-    types = {name: each if isinstance(each, WrittenInstance) else None for name, each in read.items()}
-    made = dict(documents)
-    for file, document in documents.items():
-        if (name := resource_of(file)) is None or not isinstance(document.content, dict):
-            continue
-        if not OF_INSTANCES.isdisjoint(document.content):
-            written, _ = read_instance(document)
+class WrittenOut:
+    """The files of a station with its instances written out, as far as that can be done: `documents`.
+
+    `types` are those that can be read, by their names, `instances` those by their files, and `files_of` has for each
+    the files that it is made of.
+    """
+
+    def __init__(self, documents: Mapping[str, YamlDocument]) -> None:
+        self.types: dict[str, WrittenInstance] = {}
+        names: dict[str, WrittenInstance | None] = {}
+        for file, document in documents.items():
+            if (name := type_of(file)) is not None:
+                read = read_type(document, name.rpartition(".")[0])[0]
+                names[name] = read if isinstance(read, WrittenInstance) else None
+                if isinstance(read, WrittenInstance):
+                    self.types[name] = read
+        self.documents = dict(documents)
+        self.instances: dict[str, WrittenInstance] = {}
+        self.files_of: dict[str, frozenset[str]] = {}
+        for file, document in documents.items():
+            if (resource := resource_of(file)) is None or not isinstance(document.content, dict):
+                continue
+            written = None if OF_INSTANCES.isdisjoint(document.content) else read_instance(document)[0]
             if isinstance(written, WrittenInstance) and written.head.type is not None:
-                instance = f"{name} ({written.head.type.place})"
-                made[file] = document_of(instance, layers_of(instance, written, types)[0])
-    return made
+                instance = f"{resource} ({written.head.type.place})"
+                layers = layers_of(instance, written, names)[0]
+                self.instances[file] = written
+                self.files_of[file] = frozenset(each.written.document.file for each in layers)
+                self.documents[file] = document_of(instance, layers)

@@ -47,6 +47,7 @@ export const station = {
 		value: ['Value', 'values'],
 		parameter: ['Parameter', 'parameters'],
 		resource: ['Resource', 'resources'],
+		type: ['Type of resources', 'types of resources'],
 		message: ['Type of message', 'types of messages']
 	} as Readonly<Record<string, readonly [string, string]>>,
 	search: 'Find something by its name or title',

@@ -46,6 +46,7 @@ export const station: Text['station'] = {
 		value: ['Värde', 'värden'],
 		parameter: ['Parameter', 'parametrar'],
 		resource: ['Resurs', 'resurser'],
+		type: ['Resurstyp', 'resurstyper'],
 		message: ['Meddelandetyp', 'meddelandetyper']
 	},
 	search: 'Hitta något på namn eller titel',

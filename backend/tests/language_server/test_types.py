@@ -1,0 +1,114 @@
+"""What an editor shows in a type of resources, and at the names of what is declared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from sequence_planner.cli.main import app
+from support.editor import Editor
+
+from .test_names import named
+
+
+def labels(editor: Editor, uri: str, mark: str) -> list[str]:
+    found = editor.ask("textDocument/completion", **editor.at(uri, mark, len(mark)))
+    return [each["label"] for each in found["items"]]
+
+
+def told(editor: Editor, uri: str, mark: str, offset: int) -> str:
+    found = editor.ask("textDocument/hover", **editor.at(uri, mark, offset))
+    return "" if found is None else str(found["contents"]["value"])
+
+
+def test_what_can_be_written_in_a_type_is_offered(editor: Editor, robots: Path) -> None:
+    uri = editor.open(robots / "types" / "robot.yaml")
+    before = editor.text(uri)
+    editor.type(uri, "executing: target == stop and at != stop", "executing: target == conv")
+    assert labels(editor, uri, "executing: target == conv")[0] == "conveyor"
+    editor.type(uri, "executing: target == conv", "executing: target == conveyor and a")
+    assert "at" in labels(editor, uri, "target == conveyor and a")
+    editor.type(uri, "executing: target == conveyor and a", "executing: true\n    enab")
+    assert "enabled" in labels(editor, uri, "\n    enab")
+    assert before != editor.text(uri)
+    editor.close(uri)
+    instance = editor.open(robots / "resources" / "robot_1.yaml")
+    editor.type(instance, "namespace: robot_1, stops: infeed_side, conveyor: infeed", "conv")
+    assert labels(editor, instance, "arguments: {conv") == ["conveyor"]
+    editor.type(instance, "arguments: {conv", "arguments: {namespace: robot_1, stops: infeed_side, conveyor: b")
+    assert labels(editor, instance, "conveyor: b") == ["buffer"]
+    editor.close(instance)
+
+
+@pytest.mark.parametrize(
+    ("file", "mark", "offset", "said"),
+    [
+        ("types/robot.yaml", "initial: conveyor", 12, "stands for `infeed in robot_1, outfeed in robot_2`"),
+        ("types/robot.yaml", "at != stop", 1, "**measured** `robot_1.at`"),
+        ("types/robot.yaml", "  stops: enumeration", 4, "stands for `infeed_side in robot_1"),
+        ("types/robot.yaml", "  move_to:", 4, "**ability** `robot_1.move_to`"),
+        ("types/robot.yaml", "  at: {type", 3, "initially `infeed`"),
+        ("resources/robot_2.yaml", "type: robot", 8, "**type** `robot`"),
+        ("resources/robot_2.yaml", "  move_to:", 4, "declared in types/robot.yaml:19"),
+        ("station.yaml", "  parts_on_buffer:", 4, "**estimated** `parts_on_buffer`: `0..2`"),
+        ("station.yaml", "  place: [between", 4, "{between, infeed, buffer, outfeed}"),
+    ],
+)
+def test_what_a_name_is_where_it_is_declared(
+    editor: Editor, robots: Path, file: str, mark: str, offset: int, said: str
+) -> None:
+    uri = editor.open(robots / file)
+    assert said in told(editor, uri, mark, offset)
+    editor.close(uri)
+
+
+@pytest.mark.parametrize(
+    ("file", "mark", "offset", "found"),
+    [
+        ("types/robot.yaml", "at != stop", 1, ("robot.yaml", "at")),
+        ("types/robot.yaml", "initial: conveyor", 12, ("robot.yaml", "conveyor")),
+        ("types/robot.yaml", "  stops: enumeration", 4, ("robot.yaml", "stops")),
+        ("resources/robot_1.yaml", "stops: infeed_side", 2, ("robot.yaml", "stops")),
+        ("resources/robot_1.yaml", "  move_to:", 4, ("robot.yaml", "move_to")),
+        ("station.yaml", "  parts_on_buffer:", 4, ("station.yaml", "parts_on_buffer")),
+        ("station.yaml", "robot_1.at", 9, ("robot.yaml", "at")),
+    ],
+)
+def test_where_it_leads(
+    editor: Editor, robots: Path, file: str, mark: str, offset: int, found: tuple[str, str]
+) -> None:
+    uri = editor.open(robots / file)
+    places = editor.ask("textDocument/definition", **editor.at(uri, mark, offset))
+    assert [named(editor, each) for each in places] == [found]
+    editor.close(uri)
+
+
+def test_the_type_is_the_file_that_it_is_in(editor: Editor, robots: Path) -> None:
+    uri = editor.open(robots / "resources" / "robot_1.yaml")
+    (place,) = editor.ask("textDocument/definition", **editor.at(uri, "type: robot", 8))
+    assert place["uri"].endswith("types/robot.yaml")
+    editor.close(uri)
+
+
+@pytest.mark.parametrize(
+    ("file", "mark", "offset", "name", "files"),
+    [
+        ("types/robot.yaml", "initial: conveyor", 12, "belt", {"robot.yaml", "robot_1.yaml", "robot_2.yaml"}),
+        ("types/robot.yaml", "  move_to:", 4, "go_to", {"robot.yaml", "robot_1.yaml", "robot_2.yaml"}),
+        ("resources/robot_1.yaml", "type: robot", 8, "arm", {"arm.yaml", "robot_1.yaml", "robot_2.yaml"}),
+    ],
+)
+def test_another_name_follows_in_types_and_instances(
+    editor: Editor, robots: Path, file: str, mark: str, offset: int, name: str, files: set[str]
+) -> None:
+    before = {path: path.read_text(encoding="utf-8") for path in robots.rglob("*.yaml")}
+    uri = editor.open(robots / file)
+    editor.apply(editor.ask("textDocument/rename", **editor.at(uri, mark, offset), newName=name))
+    Path(uri.removeprefix("file://")).write_text(editor.text(uri), encoding="utf-8")
+    checked = CliRunner().invoke(app, ["check", str(robots)])
+    assert checked.exit_code == 0, checked.output
+    after = {path: path.read_text(encoding="utf-8") for path in robots.rglob("*.yaml")}
+    assert {path.name for path, text in after.items() if before.get(path) != text} == files
+    editor.close(uri)
