@@ -132,12 +132,27 @@ class NameScope(Immutable):
 
     def find(self, name: Name) -> Variable | None:
         """The variable of that name, or None."""
-        text = str(self.substitute(name))
-        for prefix in self.prefixes:
-            if (found := self.variables.get(prefix + text)) is not None:
-                return Variable(prefix + text, found, name.span)
-        found = self.variables.get(text)
-        return None if found is None else Variable(text, found, name.span)
+        found = self._full(name)
+        return None if found is None else Variable(found, self.variables[found], name.span)
+
+    def type_of(self, name: Name) -> Type | None:
+        """The type of the variable of that name, or None."""
+        found = self._full(name)
+        return None if found is None else self.variables[found]
+
+    def _full(self, name: Name) -> str | None:
+        """The full name of the variable of that name, looked for once; None where there is none."""
+        written = str(name)
+        try:
+            return self._fulls[written]
+        except KeyError:
+            text = str(self.substitute(name))
+            full = (each for prefix in (*self.prefixes, "") if (each := prefix + text) in self.variables)
+            return self._fulls.setdefault(written, next(full, None))
+
+    @cached_property
+    def _fulls(self) -> dict[str, str | None]:
+        return {}
 
     def _argument(self, word: str | Name) -> str | Name:
         return self.parameters[word][0] if isinstance(word, str) and word in self.parameters else word
@@ -260,7 +275,7 @@ def _truth(expression: Expression, scope: NameScope) -> Expression:
     resolved, found = _typed(expression, scope, BOOLEAN)
     if not isinstance(found, BooleanType):
         raise _expected(BOOLEAN, found, expression)
-    return truth_of(resolved, expression.span)
+    return truth_of(resolved, expression.span) if isinstance(resolved, BY_CASES) else resolved
 
 
 def _written(expression: Expression, scope: NameScope, expected: Type) -> Expression:
@@ -755,12 +770,12 @@ def _needs_enumeration(word: Expression, scope: NameScope, other: Expression) ->
     """Return whether `word`, left of a comparison, is to be read as a value of what stands on the `other` side."""
     if not isinstance(word, Name) or str(word) in scope.parameters:
         return False
-    if scope.find(word) is None:
-        unknown = isinstance(other, Name) and str(other) not in scope.parameters and scope.find(other) is None
+    if scope.type_of(word) is None:
+        unknown = isinstance(other, Name) and str(other) not in scope.parameters and scope.type_of(other) is None
         # With two unknown words, the one to complain about is the one that is nobody's value.
         return not unknown or (_is_a_value(word, scope) and not _is_a_value(other, scope))
-    variable = scope.find(other) if isinstance(other, Name) else None
-    return variable is not None and isinstance(variable.type, EnumerationType) and str(word) in variable.type.values
+    type_ = scope.type_of(other) if isinstance(other, Name) else None
+    return isinstance(type_, EnumerationType) and str(word) in type_.values
 
 
 def _is_a_value(word: Expression, scope: NameScope) -> bool:

@@ -33,7 +33,9 @@ def simplify(expression: Expression) -> Expression:
     finite trace, also over unknown values.
     """
     match expression:
-        case Variable() | Constant() | Name() | NamedMembership() | Quantified() | RecordConstant() | Selection():
+        case Comparison(_, Variable(), Constant() | Variable()):  # as most are
+            return expression
+        case Variable() | Constant() | Name():
             return expression
         case And(operands) | Or(operands):
             return _several(expression, tuple(map(simplify, operands)))
@@ -56,6 +58,8 @@ def simplify(expression: Expression) -> Expression:
             return _unary(operator, simplify(operand), span)
         case BinaryTemporal(operator, left, right, span=span):
             return _binary(operator, simplify(left), simplify(right), span)
+        case NamedMembership() | Quantified() | RecordConstant() | Selection():
+            return expression
 
 
 def simplify_assignment(action: Assignment) -> Assignment:
