@@ -114,3 +114,42 @@ def test_what_is_wrong_elsewhere_is_told_all_the_same(press: Path) -> None:
         f"{second}: unknown variable `chosn`; did you mean `chosen`?",
         f"{first}: unknown enumeration or set `spt`; did you mean `spot`?",
     ]
+
+
+COLON = "put quotes around a text with a colon, as in"
+MOVED = '["all p in part where p == next(chosen): bolts[p] := placed if p != first(ends)"]'
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "message"),
+    [
+        (
+            ARM,
+            f"finish: {{when: is_at(to), do: {MOVED}}}",
+            "finish:\n      when: is_at(to)\n      do:\n        - ‹all p in part: bolts[p] := placed",
+            f'expected a text, found a mapping: {COLON} "all p in part: …"',
+        ),
+        (
+            ARM,
+            "start: {do: [target := to]}",
+            "start:\n      ‹do:\n        all p, q in part where p < q: bolts[p] := placed",
+            f'expected a list, found a mapping: {COLON} "all p, q in part: …"',
+        ),
+        (
+            STATION,
+            'rest: "none p in part where p < chosen and is_done(p): bolts[p] == placed"',
+            "‹rest:\n  at most 2 p in part: bolts[p] == placed",
+            f'expected a text or true or false, found a mapping: {COLON} "at most 2 p in part: …"',
+        ),
+        (
+            STATION,
+            'all_tight: "all p in part: bolts[p] == tight"',
+            "all_tight:\n    ‹all p in part: bolts[p] == tight",
+            f'this is a mapping, and a condition is a text: {COLON} "all p in part: …"',
+        ),
+    ],
+)
+def test_a_quantifier_without_quotes(press: Path, file: str, old: str, new: str, message: str) -> None:
+    """YAML takes it for a mapping."""
+    [place] = replace(press, file, old, new)
+    assert findings(press) == [f"{place}: {message}"]
