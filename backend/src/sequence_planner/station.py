@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sequence_planner.analysis.checks.connections import Connections
-from sequence_planner.analysis.checks.ungiven_values import check_never_given
 from sequence_planner.analysis.checks.warning import ModelWarning, described
 from sequence_planner.analysis.store import content_key, read, write
+from sequence_planner.analysis.written import suspicious_in
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.declarations import OPERATION, GroundBefore
 from sequence_planner.automaton.grounding import ground
@@ -33,7 +33,7 @@ class ReadyStation:
     """The station that the controller runs, and that the emulated devices are made from. `ros_1` are the topics of ROS
     1.
 
-    `goes_on` says that nobody needs to confirm production where a hot standby has taken over.
+    `goes_on` says that nobody needs to confirm production where a hot standby has taken over. It is as it is `written`.
     """
 
     automaton: Automaton
@@ -42,6 +42,7 @@ class ReadyStation:
     ros_1: frozenset[str] = frozenset()
     examples: tuple[PipelineExample, ...] = ()
     goes_on: bool = False
+    written: Station | None = None
 
     @property
     def connections(self) -> Connections:
@@ -49,8 +50,8 @@ class ReadyStation:
         return Connections(frozenset(self.pipelines.feeds), self.pipelines.carried)
 
     def suspicions(self) -> list[ModelWarning]:
-        """Return what is suspicious in its pipelines."""
-        return list(check_never_given(self.automaton, self.pipelines))
+        """Return what is suspicious in its documents and its pipelines."""
+        return list(suspicious_in(self.written, self.automaton, self.pipelines))
 
     def failures(self) -> list[Finding]:
         """Return what is wrong with the pipelines as they run: stages that cannot be loaded, and else examples that
@@ -126,7 +127,7 @@ def prepare_station(folder: Path) -> ReadyStation:
         for document in written
     )
     goes_on = station.station.takeover == "automatic"
-    return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples, goes_on)
+    return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples, goes_on, station)
 
 
 def _examples(station: Station) -> Iterator[tuple[str, list[ExampleDocument]]]:

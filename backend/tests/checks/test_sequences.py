@@ -51,6 +51,23 @@ def test_what_contradicts_a_precondition(tmp_path: Path, sequence: str, said: li
     assert here == [f"{place}{each}" for each in said]
 
 
+def test_a_long_condition_is_quoted_with_its_first_words(tmp_path: Path) -> None:
+    """Its place has all of it, and a line that nobody reads to the end says nothing."""
+    covering = " or ".join(f"count == {number} and device.on and part == device.command" for number in range(4))
+    operations = f"""\
+make: {{precondition: true, goal: {covering}}}
+look: {{precondition: true, goal: device.command}}
+s: {{alternative: [make, look]}}
+"""
+    (said,) = (each for each in found(device(tmp_path, operations=operations)) if "sequence" in each)
+    begins = "operations.yaml:3:25: `not (operation.make.active or (count == 0 and device.on and part"
+    assert said.startswith(begins)
+    assert said.endswith(
+        f" …` never holds, so `look` never becomes active in the sequence `s`, beside `make`: {WRITTEN} [never-holds]"
+    )
+    assert len(said) < 320
+
+
 def test_what_can_never_be_reached_together(tmp_path: Path) -> None:
     """The part is taken before the device goes back: it is never there while the command is withdrawn."""
     operations = """\

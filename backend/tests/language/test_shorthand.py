@@ -94,7 +94,6 @@ def meaning(text: str) -> str:
         ("any q in pair where q > p3: bolts[q] == tight", "false"),
         ("all q in pair where n == 1: bolts[q] == tight", "n == 1 implies bolts[p1] == tight"),
         ("at least 3 q in pair: bolts[q] == tight", "bolts[p1] == tight and bolts[p2] == tight and bolts[p3] == tight"),
-        ("at least 4 q in pair: bolts[q] == tight", "false"),
         ("at most 0 q in {p1}: bolts[q] == tight", "not bolts[p1] == tight"),
         (
             "(count q in pair: bolts[q] == tight) > 2",
@@ -345,6 +344,11 @@ def test_it_means_what_it_says_in_each_state(text: str) -> None:
         assert evaluate(simple, state) is said
 
 
+NEVER = "so this never holds: write a smaller number"
+CANNOT_POSE = "cannot compare one of {unknown, home, a, b} with one of {none, big, small}"
+NO_ORDER = "`{}` is one of {}, which has no order: declare its enumeration with `ordered: true`"
+
+
 def _condition(text: str) -> object:
     return resolve_predicate(parse(text), SCOPE)
 
@@ -393,16 +397,48 @@ def _action(text: str) -> object:
         (_condition, "‹is_at›", "`is_at` has 1 argument (p), found 0"),
         (_condition, "‹is_at(home, a)›", "`is_at` has 1 argument (p), found 2"),
         (_condition, "‹all_tight(home)›", "`all_tight` has no argument, found 1"),
-        (_condition, "‹is_at(tool)›", "cannot compare one of {home, a, b} with one of {none, big, small}"),
+        (_condition, "is_at(‹tool›)", "cannot compare one of {home, a, b} with one of {none, big, small}"),
+        (_condition, "is_at(‹hom›)", "unknown variable or value `hom`; did you mean `home`?"),
+        (_condition, "is_at(‹p1›)", "`is_at` is about one of {home, a, b}, and `p1` is none of them"),
+        (
+            _condition,
+            "is_at(‹free›)",
+            "`free` is a set, and one value stands here: write `all f in free: is_at(f)`",
+        ),
+        (_condition, "near(home, ‹unknwon›)", "unknown variable or value `unknwon`; did you mean `unknown`?"),
+        (_condition, "n == 1 and near(at, ‹tool›)", CANNOT_POSE),
+        (_condition, "near(at, next(‹tool›))", NO_ORDER.format("tool", "{none, big, small}")),
+        (
+            _condition,
+            "tool_for[‹p2›] == big",
+            "`tool_for` is about one of {unknown, home, a, b}, and `p2` is none of them",
+        ),
+        (_condition, "‹tool_for(at)› == big", "`tool_for` is a map: write `tool_for[at]`"),
+        (_condition, "‹tool_for(at, big)›", "`tool_for` is a map: write `tool_for[at] == big`"),
+        (_condition, "‹tool_for› == big", "`tool_for` is a map: write `tool_for[…]`"),
+        (_condition, "‹near[home]› == a", "`near` is a relation between two values: write `near(home, …)`"),
+        (_condition, "‹near[home, a]›", "`near` is a relation between two values: write `near(home, a)`"),
+        (_condition, "‹near›", "`near` is a relation between two values: write `near(…, …)`"),
+        (_condition, "‹is_at[home]›", "`is_at` is a predicate: write `is_at(home)`"),
+        (_condition, "‹at least 4 q in pair: bolts[q] == tight›", f"there are 3 values of `pair`, {NEVER}"),
+        (_condition, "n == 1 and ‹exactly 4 q in pair: bolts[q] == tight›", f"there are 3 values of `pair`, {NEVER}"),
+        (_condition, "‹exactly 3 q in {p1, p3}: bolts[q] == tight›", f"there are 2 values of these, {NEVER}"),
+        (_condition, "‹exactly 2 q in {p1}: bolts[q] == tight›", f"there is 1 value of these, {NEVER}"),
+        (_condition, "‹at least 7 q in pair, r in {p1, p3}: n == 1›", f"there are 6 choices of values, {NEVER}"),
+        (
+            _condition,
+            "all r in pair: ‹at least 4 q in pair where q < r: n == 1›",
+            f"there are 3 values of `pair`, {NEVER}",
+        ),
         (_condition, "‹near(at)›", "`near` has 2 arguments, found 1"),
         (
             _condition,
-            "‹previous(at)› == home",
+            "previous(‹at›) == home",
             "`at` is one of {unknown, home, a, b}, which has no order: declare its enumeration with `ordered: true`",
         ),
         (
             _condition,
-            "‹first(tool)› == none",
+            "first(‹tool›) == none",
             "`tool` is one of {none, big, small}, which has no order: declare its enumeration with `ordered: true`",
         ),
         (

@@ -183,8 +183,8 @@ def test_a_package_that_is_not_here(station: Path, package: Path) -> None:
 def test_a_package_that_was_changed_is_refused_and_can_be_brought_back(fetched: Path) -> None:
     replace(fetched, "packages/robots/types/robot.yaml", "timeouts: {react: 2", "timeouts: {react: 3")
     message = (
-        "the package `robots` is not what packages.lock has the hash of: `packages fetch` brings back what is locked, "
-        "`packages update robots` locks what its source has now"
+        "the package `robots` is not what packages.lock has the hash of: `packages fetch` brings back what is locked "
+        "if its source still has that, `packages update robots` locks what its source has now"
     )
     assert f"{fetched / LOCKED}:1:1: {message}" in findings(fetched)
     verified = finished("packages", "verify", str(fetched))
@@ -196,12 +196,51 @@ def test_a_package_that_was_changed_is_refused_and_can_be_brought_back(fetched: 
 
 def test_a_source_that_has_changed_is_not_taken_unasked(fetched: Path, package: Path) -> None:
     replace(package, "types/robot.yaml", "timeouts: {react: 2", "timeouts: {react: 3")
-    refused = finished("packages", "fetch", str(fetched))
-    assert refused.returncode == 2
-    assert "`packages update robots` locks it as it is now" in refused.stderr
+    kept = finished("packages", "fetch", str(fetched))
+    assert (kept.returncode, kept.stdout) == (0, "robots 1.2.0: as it is locked\n")
+    assert read_station(fetched).automaton == read_station(ROBOTS).automaton
     assert finished("packages", "update", str(fetched)).returncode == 0
     moving = read_station(fetched).automaton.abilities["robot_1.move_to(buffer)"]
     assert moving.timeouts.react == 3
+
+
+def test_what_is_here_as_it_is_locked_needs_no_source(fetched: Path, package: Path) -> None:
+    shutil.rmtree(package)
+    kept = finished("packages", "fetch", str(fetched))
+    assert (kept.returncode, kept.stdout) == (0, "robots 1.2.0: as it is locked\n")
+    shutil.rmtree(fetched / "packages")
+    refused = finished("packages", "fetch", str(fetched))
+    assert refused.stderr == "the package `robots`: there is no package.yaml where it is brought from\n"
+
+
+def test_what_neither_the_station_nor_the_source_has_any_more(fetched: Path, package: Path) -> None:
+    """Then nothing is taken unasked, and the folder stays as it is."""
+    for each in (package / "types", fetched / "packages" / "robots" / "types"):
+        replace(each, "robot.yaml", "timeouts: {react: 2", "timeouts: {react: 3")
+    (package / "types" / "robot.yaml").write_text((package / "types" / "robot.yaml").read_text() + "# another\n")
+    before = (fetched / "packages" / "robots" / "types" / "robot.yaml").read_text()
+    refused = finished("packages", "fetch", str(fetched))
+    assert (refused.returncode, refused.stderr) == (
+        2,
+        "the package `robots` cannot be brought as it is locked: ../shared/robots has another one by now than "
+        "packages.lock has the hash of. Bring packages/robots back from the history of the model, or let "
+        "`packages update robots` lock what its source has now\n",
+    )
+    assert (fetched / "packages" / "robots" / "types" / "robot.yaml").read_text() == before
+    assert finished("packages", "update", str(fetched)).returncode == 0
+    assert finished("packages", "verify", str(fetched)).returncode == 0
+
+
+def test_another_source_in_the_station_is_noticed(fetched: Path, package: Path) -> None:
+    other = Path(shutil.copytree(package, package.parent / "newer"))
+    (other / "package.yaml").write_text(MANIFEST.replace("1.2.0", "1.3.0"))
+    [place] = replace(
+        fetched, "station.yaml", "  robots: {path: ../shared/robots}", "  ‹robots: {path: ../shared/newer}"
+    )
+    message = "packages.lock has the package `robots` from ../shared/robots, and not from ../shared/newer"
+    assert f"{place}: {message}: bring it with `sequence-planner packages fetch`" in findings(fetched)
+    assert finished("packages", "fetch", str(fetched)).stdout == "robots 1.3.0: locked\n"
+    assert read_station(fetched).automaton == read_station(ROBOTS).automaton
 
 
 def test_two_packages_of_one_name(fetched: Path, package: Path) -> None:

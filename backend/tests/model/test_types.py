@@ -352,6 +352,51 @@ def test_what_is_wrong_with_an_argument_in_a_text_names_the_argument(robots: Pat
     assert two.startswith(f"{place}: in robot_2 ({robots / TWO}:3:64): unknown variable `outfeed`")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "argument", "message"),
+    [
+        # a number, alone and in a list
+        (
+            "timeouts: {react: 2, finish: 15}",
+            "timeouts: {react: 2, finish: ‹speed}",
+            "-1",
+            "expected a number of at least 0, found `-1`",
+        ),
+        ("takes: [1, 2]", "takes: ‹[1, speed]", "0.5", "from 1 to 0.5 seconds is no duration: write the fewest first"),
+        (
+            "executing and at == stop",
+            "executing and at == stop and parts_on_buffer == ‹speed",
+            "7",
+            "cannot compare an integer in 0..2 with the integer 7",
+        ),
+        # a part of a type and of a name
+        (
+            "type: stops, initial: conveyor",
+            "type: ‹'0..{speed}'",
+            "-4",
+            "the range 0..-4 is empty: write the smaller number first",
+        ),
+        (
+            "  /{namespace}/command",
+            "  ‹/{speed}/command",
+            "8",
+            "`/8/command` is not a topic name: write it absolute, as in /robot/state, of letters, digits and single "
+            "underscores, no part beginning with a digit",
+        ),
+    ],
+)
+def test_what_is_wrong_with_an_argument_names_its_place(
+    robots: Path, old: str, new: str, argument: str, message: str
+) -> None:
+    replace(robots, TYPE, "  namespace: text\n", "  namespace: text\n  speed: {kind: number, default: 2}\n")
+    if "command" in old:
+        replace(robots, TYPE, "speed: {kind: number, default: 2}", "speed: {kind: text, default: robot_2}")
+        argument = f"'{argument}'"
+    [given] = replace(robots, ONE, "conveyor: infeed}", f"conveyor: infeed, speed: ‹{argument}}}")
+    [place] = replace(robots, TYPE, old, new)
+    assert f"{place}: in robot_1 ({given}): {message}" in findings(robots)
+
+
 def test_an_argument_that_a_name_of_the_resource_hides(robots: Path) -> None:
     replace(robots, ONE, "measured:\n", "measured:\n  infeed: {type: bool}\n")
     message = f"the variable `infeed` of the resource hides what is meant here: {HIDES}"

@@ -48,7 +48,8 @@ _KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
 class Declarations:
     """The names of a station. `types` has the type of everything an expression can read.
 
-    `broken` are names that are declared, but of no usable type: their uses are not wrong as well.
+    `broken` are names that are declared, but of no usable type, and `unusable` those of enumerations, sets, relations,
+    maps and predicates that mean nothing: their uses are not wrong as well.
     """
 
     def __init__(self, station: Station, findings: Findings) -> None:
@@ -59,6 +60,7 @@ class Declarations:
         self.types: dict[str, Type] = {}
         self.places: dict[str, Place] = {}
         self.broken: set[str] = set()
+        self.unusable: set[str] = set()
         self._check_resources()
         self._read_enumerations()
         self._read_variables()
@@ -81,7 +83,7 @@ class Declarations:
             list(self.types.items()),
             list(self.variables.items()),
             list(self.enumerations.items()),
-            frozenset(self.broken),
+            frozenset(self.broken | self.unusable),
             self.vocabulary.declared(),
         )
 
@@ -137,7 +139,7 @@ class Declarations:
                     self._findings.add(
                         name, f"the parameter `{name}` hides the variable `{hidden}`: rename one of them"
                     )
-            if enumeration not in self.enumerations:
+            if enumeration not in self.enumerations and enumeration not in self.unusable:
                 near = suggestion(enumeration, self.enumerations)
                 self._findings.add(enumeration, f"unknown enumeration `{enumeration}`{near}")
 
@@ -168,7 +170,7 @@ class Declarations:
                 self.check_name(value)
                 if value in values[:index]:
                     self._findings.add(value, f"duplicate value `{value}` in `{name}`")
-        self.enumerations |= read_enumerations(self._station, self._findings)
+        self.enumerations |= read_enumerations(self._station, self._findings, self.unusable)
         for name, type_ in ShorthandReader(self, self._station, self._findings).read_sets():
             self.check_name(name)
             if name in self._station.station.enumerations or name == "bool":
@@ -180,24 +182,24 @@ class Declarations:
         """The names that stand for something longer."""
         reader = ShorthandReader(self, self._station, self._findings)
         station = self._station.station
-        for names in (station.relations, station.maps, station.predicates):
-            for name in names:
-                self._declare_short(str(name), name)
-        for resource, document in self._station.resources.items():
-            for name in (*document.relations, *document.maps, *document.predicates):
-                self._declare_short(f"{resource}.{name}", name)
+        for full, name in self._short_names():
+            self._declare_short(full, name)
         ordered = [
             self.enumerations[str(name)]
             for name, document in station.enumerations.items()
             if isinstance(document, EnumerationDocument) and document.ordered and str(name) in self.enumerations
         ]
-        return Vocabulary(
-            self.enumerations,
-            tuple(ordered),
-            dict(reader.read_relations()),
-            dict(reader.read_maps()),
-            reader.read_predicates({name: document.predicates for name, document in self._station.resources.items()}),
-        )
+        relations, maps = dict(reader.read_relations()), dict(reader.read_maps())
+        resources = {name: document.predicates for name, document in self._station.resources.items()}
+        predicates = reader.read_predicates(resources)
+        self.unusable |= {full for full, _ in self._short_names()} - {*relations, *maps, *predicates}
+        return Vocabulary(self.enumerations, tuple(ordered), relations, maps, predicates, frozenset(self.unusable))
+
+    def _short_names(self) -> Iterator[tuple[str, SourceText]]:
+        """All relations, maps and predicates: the full name of each, and that as it is written."""
+        for resource, document in ((None, self._station.station), *self._station.resources.items()):
+            for name in (*document.relations, *document.maps, *document.predicates):
+                yield (str(name) if resource is None else f"{resource}.{name}"), name
 
     def _declare_short(self, full: str, name: SourceText) -> None:
         self.check_name(name)
@@ -269,6 +271,8 @@ class Declarations:
             return BOOLEAN
         if match := _RANGE.fullmatch(text):
             return self._range(text, int(match[1]), int(match[2]))
+        if text in self.unusable:
+            return None
         if text not in self.enumerations:
             near = suggestion(text, ["bool", *self.enumerations])
             message = f"unknown type `{text}`: write bool, a range such as 0..3, or an enumeration{near}"

@@ -34,15 +34,22 @@ RESERVED = frozenset({*STEPS, *ENDS, *QUANTIFIERS, "exactly", "where"})
 # Enumerations and named sets.
 
 
-def read_enumerations(station: Station, findings: Findings) -> dict[str, EnumerationType]:
-    """The type of each enumeration; what is wrong with what it includes is noted."""
+def read_enumerations(station: Station, findings: Findings, unusable: set[str]) -> dict[str, EnumerationType]:
+    """The type of each enumeration; what is wrong with what it includes is noted, and it is `unusable` then, as are
+    those that include it.
+    """
     found: dict[str, EnumerationType] = {}
     written = station.station.enumerations
-    for name, values in station.station.enumeration_values().items():
-        document = written[name]
+    for name, document in written.items():
+        before = len(findings.all)
         if isinstance(document, EnumerationDocument):
             check_included(name, document, station, findings)
-        if values:
+        if len(findings.all) > before:
+            unusable.add(str(name))
+    for name, values in station.station.enumeration_values().items():
+        if not unusable.isdisjoint(_reached(name, station)):
+            unusable.add(str(name))
+        elif values:
             found[str(name)] = EnumerationType(tuple(map(str, values)))
     return found
 
@@ -78,7 +85,7 @@ class DeclaredTypes(Protocol):
     """The types that are declared so far, and how parameters and types are checked."""
 
     enumerations: dict[str, EnumerationType]
-    broken: set[str]
+    unusable: set[str]
 
     def check_parameters(self, parameters: Mapping[SourceText, SourceText], *prefixes: str) -> None:
         """Note parameters that are none, or hide something."""
@@ -96,6 +103,7 @@ class ShorthandReader:
         self._resources = station.resources
         self._findings = findings
         self._domains = declarations.enumerations
+        self._unusable = declarations.unusable
 
     def read_sets(self) -> Iterator[tuple[SourceText, EnumerationType]]:
         """Each named set with its values, in the order of its enumeration."""
@@ -105,7 +113,10 @@ class ShorthandReader:
             for name in ready or pending:
                 if not ready:
                     self._findings.add(name, f"`{name}` would be a part of itself")
-                elif (type_ := self.read_set(name, pending[name])) is not None:
+                    self._unusable.add(str(name))
+                elif (type_ := self.read_set(name, pending[name])) is None:
+                    self._unusable.add(str(name))
+                else:
                     yield name, type_
             pending = {name: document for name, document in pending.items() if ready and name not in ready}
 
@@ -113,10 +124,14 @@ class ShorthandReader:
         return {str(document.of), *map(str, document.values or document.excludes or ())}
 
     def read_set(self, name: SourceText, document: SetDocument) -> EnumerationType | None:
-        """The values of one set; None where its enumeration is unknown or nothing is left."""
+        """The values of one set; None where something is wrong with it, or nothing is left."""
+        texts = document.values or document.excludes or []
         if (whole := self._domain(document.of)) is None:
             return None
-        named = self._values_among(document.values or document.excludes or [], whole)
+        before = len(self._findings.all)
+        named = self._values_among(texts, whole)
+        if len(self._findings.all) > before or any(str(text) in self._unusable for text in texts):
+            return None
         is_kept = document.values is not None
         values = tuple(value for value in whole.values if (value in named) is is_kept)
         if not values:
@@ -134,17 +149,18 @@ class ShorthandReader:
                 found |= dict.fromkeys(value for value in self._domains[str(text)].values if value in whole.values)
                 if strangers := [value for value in self._domains[str(text)].values if value not in whole.values]:
                     self._findings.add(text, f"`{text}` has values that do not belong here, such as `{strangers[0]}`")
-            else:
+            elif str(text) not in self._unusable:
+                owner = next((name for name, each in self._domains.items() if text in each.values), None)
                 near = suggestion(text, [*whole.values, *self._domains])
+                near = near if owner is None else f"; it is one of `{owner}`"
                 self._findings.add(text, f"`{text}` is no value of {_shortly(whole)} and no set{near}")
         return found
 
     def _domain(self, name: SourceText) -> EnumerationType | None:
-        if str(name) not in self._domains:
+        if str(name) not in self._domains and str(name) not in self._unusable:
             near = suggestion(name, self._domains)
             self._findings.add(name, f"unknown enumeration or set `{name}`{near}")
-            return None
-        return self._domains[str(name)]
+        return self._domains.get(str(name))
 
     # Relations and maps
 
@@ -192,6 +208,8 @@ class ShorthandReader:
         self, name: SourceText, document: ValueMapDocument, source: EnumerationType, target: Type
     ) -> Mapping[str, Value]:
         table: dict[str, Value] = {}
+        before = len(self._findings.all)
+        is_whole = not any(str(key) in self._unusable for key in document.values)
         for key, value in document.values.items():
             self._check_value(key, value, target)
             for each in self._values_among([key], source):
@@ -203,9 +221,10 @@ class ShorthandReader:
             self._check_value(name, document.otherwise, target)
             rest = document.otherwise
             table |= dict.fromkeys(missing, str(rest) if isinstance(rest, SourceText) else rest)
-        elif missing:
+        elif missing and is_whole and len(self._findings.all) == before:
             shown = ", ".join(f"`{value}`" for value in missing[:3]) + (" and others" if len(missing) > 3 else "")
-            self._findings.add(name, f"`{name}` says nothing for {shown}: add them, or `otherwise`")
+            them = "it" if len(missing) == 1 else "them"
+            self._findings.add(name, f"`{name}` says nothing for {shown}: add {them}, or `otherwise`")
         return table
 
     def _check_value(self, key: SourceText, value: Value | SourceText, target: Type) -> None:
@@ -232,8 +251,6 @@ class ShorthandReader:
             body = _body(condition)
             if len(known) == len(types) and body is not None:
                 found[full] = NamedPredicate(full, known, body, prefixes)
-            else:
-                self._declarations.broken.add(full)
         return found
 
 

@@ -46,6 +46,7 @@ from sequence_planner.language.lexer import (
 )
 from sequence_planner.language.syntax import (
     And,
+    ArgumentWord,
     Arithmetic,
     Assignment,
     BinaryTemporal,
@@ -526,7 +527,8 @@ class _Parser:
         if self._token.kind != "name":
             self._unfit("a value or parameter")
         if self._tokens[self._next + 1].kind in (",", ")", "]"):
-            return self._advance().text
+            word = self._advance()
+            return ArgumentWord(word.text, word.span)
         self._depth += 1
         if self._depth > MOST_NESTED:
             raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", self._token.span)

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
-from operator import itemgetter
 from typing import TypeVar
 
 from sequence_planner.core.immutable import Immutable, replace
@@ -35,10 +34,11 @@ from sequence_planner.language.shorthand.cases import (
     require_few,
     truth_of,
 )
+from sequence_planner.language.shorthand.misuse import decided_by_number, not_among, other_form
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, NamedPredicate, Vocabulary
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import placed_at
-from sequence_planner.language.suggestions import arguments_of, beginning_with, nearest, nearest_of, shape_of
+from sequence_planner.language.suggestions import beginning_with, meant, nearest, nearest_of
 from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
@@ -89,7 +89,7 @@ MIRRORED = {"==": "==", "!=": "!=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
 class UnusableError(ExpressionError):
-    """A predicate is used whose own condition is wrong."""
+    """Something is used that is wrong where it is declared."""
 
 
 class CircleError(ExpressionError):
@@ -249,26 +249,10 @@ def type_of(expression: Expression, scope: NameScope) -> Type:
     return _typed(expression, scope, None)[1]
 
 
-_ALIKE = 0.5  # as arguments have to be for an instance to be what was meant
-
-
 def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> str:
     """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
     every = list(candidates)
-    return _said(word, every, nearest(word, every, likeness))
-
-
-def _said(word: str, candidates: Iterable[str], *near: tuple[float, str] | None) -> str:
-    """The one that is most like it, the first of those that are equally; of several instances what they look like."""
-    found = [each for each in near if each is not None]
-    if not found:
-        return ""
-    meant = max(found, key=itemgetter(0))[1]
-    shape = shape_of(meant)
-    if shape != meant and nearest(arguments_of(word), [arguments_of(meant)], _ALIKE) is None:
-        first, *others = (name for name in candidates if shape_of(name) == shape)
-        return f"; did you mean `{shape}`, as in `{first}`?" if others else f"; did you mean `{first}`?"
-    return f"; did you mean `{meant}`?"
+    return meant(word, every, nearest(word, every, likeness))
 
 
 def _truth(expression: Expression, scope: NameScope) -> Expression:
@@ -381,6 +365,7 @@ def _domain(name: Name, scope: NameScope) -> EnumerationType:
     domains = scope.vocabulary.domains
     word = str(name)
     if word not in domains:
+        _require_usable(word, name.span, scope)
         what = "`in` needs values in braces, an enumeration or a named set"
         is_value = any(word in type_.values for type_ in domains.values())
         hint = f"; write {{{word}}} for a single value" if is_value else suggestion(word, domains)
@@ -440,6 +425,8 @@ def _quantified(quantified: Quantified, scope: NameScope, resolve: _Resolve) -> 
     """A quantifier written out; its body is resolved with `resolve`."""
     span = quantified.span
     instances = list(_instances(quantified, scope, resolve))
+    if (decided := decided_by_number(quantified, scope.vocabulary)) is not None and not decided.always:
+        raise ExpressionError(decided.message, span)
     if quantified.quantifier == "all":
         parts = [body if chosen == TRUE else Implies(chosen, body, span) for chosen, body in instances]
         return parts[0] if len(parts) == 1 else And(tuple(parts), span) if parts else TRUE
@@ -554,8 +541,12 @@ def _require_arguments(name: Name, declared: str, wanted: tuple[str, ...]) -> No
 
 def _argument_of(name: Name, index: int, type_: EnumerationType, scope: NameScope) -> Dependent:
     """An argument of a predicate, relation or map, which must have a value in common with `type_`."""
-    argument = name.path[-1].arguments[index]
-    written = argument if isinstance(argument, Name) else Name((Component(argument),), name.span)
+    written = name.argument(index)
+    word = str(written)
+    is_known = word in type_.values or word in scope.parameters or scope.find(written) is not None
+    wrong = not_among(word, name, type_, scope.vocabulary) if written.is_word and not is_known else None
+    if wrong is not None:
+        raise ExpressionError(wrong, written.span)
     found = _comparable(written, type_, scope)
     return by_value(found, name.span) if not isinstance(found, Constant) else found
 
@@ -566,19 +557,17 @@ def _in_order(name: Name, scope: NameScope) -> tuple[Dependent, Type]:
     vocabulary = scope.vocabulary
     if head.name in ENDS:
         _require_arguments(name, head.name, ("a set",))
-        argument = head.arguments[0]
-        set_name = argument if isinstance(argument, Name) else Name((Component(argument),), name.span)
+        set_name = name.argument(0)
         domain = _domain(set_name, scope)
         if (order := vocabulary.order_of(domain)) is None:
-            raise _unordered(str(set_name), domain, name.span)
+            raise _unordered(str(set_name), domain, set_name.span)
         values = [value for value in order.values if value in domain.values]
         return Constant(values[ENDS[head.name]], name.span), domain
     _require_arguments(name, head.name, ("a value",))
-    argument = head.arguments[0]
-    written = argument if isinstance(argument, Name) else Name((Component(argument),), name.span)
+    written = name.argument(0)
     value, type_ = _value_of_argument(written, scope)
     if not isinstance(type_, EnumerationType) or (order := vocabulary.order_of(type_)) is None:
-        raise _unordered(str(written), type_, name.span)
+        raise _unordered(str(written), type_, written.span)
     step = STEPS[head.name]
     neighbours = zip(order.values, order.values[1:], strict=False)
     table = dict(neighbours if step > 0 else ((after, before) for before, after in neighbours))
@@ -680,10 +669,19 @@ def _named(name: Name, scope: NameScope, expected: Type | None) -> tuple[Depende
     return variable, variable.type
 
 
+def _require_usable(name: str, span: Span, scope: NameScope) -> None:
+    """Raise `UnusableError` for a name that is declared wrongly."""
+    if any(prefix + name in scope.vocabulary.unusable for prefix in (*scope.prefixes, "")):
+        raise UnusableError(f"`{name}` means nothing", span)
+
+
 def _unknown(name: Name, scope: NameScope, values: Iterable[str]) -> ExpressionError:
     first = name.path[0]
+    _require_usable(".".join(part.name for part in name.path), name.span, scope)
     if len(name.path) == 1 and first.name in PREFIX_LETTERS and first.arguments and not first.indexed:
         return temporal_refused(first.name, name.span)
+    if (said := other_form(name, scope.vocabulary, scope.prefixes)) is not None:
+        return ExpressionError(said, name.span)
     what = "variable or value" if values else "variable"
     return ExpressionError(f"unknown {what} `{name}`{_meant(name, scope, values)}", name.span)
 
@@ -712,7 +710,7 @@ def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
 
 
 def _suggestion_of(word: str, own: Collection[str], names: tuple[str, ...], likeness: float) -> str:
-    return _said(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
+    return meant(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
 
 
 def _names(type_: Type) -> tuple[str, ...]:

@@ -12,12 +12,14 @@ from collections import Counter
 from collections.abc import Iterable
 from difflib import SequenceMatcher
 from functools import lru_cache
+from operator import itemgetter
 
 # What is known of a list of names is kept for the next questions about it; a list is that of a station.
 _OWNERS, _PARAMETERS = "./", "(["  # what stands behind an owner, and before a parameter
 _ARGUMENTS = re.compile(r"([(\[])([^()\[\]]+)([)\]])")
 _LISTS = 4
 _WORDS = 64
+_ALIKE = 0.5  # as arguments have to be for an instance to be what was meant
 
 
 def nearest(word: str, candidates: Iterable[str], cutoff: float) -> tuple[float, str] | None:
@@ -32,6 +34,21 @@ def nearest(word: str, candidates: Iterable[str], cutoff: float) -> tuple[float,
     if part is None or (whole is not None and whole[0] >= part[0]):
         return whole
     return part[0], parts[part[1]]
+
+
+def meant(word: str, candidates: Iterable[str], *near: tuple[float, str] | None) -> str:
+    """`; did you mean ...?` with the one that is most like it, the first of those that are equally; of several
+    instances what they look like; nothing if there is none.
+    """
+    found = [each for each in near if each is not None]
+    if not found:
+        return ""
+    most = max(found, key=itemgetter(0))[1]
+    shape = shape_of(most)
+    if shape != most and nearest(arguments_of(word), [arguments_of(most)], _ALIKE) is None:
+        first, *others = (name for name in candidates if shape_of(name) == shape)
+        return f"; did you mean `{shape}`, as in `{first}`?" if others else f"; did you mean `{first}`?"
+    return f"; did you mean `{most}`?"
 
 
 def shape_of(name: str) -> str:

@@ -7,7 +7,7 @@ source text and take no part in comparison, so that equal expressions written at
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from sequence_planner.core.immutable import Immutable, uncompared
 from sequence_planner.language.types import Type, Value
@@ -39,6 +39,22 @@ class Constant(Immutable):
     span: Span = uncompared(default=NOWHERE)
 
 
+class ArgumentWord(str):
+    """A word of a text, which knows where it stands there."""
+
+    __slots__ = ("span",)
+    span: Span
+
+    def __new__(cls, text: str, span: Span) -> Self:
+        """`text` stands at `span`."""
+        self = super().__new__(cls, text)
+        self.span = span
+        return self
+
+    def __reduce__(self) -> tuple[type[ArgumentWord], tuple[str, Span]]:
+        return ArgumentWord, (str(self), self.span)
+
+
 class Component(NamedTuple):
     """One part of a dotted name: `run_nut`, `move_to_position(above)`, `bolts[bolt_pair_1]`.
 
@@ -68,6 +84,13 @@ class Name(Immutable):
     @cached_property
     def _text(self) -> str:
         return self.path[0].name if self.is_word else ".".join(map(str, self.path))
+
+    def argument(self, index: int) -> Name:
+        """An argument of its last part."""
+        written = self.path[-1].arguments[index]
+        if isinstance(written, Name):
+            return written
+        return Name((Component(written),), written.span if isinstance(written, ArgumentWord) else self.span)
 
     @property
     def is_word(self) -> bool:

@@ -147,13 +147,17 @@ def _is_space(written: str) -> bool:
 
 
 class Piece(NamedTuple):
-    """A part of a text, from `start` to `end`, that stands for what was written from `begin` to `stop`."""
+    """A part of a text, from `start` to `end`, that stands for what was written from `begin` to `stop`.
+
+    `given` is where an instance gives that.
+    """
 
     start: int
     end: int
     begin: int
     stop: int
     argument: SourceText | None
+    given: Place | None = None
 
 
 class ExpandedText(SourceText):
@@ -175,9 +179,8 @@ class ExpandedText(SourceText):
     def at(self, span: Span) -> Place:
         """The place in the type of a span; where it is an argument, with the place of that."""
         place = self.template.at(self.in_template(span))
-        argument = self.argument(Span(span.start, span.start))
-        instance = self.place.instance
-        return place._replace(instance=instance if argument is None else with_given_at(instance, argument.place))
+        given = (each.given for each in self.pieces if each.start <= span.start < each.end)
+        return place._replace(instance=with_given_at(self.place.instance, next(given, None)))
 
     def written(self, span: Span) -> tuple[int, int]:
         """Return where a span begins and ends in `raw`."""
@@ -203,6 +206,6 @@ class ExpandedText(SourceText):
         return index + shift
 
 
-def with_given_at(instance: str, place: Place) -> str:
-    """An instance by its name, with another place in it."""
-    return f"{instance.partition(' ')[0]} ({place})"
+def with_given_at(instance: str, place: Place | None) -> str:
+    """An instance by its name, with another place in it, if there is one."""
+    return instance if place is None else f"{instance.partition(' ')[0]} ({place})"

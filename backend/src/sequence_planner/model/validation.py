@@ -5,6 +5,7 @@ pydantic finds it; here its findings get their place in the file, and those abou
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, cast
 
@@ -20,6 +21,8 @@ from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
 # What a mapping is called in a document.
 _NAMES = "names with their definitions"
 _IN_DOCUMENTS = {"dict": _NAMES, "mapping": _NAMES, "model": _NAMES}
+# How a text begins that YAML takes for a mapping because of its colon.
+_QUANTIFIER = re.compile(r"(?:all|any|none|count|exactly \d+|at (?:least|most) \d+) +\w+ *(?:, *\w+ *)* in +\w*")
 
 
 def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, kind: type[BaseModel]) -> list[Finding]:
@@ -27,7 +30,14 @@ def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, k
     findings: list[Finding] = []
     expected: dict[tuple[Place, str], dict[str, None]] = {}
     every = error.errors()
+    unquoted = {
+        each["loc"][:-1]
+        for each in every
+        if each["type"] == "extra_forbidden" and _QUANTIFIER.match(str(each["loc"][-1]))
+    }
     for details in every:
+        if details["type"] == "missing" and details["loc"][:-1] in unquoted:
+            continue  # it is meant as a text, and that is told
         path = (*at, *_path(details["loc"], _content_at(document, at)))
         if message := _misplaced(details, document, at, kind) or _said(details, kind):
             about_name = details["type"] in ("extra_forbidden", "missing")
@@ -35,7 +45,8 @@ def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, k
         elif not _is_looked_into(details, every):
             place = document.place_of_value(path)
             # Each branch of a union complains; together they say what would be right.
-            expected.setdefault((place, shown(details["input"])), {})[_expectation(details)] = None
+            found = f"{shown(details['input'])}{_needs_quotes(details['input'])}"
+            expected.setdefault((place, found), {})[_expectation(details)] = None
     merged = [
         Finding(place, f"expected {' or '.join(wants)}, found {found}") for (place, found), wants in expected.items()
     ]
@@ -92,6 +103,8 @@ def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
     """The whole message for an error that is not about the type of a value."""
     name = str(details["loc"][-1]) if details["loc"] else ""
     match details["type"]:
+        case "extra_forbidden" if _QUANTIFIER.match(name):
+            return f"this is a mapping, and a condition is a text{_quotes_around(name)}"
         case "extra_forbidden":
             return f"`{name}` is not known here{suggestion(name, _fields_at(kind, details['loc'][:-1]))}"
         case "missing":
@@ -159,6 +172,17 @@ def shown(value: object) -> str:
         case list():
             return "a list" if value else "an empty list"
     return "an empty mapping" if value == {} else "a mapping"
+
+
+def _needs_quotes(content: object) -> str:
+    """Say what to do about a condition or an action that YAML took for a mapping because of its colon."""
+    name = str(next(iter(content), "")) if isinstance(content, dict) else ""
+    return _quotes_around(name) if _QUANTIFIER.match(name) else ""
+
+
+def _quotes_around(beginning: str) -> str:
+    written = _QUANTIFIER.match(beginning)
+    return f': put quotes around a text with a colon, as in "{written[0] if written else beginning}: …"'
 
 
 def _fields_at(kind: type[BaseModel], path: Iterable[str | int]) -> list[str]:

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 
 from sequence_planner.analysis.checks.reachability import ReachabilityQuery
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
+from sequence_planner.analysis.checks.warning import quoted
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation, target
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
-from sequence_planner.language.printer import print_expression
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.syntax import Comparison, Constant, Expression, Variable, conjunction
 from sequence_planner.synthesis.bdd import Function
@@ -89,7 +89,7 @@ class Possibility:
             yield FeasibilityFinding("never-allowed", subject, message, trace, cause=cause, consequence=True)
         elif self._is_news(*(conjunction(each.enabled, each.start_guard) for each in subject.abilities)):
             first = subject.abilities[0]
-            guard = print_expression(simplify(conjunction(first.enabled, first.start_guard)))
+            guard = simplify(conjunction(first.enabled, first.start_guard))
             yield FeasibilityFinding("never-starts", subject, f"never starts: {_never(guard)}", relative=True)
 
     def _begun(self, ability: Ability) -> Expression:
@@ -189,7 +189,7 @@ class Possibility:
             in_sequence = self._out_of_turn(operation)
             keys = () if in_sequence is None else (f"operation.{operation.name}.sequence.{in_sequence}",)
             where = "" if in_sequence is None else f" in the sequence `{in_sequence}`, {operation.turns[in_sequence]}"
-            message = f"never becomes active{where}: {_never(print_expression(operation.precondition))}"
+            message = f"never becomes active{where}: {_never(operation.precondition)}"
             subject = replace(subject, keys=(*keys, *subject.keys))
             yield FeasibilityFinding("never-active", subject, message, relative=not keys)
 
@@ -279,8 +279,8 @@ def _causes(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(without_arguments(event_of(name)) for name in names)
 
 
-def _never(condition: str) -> str:
+def _never(condition: Expression) -> str:
     return (
-        f"`{condition}` holds in no state that can be reached, with or without the supervisor. Write what was meant, "
-        "or the action or effect that is missing"
+        f"{quoted(condition)} holds in no state that can be reached, with or without the supervisor. Write what was "
+        "meant, or the action or effect that is missing"
     )

@@ -12,17 +12,18 @@ from pysat.solvers import Solver
 from sequence_planner.analysis.checks.reachability import bits, cannot_be
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
 from sequence_planner.analysis.checks.warning import (
+    MOST_NAMED,
     ModelCondition,
     ModelWarning,
     described,
     listed,
     parts,
     place,
+    quoted,
 )
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
 from sequence_planner.automaton.dependencies import cone_of_influence
 from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import (
     FALSE,
     Arithmetic,
@@ -365,8 +366,8 @@ def check_guards(automaton: Automaton) -> Iterator[ModelWarning]:
     reporting = _Reporting(automaton, everything)
     never, always = _constant(automaton, written)
     for part, others in reporting.worth_saying(always, instances=False):
-        text = print_expression(part.expression)
-        message = f"`{text}` always holds, whatever the values of its variables: leave it out, or write what was meant"
+        always_true = f"{quoted(part.expression)} always holds, whatever the values of its variables"
+        message = f"{always_true}: leave it out, or write what was meant"
         yield reporting.warning("always-holds", part, others, message)
     for part, others in reporting.worth_saying(never):
         message = f"{_contradiction(automaton, part)}{_so(part)}: write what was meant"
@@ -388,7 +389,7 @@ def check_alarms(automaton: Automaton) -> Iterator[ModelWarning]:
     for kind, found, comes in (("always-holds", always, "always"), ("never-holds", never, "never")):
         for part in found:
             message = (
-                f"the alarm `{part.key}` is {comes} there, since `{print_expression(part.expression)}` {comes} holds: "
+                f"the alarm `{part.key}` is {comes} there, since {quoted(part.expression)} {comes} holds: "
                 "write when it is to be there"
             )
             yield ModelWarning(alarms[part.key].place, kind, message)
@@ -476,15 +477,16 @@ def _contradiction(automaton: Automaton, part: ModelCondition) -> str:
     for words in few:
         piece = ModelCondition(part.key, part.what, conjunction(*words), old_flags=part.old_flags)
         if _constant(automaton, [piece])[0]:
-            texts = [f"`{print_expression(word)}`" for word in words]
+            texts = [quoted(word) for word in words]
             return f"{texts[0]} never holds" if len(texts) == 1 else f"{' and '.join(texts)} exclude each other"
-    return f"`{print_expression(part.expression)}` never holds"
+    return f"{quoted(part.expression)} never holds"
 
 
 def _stuck(growth: Growth, part: ModelCondition) -> tuple[str, str]:
     """Return what is said of a part that nothing brings about."""
-    lacking = [f"`{print_expression(each)}`" for each in conjuncts(part.expression) if not growth.may(each)]
-    what = " and ".join(lacking)
+    lacking = [quoted(each) for each in conjuncts(part.expression) if not growth.may(each)]
+    more = f" and {len(lacking) - MOST_NAMED} more" if len(lacking) > MOST_NAMED else ""
+    what = f"{' and '.join(lacking[:MOST_NAMED])}{more}"
     if growth.any_measurement:
         return "unreachable", (
             f"nothing ever makes {what} true, neither an action nor a message{_so(part)}: "

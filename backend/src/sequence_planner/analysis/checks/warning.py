@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from sequence_planner.automaton.automaton import Ability, Automaton, State
 from sequence_planner.automaton.findings import without_arguments
-from sequence_planner.language.printer import print_value
+from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.syntax import TRUE, Expression, conjunction
 from sequence_planner.language.types import Place
 from sequence_planner.synthesis.traces import Trace
@@ -97,6 +97,7 @@ def _start_parts(ability: str) -> tuple[str, str]:
 # A suspicion about a model, and how the parts of a model are named in it.
 
 MOST_NAMED = 4  # of several names in a message
+LONGEST_QUOTED = 160  # characters of a condition in a message
 
 
 @dataclass(frozen=True, order=True)
@@ -132,6 +133,14 @@ def listed(names: Sequence[str], most: int | None = MOST_NAMED) -> str:
     """Several names, in backticks; of more than `most` only the first."""
     shown = ", ".join(f"`{name}`" for name in names[:most])
     return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"
+
+
+def quoted(expression: Expression) -> str:
+    """A condition in backticks; of a long one the first words, since its place has all of it."""
+    text = print_expression(expression)
+    if len(text) <= LONGEST_QUOTED:
+        return f"`{text}`"
+    return f"`{text[:LONGEST_QUOTED].rpartition(' ')[0]} …`"
 
 
 def described(state: State, names: Iterable[str]) -> str:

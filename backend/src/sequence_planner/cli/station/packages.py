@@ -10,8 +10,8 @@ import typer
 from sequence_planner.cli.options import FINDINGS, AsJson, StationFolder, print_json, refuse
 from sequence_planner.model.documents import StationDocument
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.types.fetching import Brought, bring_packages, source_of
-from sequence_planner.model.types.packages import PackageError, UsedPackages, read_lock
+from sequence_planner.model.types.fetching import Brought, bring_packages
+from sequence_planner.model.types.packages import PackageError, UsedPackages, read_lock, source_of
 from sequence_planner.model.yaml.reader import read_yaml
 
 packages = typer.Typer(

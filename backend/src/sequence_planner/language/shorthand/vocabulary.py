@@ -38,7 +38,7 @@ class NamedPredicate(Immutable):
 
 class Vocabulary:
     """All such names of a station. `domains` are its enumerations and named sets, `ordered` those that are compared
-    by the order of their values.
+    by the order of their values. `unusable` are names that are declared, but with something wrong, which is told there.
     """
 
     def __init__(
@@ -48,12 +48,14 @@ class Vocabulary:
         relations: Mapping[str, ValueRelation] | None = None,
         maps: Mapping[str, ValueMap] | None = None,
         predicates: Mapping[str, NamedPredicate] | None = None,
+        unusable: frozenset[str] = frozenset(),
     ) -> None:
         self.domains: Mapping[str, EnumerationType] = domains or {}
         self.ordered = ordered
         self.relations: Mapping[str, ValueRelation] = relations or {}
         self.maps: Mapping[str, ValueMap] = maps or {}
         self.predicates: Mapping[str, NamedPredicate] = predicates or {}
+        self.unusable = unusable
         self.expanded: dict[tuple[str, tuple[str, ...]], Expression] = {}
         """What each predicate means for the values of its parameters, as far as somebody has asked."""
         self.expanding: list[str] = []
@@ -75,7 +77,7 @@ class Vocabulary:
 
     def declared(self) -> tuple[object, ...]:
         """All that is declared: where it is equal, each text means the same."""
-        return (self.domains, self.ordered, self.relations, self.maps, self.predicates)
+        return (self.domains, self.ordered, self.relations, self.maps, self.predicates, self.unusable)
 
     def __getstate__(self) -> dict[str, object]:
         return {**vars(self), "expanded": {}, "expanding": []}

@@ -140,18 +140,22 @@ def _marked(shape: DocumentShape, marks: tuple[object, ...]) -> DocumentShape:
 
 
 class GivenArgument(NamedTuple):
-    """What a parameter is for an instance. `text` is that as it is written in a text, `source` where it was given."""
+    """What a parameter is for an instance. `text` is that as it is written in a text, `source` what was given if it was
+    a text, and `place` where.
+    """
 
     kind: str
     content: SourceText | int | float
     source: SourceText | None
     text: str
+    place: Place | None
 
 
-def given_argument(kind: str, content: SourceText | int | float) -> GivenArgument:
-    """An argument as it was read."""
+def given_argument(kind: str, content: SourceText | int | float, place: Place | None) -> GivenArgument:
+    """An argument as it was read, at `place`; a number that nobody gives has none."""
     text = format(Decimal(repr(content)), "f") if isinstance(content, float) else str(content)
-    return GivenArgument(kind, content, content if isinstance(content, SourceText) else None, text)
+    source = content if isinstance(content, SourceText) else None
+    return GivenArgument(kind, content, source, text, place if source is None else source.place)
 
 
 _IN_BRACES = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)\}")
@@ -185,7 +189,10 @@ class Expansion:
         if self._places is not None and self._document is not None:
             self._places.copy_from(self._document, path, made_at, self._instance)
         if isinstance(content, SourceText):
-            return self._scalar(content, shape)
+            scalar = self._scalar(content, shape)
+            if self._places is not None:
+                self._places.give(made_at, self._instance_of(content, scalar))
+            return scalar
         if isinstance(content, dict):
             made: dict[SourceText, object] = {}
             for key, value in content.items():
@@ -194,12 +201,18 @@ class Expansion:
                     self.duplicates.append(name)
                 within = shape.step_into(key)
                 made[name] = self.expanded(value, within, (*path, str(key)), (*made_at, str(name)))
+                if self._places is not None:
+                    self._places.give((*made_at, str(name)), name.place.instance, of_name=True)
             return made
         if isinstance(content, list):
             entries = shape.entries or ANYTHING
-            return [
+            found = [
                 self.expanded(each, entries, (*path, index), (*made_at, index)) for index, each in enumerate(content)
             ]
+            if self._places is not None and shape.is_number:  # a list in place of a number is right or wrong as a whole
+                given = (self._instance_of(*each) for each in zip(content, found, strict=True))
+                self._places.give(made_at, next((each for each in given if each != self._instance), self._instance))
+            return found
         return content
 
     def text_at(self, text: SourceText, path: EntryPath) -> SourceText:
@@ -228,6 +241,13 @@ class Expansion:
         else:
             yield from _pieces_of(text, self.with_arguments(text))
 
+    def _instance_of(self, written: object, made: object) -> str:
+        """The instance, with the place of the argument that stands for what was `written`, if one does."""
+        if isinstance(made, SourceText):
+            return made.place.instance
+        found = self._arguments.get(written) if isinstance(written, SourceText) else None
+        return with_given_at(self._instance, None if found is None else found.place)
+
     def with_arguments(self, text: SourceText) -> SourceText:
         """A text that is given to another type."""
         return self._text(text, _InText.VALUE)
@@ -243,7 +263,7 @@ class Expansion:
             if self._words is not None and self._words.search(text):
                 pieces = tuple(self._named(text))
         elif self._stands_for(text, use):
-            pieces = (Piece(0, len(self._arguments[text].text), 0, len(text), self._arguments[text].source),)
+            pieces = (self._piece(0, len(text), 0, self._arguments[text]),)
         elif "{" in text:
             pieces = tuple(self._braced(text))
         if not pieces:
@@ -253,9 +273,10 @@ class Expansion:
             name = text[piece.begin : piece.stop].strip("{}")
             made += text[end : piece.begin] + self._arguments[name].text
             end = piece.stop
-        whole = pieces[0].argument if len(pieces) == 1 and pieces[0].stop - pieces[0].begin == len(text) else None
-        instance = self._instance if whole is None else with_given_at(self._instance, whole.place)
-        place = text.place._replace(instance=instance)
+        is_whole = len(pieces) == 1 and pieces[0].stop - pieces[0].begin == len(text)
+        given = {piece.given for piece in pieces} if is_whole or use != _InText.EXPRESSION else set()
+        one = next(iter(given)) if len(given) == 1 else None
+        place = text.place._replace(instance=with_given_at(self._instance, one))
         return ExpandedText(text, made + text[end:], pieces, place)
 
     def _stands_for(self, text: SourceText, use: _InText) -> bool:
@@ -289,4 +310,4 @@ class Expansion:
             shift = made.end - made.stop
 
     def _piece(self, begin: int, stop: int, shift: int, found: GivenArgument) -> Piece:
-        return Piece(begin + shift, begin + shift + len(found.text), begin, stop, found.source)
+        return Piece(begin + shift, begin + shift + len(found.text), begin, stop, found.source, found.place)

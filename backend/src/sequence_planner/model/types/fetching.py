@@ -32,6 +32,7 @@ from sequence_planner.model.types.packages import (
     digest_of,
     read_lock,
     read_manifest,
+    source_of,
 )
 from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.model.yaml.saving import BYTE_ORDER_MARK
@@ -54,15 +55,11 @@ class Brought(NamedTuple):
     is_new: bool
 
 
-def source_of(source: PackageSourceDocument) -> str:
-    """Where a package is brought from, in words."""
-    return str(source.path) if source.git is None else f"{source.git} {source.revision}"
-
-
 def bring_packages(folder: Path, station: StationDocument, update: Collection[str] = ()) -> list[Brought]:
     """Bring all packages that a station names: as they are locked, and those to `update` as their source has them now.
 
-    Raises `PackageError` and `ModelError`; then nothing has changed.
+    What is here as it is locked stays, whatever has become of its source. One that station.yaml names another source of
+    is not locked any more. Raises `PackageError` and `ModelError`; then nothing has changed.
     """
     locked = read_lock(folder)
     found = {str(name): _found(folder, str(name), source, locked, update) for name, source in station.packages.items()}
@@ -90,6 +87,8 @@ def _found(
     if not is_package_name(name):
         raise PackageError(f"`{name}` is no name of a package: use letters, digits and `_`")
     is_kept = before is not None and name not in update and before.source == source_of(source)
+    if before is not None and is_kept and digest_of(here := package_files(folder / FOLDER / name)) == before.hash:
+        return here, None if before.revision is None else str(before.revision)
     revision = None
     if source.git is None:
         files = package_files((folder / str(source.path)).resolve())
@@ -99,8 +98,9 @@ def _found(
     _require_sound(name, files)
     if before is not None and is_kept and digest_of(files) != before.hash:
         raise PackageError(
-            f"the package `{name}` is another one now at {source_of(source)} than {LOCK} has the hash of: "
-            f"`packages update {name}` locks it as it is now"
+            f"the package `{name}` cannot be brought as it is locked: {source_of(source)} has another one by now than "
+            f"{LOCK} has the hash of. Bring {FOLDER}/{name} back from the history of the model, or let "
+            f"`packages update {name}` lock what its source has now"
         )
     return files, revision
 

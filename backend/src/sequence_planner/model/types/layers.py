@@ -142,7 +142,8 @@ def _arguments(instance: str, type_: WrittenInstance, by: Layer, by_type: bool) 
                 made[str(name)] = outer
                 continue
             content = placing.with_arguments(content)
-        made[str(name)] = given_argument(parameter.kind, content)
+        place = None if given is None else by.written.document.place_of_value(("arguments", str(name)))
+        made[str(name)] = given_argument(parameter.kind, content, place)
     return made
 
 

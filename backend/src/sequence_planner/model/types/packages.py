@@ -16,6 +16,7 @@ from sequence_planner.language.types import Place
 from sequence_planner.model.documents import (
     EnumerationForm,
     NamedCondition,
+    PackageSourceDocument,
     RelationDocument,
     SetDocument,
     StationDocument,
@@ -95,7 +96,7 @@ class UsedPackages:
         self._files: dict[str, Files] = {}
         locked = self._locked()
         for name in station.packages:
-            self._add(name, locked)
+            self._add(name, station, locked)
         for each, package in self.packages.items():
             self._check_needs(each, station)
             self._add_declared(each, package, station)
@@ -112,7 +113,7 @@ class UsedPackages:
             self.findings += error.findings
             return {}
 
-    def _add(self, name: SourceText, locked: Mapping[str, LockedPackage]) -> None:
+    def _add(self, name: SourceText, station: StationDocument, locked: Mapping[str, LockedPackage]) -> None:
         if not is_package_name(name):
             self._note(name.place, f"`{name}` is no name of a package: use letters, digits and `_`")
             return
@@ -126,9 +127,14 @@ class UsedPackages:
         except OSError as error:
             self._note(name.place, f"the package `{name}` cannot be read: {error.strerror}")
             return
+        if (source := source_of(station.packages[name])) != locked[name].source:
+            said = f"{LOCK} has the package `{name}` from {locked[name].source}, and not from {source}"
+            self._note(name.place, f"{said}: bring it with `sequence-planner packages fetch`")
+            return
         if digest_of(files) != locked[name].hash:
             ways = (
-                f"`packages fetch` brings back what is locked, `packages update {name}` locks what its source has now"
+                "`packages fetch` brings back what is locked if its source still has that, "
+                f"`packages update {name}` locks what its source has now"
             )
             where = Place(str(home / MANIFEST), 1, 1)
             self._note(where, f"the package `{name}` is not what {LOCK} has the hash of: {ways}")
@@ -172,6 +178,11 @@ class UsedPackages:
 
     def _note(self, place: Place, message: str) -> None:
         self.findings.append(Finding(place, message))
+
+
+def source_of(source: PackageSourceDocument) -> str:
+    """Where a package is brought from, in words."""
+    return str(source.path) if source.git is None else f"{source.git} {source.revision}"
 
 
 def digest_of(files: Files) -> str:

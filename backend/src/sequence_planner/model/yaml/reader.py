@@ -240,6 +240,13 @@ class MadePlaces:
             if (place := found.get(path)) is not None:
                 made[to] = place._replace(instance=instance)
 
+    def give(self, path: EntryPath, instance: str, *, of_name: bool = False) -> None:
+        """Have another instance, with the place of an argument in it, for the value at `path`, or for its name."""
+        is_entry = of_name or (bool(path) and isinstance(path[-1], int))
+        made = self.names if is_entry else self.values
+        if path in made:
+            made[path] = made[path]._replace(instance=instance)
+
 
 def read_yaml(path: Path, name: str) -> YamlDocument:
     """Read one YAML file; `name` is how it is called in messages. Raises `ModelError`."""

@@ -69,6 +69,7 @@ export const check = {
 		'carried-nowhere': 'An output that no topic carries',
 		'never-written': 'Never written',
 		'never-read': 'Never read',
+		'never-used': 'A name that nothing uses',
 		'shared-acknowledgement': 'One answer would end two tasks',
 		'task-never-open': 'A task that nobody is asked to do',
 		'forbids-nothing': 'A specification that forbids nothing',

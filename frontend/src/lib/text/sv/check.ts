@@ -68,6 +68,7 @@ export const check: Text['check'] = {
 		'carried-nowhere': 'En utgång som ingen topic för vidare',
 		'never-written': 'Skrivs aldrig',
 		'never-read': 'Läses aldrig',
+		'never-used': 'Ett namn som inget använder',
 		'shared-acknowledgement': 'Ett svar skulle avsluta två uppgifter',
 		'task-never-open': 'En uppgift som ingen ombeds att göra',
 		'forbids-nothing': 'En specifikation som inte förbjuder något',
