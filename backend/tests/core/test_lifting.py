@@ -14,7 +14,7 @@ from hypothesis.strategies import SearchStrategy
 from sequence_planner.automaton.automaton import Automaton, Kind, VariableDeclaration
 from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding
 from sequence_planner.automaton.lifting.normal_form import normal_form
-from sequence_planner.automaton.lifting.wording import ModelWording
+from sequence_planner.automaton.lifting.wording import ModelWording, phrase
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import NameScope, resolve_predicate
@@ -186,6 +186,28 @@ def test_conditions_of_one_normal_form_are_equal(one: Expression, other: Express
     for alike in by_form.values():
         for state in states(seed):
             assert len({evaluate(each, state) for each in alike}) == 1
+
+
+def test_what_lacks_is_told_by_a_predicate_or_by_the_values_it_is_not_so_for() -> None:
+    state = {**{name: type_.domain[0] for name, type_ in VARIABLES.items()}, "bolts[p2]": "tight"}
+    named = ground("all_tight and n == 0 and robot.ready")
+    assert [phrase(part) for part in WORDING.lacking(named, state)] == ["all_tight", "robot.ready"]
+    unnamed, body = ground("all q in pair: bolts[q] == placed or at == q"), "bolts[of] == placed or at == of"
+    assert [phrase(part) for part in WORDING.lacking(unnamed, state)] == [f"all of in pair: {body}"]
+    state |= {"bolts[p1]": "placed"}
+    assert [phrase(part) for part in WORDING.lacking(unnamed, state)] == [f"all of in {{p2, p3}}: {body}"]
+    state |= {"bolts[p2]": "placed"}
+    assert [phrase(part) for part in WORDING.lacking(unnamed, state)] == ["bolts[p3] == placed or at == p3"]
+
+
+@settings(deadline=None)
+@given(CONDITIONS, SEEDS)
+def test_what_lacks_is_what_keeps_it_from_being_so(condition: Expression, seed: int) -> None:
+    for state in states(seed):
+        lacking = list(WORDING.lacking(condition, state))
+        assert bool(lacking) is (evaluate(condition, state) is not True)
+        assert all(evaluate(ground(phrase(part)), state) is False for part in lacking)
+        assert all(evaluate(part.condition, state) is False for part in lacking)
 
 
 # Indices

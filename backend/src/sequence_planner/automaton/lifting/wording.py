@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from functools import cached_property
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache
 from itertools import product
 from math import prod
+from typing import NamedTuple
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.findings import without_arguments
@@ -19,10 +20,13 @@ from sequence_planner.automaton.lifting.normal_form import (
     negated,
     normal_form,
 )
+from sequence_planner.core.immutable import replace
+from sequence_planner.language.evaluator import Valuation, evaluate
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.resolver import NameScope, expand, resolve_predicate
 from sequence_planner.language.shorthand.vocabulary import NamedPredicate
+from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import rebuilt
 from sequence_planner.language.syntax import (
     NOWHERE,
@@ -42,18 +46,50 @@ from sequence_planner.language.syntax import (
     Quantified,
     Variable,
     children,
+    conjunction,
+    conjuncts,
     occurrences,
 )
 from sequence_planner.language.types import EnumerationType, Value
 
+MOST_KNOWN = 2000  # conditions whose parts are kept
 MOST_CALLS = 1024  # of one predicate, each with other values of its parameters
 _LEAST_RELATED = 3  # values that are said by their relation to another one
+
+
+class ToldPart(NamedTuple):
+    """A part of a condition in the words of a model, and what it means there, written out. Where that is said of each
+    value of a set, `instances` have it for each.
+    """
+
+    words: Expression
+    condition: Expression
+    instances: tuple[tuple[str, Expression], ...] = ()
+
+
+def phrase(*parts: ToldPart) -> str:
+    """Parts of a condition in words."""
+    return print_expression(conjunction(*(part.words for part in parts)))
+
+
+def expansion(parts: Iterable[ToldPart], state: Valuation) -> str | None:
+    """Write out what of some parts does not hold in a state; None where they are told as what they mean."""
+    told = list(parts)
+    if all(part.words == part.condition for part in told):
+        return None
+    return print_expression(conjunction(*(each for part in told for each in untrue(part.condition, state))))
+
+
+def untrue(condition: Expression, state: Valuation) -> list[Expression]:
+    """The conditions that it is put together of, and that do not hold for certain."""
+    return [each for each in conjuncts(condition) if evaluate(each, state) is not True]
 
 
 class ModelWording:
     """The words of the model that `automaton` was made of."""
 
     def __init__(self, automaton: Automaton) -> None:
+        self._parts: dict[int, tuple[Expression, tuple[ToldPart, ...]]] = {}
         self.indices = automaton.indices
         self.scope = NameScope(automaton.types, vocabulary=automaton.vocabulary)
         self._vocabulary = automaton.vocabulary
@@ -69,6 +105,55 @@ class ModelWording:
     def lifted(self, condition: Expression) -> Expression:
         """A ground condition with names for what they stand for. Its text means the same, as `scope` resolves it."""
         return self._lifted(condition) if self else condition
+
+    def told_parts(self, condition: Expression) -> tuple[ToldPart, ...]:
+        """The parts of a ground condition that must all hold, those together of which the model speaks together. What
+        is asked of the same object again is known.
+        """
+        known = self._parts.get(id(condition))
+        if known is None or known[0] is not condition:
+            if len(self._parts) >= MOST_KNOWN:
+                self._parts.clear()
+            known = self._parts[id(condition)] = condition, tuple(self._told(condition))
+        return known[1]
+
+    def lacking(self, condition: Expression, state: Valuation) -> Iterator[ToldPart]:
+        """The parts of a condition that do not hold for certain. Of what is said of each value those are told for which
+        it does not, unless a predicate has a name for it.
+        """
+        for part in self.told_parts(condition):
+            if evaluate(part.condition, state) is True:
+                continue
+            left = [(value, each) for value, each in part.instances if evaluate(each, state) is not True]
+            if isinstance(part.words, Quantified) and len(left) < len(part.instances):
+                yield from self._for_some(part.words, left)
+            else:
+                yield part
+
+    def _for_some(self, said: Quantified, instances: Sequence[tuple[str, Expression]]) -> list[ToldPart]:
+        """What is said of each value, told of some of them."""
+        values = tuple(Name((Component(value),)) for value, _ in instances)
+        some = replace(said, binders=(replace(said.binders[0], domain=values),))
+        together = ToldPart(some, conjunction(*(each for _, each in instances)))
+        each = [ToldPart(self.lifted(condition), condition) for _, condition in instances]
+        return [together] if len(phrase(together)) < sum(len(phrase(one)) for one in each) else each
+
+    def _told(self, condition: Expression) -> Iterator[ToldPart]:
+        for part in conjuncts(self.lifted(condition)):
+            if not self:
+                yield ToldPart(part, part)
+                continue
+            meant = simplify(resolve_predicate(parse(print_expression(part)), self.scope))
+            yield ToldPart(part, meant, tuple(self._instances(part)))
+
+    def _instances(self, part: Expression) -> Iterator[tuple[str, Expression]]:
+        """What `all pair in bolt_pair: …` says of each value; nothing of another part."""
+        if isinstance(part, Quantified) and part.quantifier == "all":
+            body, (binder,) = parse(print_expression(part.body)), part.binders
+            type_ = self._vocabulary.domains[str(binder.domain)]
+            for value in type_.values:
+                scope = self.scope.binding({binder.word: (value, type_)})
+                yield value, simplify(resolve_predicate(body, scope))
 
     def meaning(self, told: Expression, scope: NameScope | None = None) -> NormalForm | None:
         """The normal form of what is told means; None if it means nothing."""
@@ -395,3 +480,26 @@ def _mentioned(condition: Expression) -> set[str]:
             found |= {str(each) for step in (name.path if isinstance(name, Name) else ()) for each in step.arguments}
         pending += children(part)
     return found
+
+
+class _Same:
+    """An automaton, which is compared by its identity: to compare all of it takes long."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self.automaton = automaton
+
+    def __hash__(self) -> int:
+        return id(self.automaton)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.automaton is self.automaton
+
+
+def wording_of(automaton: Automaton) -> ModelWording:
+    """The words of the model that `automaton` was made of, which are looked for once for each of the last few."""
+    return _wording_of(_Same(automaton))
+
+
+@lru_cache(maxsize=4)
+def _wording_of(same: _Same) -> ModelWording:
+    return ModelWording(same.automaton)
