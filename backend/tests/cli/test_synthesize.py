@@ -43,6 +43,40 @@ def test_the_worked_example() -> None:
     ]
 
 
+def test_what_differs_in_a_parameter_only_is_told_once() -> None:
+    _, out, _ = command("synthesize", BOLT_TIGHTENING)
+    assert out.splitlines()[1:] == [
+        "  operator.place_bolt_pair(pair), for all pair in bolt_pair",
+        "    robot.pose != pair and robot.target_pose != pair",
+        "    because of no_standing_tool_on_placed_bolts(pair)",
+        "  robot.move_to_position(position), for all position in bolt_pair",
+        "    operator.requested_pair != position and (bolts[position] != placed or nutrunner.run_nut.executing)",
+        "    because of no_standing_tool_on_placed_bolts(position)",
+    ]
+    _, document = as_json("synthesize", BOLT_TIGHTENING)
+    first, second = document["lifted"]
+    assert first == {
+        "name": "operator.place_bolt_pair(pair)",
+        "index": "all pair in bolt_pair",
+        "starts": [f"operator.place_bolt_pair(bolt_pair_{number})" for number in (1, 2, 3)],
+        "guard": "robot.pose != pair and robot.target_pose != pair",
+        "blocked": [],
+        "specifications": ["no_standing_tool_on_placed_bolts(pair)"],
+        "rest": False,
+    }
+    assert second["index"] == "all position in bolt_pair"
+
+
+def test_expanded_each_is_told_by_itself() -> None:
+    _, out, _ = command("synthesize", BOLT_TIGHTENING, "--expanded")
+    lines = out.splitlines()
+    for number in (1, 2, 3):
+        at = lines.index(f"  operator.place_bolt_pair(bolt_pair_{number})")
+        assert lines[at + 1] == f"    robot.pose != bolt_pair_{number} and robot.target_pose != bolt_pair_{number}"
+        assert lines[at + 2] == f"    because of no_standing_tool_on_placed_bolts(bolt_pair_{number})"
+    assert len(lines) == 1 + 3 * 6
+
+
 def parity(folder: Path) -> Path:
     """An even number of seven buttons has to be pressed when it is done."""
     buttons = [f"b{number}" for number in range(7)]

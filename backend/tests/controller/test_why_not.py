@@ -10,6 +10,9 @@ from dataclasses import replace
 import pytest
 
 from controller.test_offers import Desk, made
+from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.features.variables import Beliefs
@@ -26,6 +29,9 @@ from sequence_planner.planning.problem import PlanRequest
 from sequence_planner.synthesis.guards import shown_guards
 from sequence_planner.synthesis.supervisor import supervised, supervisor
 from support.automata import Does, automaton, predicate_of
+from support.places import TRUCK_ENGINE_STATION
+
+UNSUPERVISED = Supervisor(StateSet((), ()), {})
 
 
 class Inquirer:
@@ -219,3 +225,38 @@ def test_what_is_out_of_service_is_said_to_be_so_and_what_is_silent_to_be_offlin
             assert reasons.corrections == ["station online"]
 
     asyncio.run(scenario())
+
+
+def test_what_has_a_name_is_told_by_it_with_what_does_not_hold_of_it_beside() -> None:
+    """At the truck engine station: a predicate, what is said of each pair, and the turn in a sequence."""
+    station = usable_automaton(TRUCK_ENGINE_STATION)
+    execution = Executor(station, UNSUPERVISED)
+    first, *others = [name for name in station.variables if name.startswith("bolts[")]
+    values = {**initial_state(station), "ladder_frame": "on_engine", "agv.ref_pos": "station", first: "tightened"}
+    execution.state = execution.published = synchronise(station, values)
+    around = ConditionContext({}, lambda name: None, Beliefs(execution), dict)
+    adviser = AdvisorClient(station, UNSUPERVISED)
+    try:
+        asked = WhyNot(execution, around, adviser)
+
+        def condition(operation: str) -> ConditionView:
+            return asked.operation(AskOperationBlockers(name=operation)).conditions[-1]
+
+        tightened = condition("take_filter_tool")
+        assert tightened.text == "all_tightened"
+        assert tightened.expanded == " and ".join(f"{name} == tightened" for name in others)
+        assert [each.name for each in tightened.involved] == others
+
+        left = ", ".join(name.removeprefix("bolts[").removesuffix("]") for name in others)
+        placed = condition("return_kit")
+        assert placed.text == f"all pair in {{{left}}}: bolts[pair] != empty"
+        assert placed.expanded == " and ".join(f"{name} != empty" for name in others)
+
+        turn = condition("tighten_bolt_pair(AtBoltPair3TCPPose)")
+        assert turn.text_message.id == "waits.sequence-behind"
+        second = station.operations["tighten_bolt_pair(AtBoltPair2TCPPose)"].title
+        assert turn.text == f"its turn in the sequence tighten_bolts, behind “{second}”"
+        assert turn.expanded == "bolts[AtBoltPair2TCPPose] == tightened"
+        assert [each.name for each in turn.involved] == ["bolts[AtBoltPair2TCPPose]"]
+    finally:
+        adviser.close()

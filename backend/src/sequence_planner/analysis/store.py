@@ -125,7 +125,7 @@ def key(automaton: Automaton) -> str:
     which words the model is written does not.
     """
     masters = {name: replace(master, operations={}) for name, master in automaton.work_masters.items()}
-    ground = replace(automaton, work_masters=masters, alarms={}, vocabulary=NO_VOCABULARY)
+    ground = replace(automaton, work_masters=masters, alarms={}, vocabulary=NO_VOCABULARY, indices={})
     content = pickle.dumps((ground, dict(automaton.places)))
     # Equal texts may be one text or several, which a pickle tells; after one of them they are as after all others.
     content = pickle.dumps(pickle.loads(content))

@@ -205,7 +205,9 @@ class Automaton(Immutable):
     finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
     `initial` describes the initial states of one that has several; each declared initial value then is that of one of
     them. `goals` are formulas over its runs. `alarms` bear on nothing that it does. `places` says where a part was
-    written, by its name; `reactions` which effects are written with an ability; `vocabulary` what its texts say.
+    written, by its name; `reactions` which effects are written with an ability; `vocabulary` what its texts say, and
+    `indices` the parameters of what was written once for several, each with what it ranges over, by its name: `bolts`,
+    `robot.move`, `operation.tighten`, `specification.never`.
     """
 
     name: str
@@ -227,6 +229,7 @@ class Automaton(Immutable):
     places: Mapping[str, Place] = uncompared(default={})
     reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
     vocabulary: Vocabulary = uncompared(default=NO_VOCABULARY)
+    indices: Mapping[str, Mapping[str, str]] = uncompared(default={})
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """The variables of a kind, in order of declaration."""

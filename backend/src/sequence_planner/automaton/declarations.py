@@ -106,6 +106,18 @@ class Declarations:
             full, prefixes = (str(name), ()) if resource is None else (f"{resource}.{name}", (f"{resource}.",))
             yield full, prefixes, *parts_of(document)
 
+    def indices(self) -> dict[str, dict[str, str]]:
+        """The parameters of what is written once for several, by its full name; see `Automaton`."""
+        station, found = self._station, dict[str, Parameters]()
+        for kind, documents in ((OPERATION, station.operations), ("specification", station.specifications)):
+            found |= {f"{kind}.{name}": each.parameters for name, each in documents.items()}
+        found |= {str(name): variable.each for name, variable in station.station.estimated.items()}
+        for resource, document in station.resources.items():
+            for kind in _KINDS:
+                found |= {f"{resource}.{name}": each.each for name, each in getattr(document, kind.value).items()}
+            found |= {f"{resource}.{name}": ability.parameters for name, ability in document.abilities.items()}
+        return {name: {str(word): str(of) for word, of in each.items()} for name, each in found.items() if each}
+
     def bindings(self, parameters: Parameters) -> list[Binding]:
         """Every choice of values for `parameters`; one empty choice when there are none, none for an unknown type."""
         if any(enumeration not in self.enumerations for enumeration in parameters.values()):

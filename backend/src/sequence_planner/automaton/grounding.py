@@ -691,6 +691,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
         places=declarations.places,
         reactions=reactions,
         vocabulary=declarations.vocabulary,
+        indices=declarations.indices(),
     )
     if findings.all:
         raise ModelError(findings.all)

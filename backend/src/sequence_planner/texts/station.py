@@ -99,6 +99,8 @@ STATION: Final[dict[str, str]] = {
     "waits.in-plan": "a plan that has it",
     "waits.in-plan-why": "a plan that has it ({reason})",
     "waits.turn": "its turn in the plan, after {abilities}",
+    "waits.sequence-behind": "its turn in the sequence {sequence}, behind {operations}",
+    "waits.sequence-beside": "its turn in the sequence {sequence}, beside {operations}",
     "waits.reset": "a reset: it is completed, and does not become active again by itself",
     "waits.goal-holds": "{condition}: its goal holds",
     # What is in the way of an ability, an operation or a goal.

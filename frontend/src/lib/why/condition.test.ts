@@ -27,7 +27,7 @@ const involved = (name: string, wanted: Involved['wanted']): Involved => ({
 	unconfirmed_since: null,
 	changers: []
 });
-const condition = (text: string, ...all: Involved[]): Condition => ({ kind: 'written', text, text_message: { id: 'as-it-was', arguments: { text } }, involved: all });
+const condition = (text: string, ...all: Involved[]): Condition => ({ kind: 'written', text, text_message: { id: 'as-it-was', arguments: { text } }, expanded: null, involved: all });
 
 test('where one variable decides, its values are said; where several do, the condition as it is written', () => {
 	const say = (each: Condition): string => sentenceOf(each, ABILITIES, operate.why);

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Annotated
 
 import typer
 
+from sequence_planner.analysis.lifted import LiftedGuard, lifted_guards
 from sequence_planner.analysis.report import AnalysisDocument, GuardDocument
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect
 from sequence_planner.automaton.plain.events import NUMBER_SIGN, event_of
@@ -91,7 +93,7 @@ def described_automaton(
     }
 
 
-def guard_lines(guard: GuardDocument) -> list[str]:
+def guard_lines(guard: GuardDocument | LiftedGuard) -> list[str]:
     """Say when the supervisor allows a start, for people."""
     if guard.guard is not None:
         return [guard.guard]
@@ -155,13 +157,22 @@ def _optional(expression: Expression | None) -> str | None:
 
 
 def synthesize(
-    model: AnyModel, deadline: Deadline = USUAL_DEADLINE, memory: Memory = USUAL_MEMORY, json: AsJson = False
+    model: AnyModel,
+    deadline: Deadline = USUAL_DEADLINE,
+    memory: Memory = USUAL_MEMORY,
+    expanded: Annotated[
+        bool, typer.Option("--expanded", help="Print each guard by itself, with all written out that the model names.")
+    ] = False,
+    json: AsJson = False,
 ) -> None:
     """Compute the supervisor of a model: how many states can be reached with and without it, and the guards it adds.
 
-    Each guard is added to the one that is written; it holds for the states that can be reached. With --json: {model,
-    reachable_states, supervised_states, supervised_at_most, guards: {ability or event: condition}, origins: {...},
-    findings: [...], unfinished}; null is what has not been computed, and a guard that only the states themselves say.
+    Each guard is added to the one that is written; it holds for the states that can be reached. Guards are told in the
+    words of the model: predicates, sets and relations by their names, and those that differ in the value of a parameter
+    only as one. With --json: {model, reachable_states, supervised_states, supervised_at_most, guards: {ability or
+    event: condition}, origins: {...}, lifted: [...], findings: [...], unfinished}; `guards` and `origins` are written
+    out, `lifted` has them as they are told; null is what has not been computed, and a guard that only the states
+    themselves say.
     The exit code is 1 when there are findings.
     """
     limits = Limits(deadline, memory)
@@ -170,7 +181,7 @@ def synthesize(
     if json:
         print_json(_document(automaton, found))
     else:
-        typer.echo("\n".join(_synthesis_lines(automaton, found)))
+        typer.echo("\n".join(_synthesis_lines(automaton, found, expanded)))
     if found.document.findings or found.unfinished:
         raise typer.Exit(FINDINGS)
 
@@ -185,6 +196,9 @@ def _document(automaton: Automaton, found: Found) -> dict[str, object]:
         "supervised_at_most": document.supervised_at_most,
         "guards": guards,
         "origins": None if document.guards is None else {n: g.model_dump() for n, g in document.guards.items()},
+        "lifted": None
+        if document.guards is None
+        else [each.model_dump() for each in lifted_guards(automaton, document.guards)],
         "findings": None if document.findings is None else [each.model_dump() for each in document.findings],
         "unfinished": found.unfinished,
     }
@@ -208,10 +222,16 @@ def _all_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> It
             yield name, print_expression(TRUE)
 
 
-def _synthesis_lines(automaton: Automaton, found: Found) -> Iterator[str]:
+def _synthesis_lines(automaton: Automaton, found: Found, expanded: bool) -> Iterator[str]:
     document = found.document
     yield f"{automaton.title}: {_counts(document)}"
-    yield from _synthesized_guards(document, "marked" if automaton.one_at_a_time else "rest")
+    guards = document.guards or {}
+    told = guards.items() if expanded else ((_title(each), each) for each in lifted_guards(automaton, guards))
+    for title, guard in told:
+        yield f"  {title}"
+        yield from (f"    {line}" for line in guard_lines(guard))
+        if reasons := _reasons(guard, "marked" if automaton.one_at_a_time else "rest"):
+            yield f"    because of {', '.join(reasons)}"
     for finding in document.findings or ():
         yield from finding_lines(finding)
     if found.unfinished is not None:
@@ -232,10 +252,9 @@ def _counts(document: AnalysisDocument) -> str:
     return f"{reachable} can be reached, {supervised} of them with the supervisor"
 
 
-def _synthesized_guards(document: AnalysisDocument, rest: str) -> Iterator[str]:
-    for name, guard in (document.guards or {}).items():
-        reasons = [*guard.specifications, *([rest] if guard.rest else [])]
-        yield f"  {name}"
-        yield from (f"    {line}" for line in guard_lines(guard))
-        if reasons:
-            yield f"    because of {', '.join(reasons)}"
+def _title(guard: LiftedGuard) -> str:
+    return guard.name if guard.index is None else f"{guard.name}, for {guard.index}"
+
+
+def _reasons(guard: GuardDocument | LiftedGuard, rest: str) -> list[str]:
+    return [*guard.specifications, *([rest] if guard.rest else [])]

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
 from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.lifting.wording import expansion, phrase, untrue, wording_of
 from sequence_planner.automaton.tick import effect_writes, reverts, start, supervised_start, synchronise
 from sequence_planner.controller.views.details import ChangerView, ConditionView, InvolvedView
 from sequence_planner.controller.views.station import BeliefView
@@ -17,14 +18,12 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import OperatorPlan
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.language.evaluator import evaluate, holds
-from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import (
     TRUE,
     Assignment,
     Constant,
     Expression,
     conjunction,
-    conjuncts,
     variables,
 )
 from sequence_planner.language.types import Value
@@ -49,11 +48,14 @@ class HindranceKind(StrEnum):
 
 @dataclass(frozen=True)
 class BlockingCondition:
-    """One of them: `text` names what is waited for, `expression` says the same where the model can."""
+    """One of them: `text` names what is waited for, `expression` says the same where the model can. `expanded` is that
+    where `text` has names for it.
+    """
 
     kind: HindranceKind
     text: Message
     expression: Expression | None = None
+    expanded: str | None = None
 
 
 def of_station(execution: Executor) -> Iterator[BlockingCondition]:
@@ -110,16 +112,17 @@ def _out_of_service(execution: Executor, ability: Ability, feeds: Mapping[str, s
 
 
 def _written(execution: Executor, ability: Ability, feeds: Mapping[str, str]) -> Iterator[BlockingCondition]:
-    for part in (*conjuncts(ability.enabled), *conjuncts(ability.start_guard)):
-        truth = evaluate(part, execution.state)
-        if truth is not True:
-            yield BlockingCondition(HindranceKind.WRITTEN, lacking_text(execution, part, truth is None, feeds), part)
+    for condition in (ability.enabled, ability.start_guard):
+        yield from lacking(execution, condition, feeds)
 
 
-def lacking_text(execution: Executor, part: Expression, unknown: bool, feeds: Mapping[str, str]) -> Message:
-    """Say what a part of a condition waits for, which does not hold or is `unknown`."""
-    topics = awaited(execution, part, feeds) if unknown else []
-    return message("waits.message", topics=", ".join(topics)) if topics else as_it_was(print_expression(part))
+def lacking(execution: Executor, condition: Expression, feeds: Mapping[str, str]) -> Iterator[BlockingCondition]:
+    """Yield the parts of a condition of the model that do not hold, in its words."""
+    for part in wording_of(execution.automaton).lacking(condition, execution.state):
+        unknown = evaluate(part.condition, execution.state) is None
+        topics = awaited(execution, part.condition, feeds) if unknown else []
+        text = message("waits.message", topics=", ".join(topics)) if topics else as_it_was(phrase(part))
+        yield BlockingCondition(HindranceKind.WRITTEN, text, part.condition, expansion([part], execution.state))
 
 
 def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> list[str]:
@@ -152,13 +155,12 @@ def _unsafe(execution: Executor, ability: Ability, after: State, guard: Supervis
         causes: list[Item] = [execution.automaton.specifications[name].title for name in guard.specifications]
         causes += [message("waits.rest")] if guard.rest else []
         said = TRUE if guard.expression is None else guard.expression
-        lacking = [part for part in conjuncts(said) if evaluate(part, execution.state) is not True]
-        if lacking:
-            condition = conjunction(*lacking)
-            text = message("waits.sake", condition=print_expression(condition), causes=causes)
-            return BlockingCondition(kind, text, condition)
+        if undone := list(wording_of(execution.automaton).lacking(said, execution.state)):
+            text = message("waits.sake", condition=phrase(*undone), causes=causes)
+            condition = conjunction(*(part.condition for part in undone))
+            return BlockingCondition(kind, text, condition, expansion(undone, execution.state))
         if guard.expression is None and (nearest := _nearest(execution, ability)) is not None:
-            where = message("waits.nearest", condition=print_expression(nearest))
+            where = message("waits.nearest", condition=wording_of(execution.automaton).in_words(nearest))
             return BlockingCondition(kind, message("waits.sake", condition=where, causes=causes), nearest)
     for specification in execution.automaton.specifications.values():
         if holds(specification.forbidden, after):
@@ -300,11 +302,20 @@ class Involving:
 
     def condition(self, hindrance: BlockingCondition) -> ConditionView:
         """Return what has to be otherwise, and who could see to that."""
-        condition, execution = hindrance.expression, self._execution
-        names = () if condition is None else responsible(execution.automaton, condition, execution.state)
-        involved = [] if condition is None else [self._involved(name, condition) for name in names]
-        text = hindrance.text
-        return ConditionView(kind=str(hindrance.kind), text=text, text_message=text, involved=involved)
+        condition, text = hindrance.expression, hindrance.text
+        involved = [] if condition is None else list(self._involved_in(condition))
+        return ConditionView(
+            kind=str(hindrance.kind), text=text, text_message=text, expanded=hindrance.expanded, involved=involved
+        )
+
+    def _involved_in(self, condition: Expression) -> Iterator[InvolvedView]:
+        """Yield the variables of each part that does not hold."""
+        execution, told = self._execution, set[str]()
+        for part in untrue(condition, execution.state) or [condition]:
+            for name in responsible(execution.automaton, part, execution.state):
+                if name not in told:
+                    told.add(name)
+                    yield self._involved(name, part)
 
     def _involved(self, name: str, condition: Expression) -> InvolvedView:
         automaton, state = self._execution.automaton, self._execution.state

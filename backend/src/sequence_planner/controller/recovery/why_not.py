@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.automaton import Operation
+from sequence_planner.automaton.lifting.wording import expansion, untrue, wording_of
 from sequence_planner.controller.commands.command import CommandRefused, answers
 from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.planner_client import AIMED_WITHIN, AdvisorClient, aim
@@ -16,7 +17,7 @@ from sequence_planner.controller.recovery.explain import (
     ConditionContext,
     HindranceKind,
     Involving,
-    lacking_text,
+    lacking,
     of_ability,
     of_station,
     right_moment,
@@ -28,10 +29,9 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.printer import print_expression
-from sequence_planner.language.syntax import Expression, Not, conjuncts
+from sequence_planner.language.syntax import Expression, Not, conjunction
 from sequence_planner.planning.recovery.request import ErrandRequest
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import Message, message, quoted
 
 
 class WhyNot:
@@ -86,19 +86,21 @@ class WhyNot:
         if operation is None:
             raise _unknown("operation", name)
         if name in execution.active:
-            lacking = list(self._lacking(operation.goal))
-            view = self._view("operation", name, operation.title, self._progress(operation), lacking)
+            unreached = self._lacking(operation.goal)
+            view = self._view("operation", name, operation.title, self._progress(operation), unreached)
             diagnosis = execution.plan.diagnosis
             if diagnosis is None:
                 return view
             reasons = diagnosis_view(diagnosis, self._unused, execution.conduct.answers)
             return view.model_copy(update={"reasons": reasons})
-        lacking = list(self._inactive(operation))
-        undone = {each.expression for each in lacking}
-        lacking += [each for each in self._lacking(operation.precondition) if each.expression not in undone]
-        inactive = message("blocked.inactive", why=_summary(lacking)) if lacking else None
+        found = list(self._inactive(operation))
+        undone = {each.expression for each in found}
+        written = operation.precondition if operation.written is None else operation.written
+        found += [each for each in self._lacking(written) if each.expression not in undone]
+        found += self._out_of_turn(operation)
+        inactive = message("blocked.inactive", why=_summary(found)) if found else None
         summary = inactive or message("blocked.next-tick")
-        return self._view("operation", name, operation.title, summary, lacking)
+        return self._view("operation", name, operation.title, summary, found)
 
     def _inactive(self, operation: Operation) -> Iterable[BlockingCondition]:
         """Return why it is not active, beside its precondition."""
@@ -110,9 +112,27 @@ class WhyNot:
         elif operation.name in execution.conduct.done:
             yield BlockingCondition(HindranceKind.SERVICE, message("waits.reset"))
         if evaluate(operation.goal, execution.state) is True:
-            undone = Not(operation.goal)
-            text = message("waits.goal-holds", condition=print_expression(undone))
-            yield BlockingCondition(HindranceKind.WRITTEN, text, undone)
+            undone, words = Not(operation.goal), wording_of(execution.automaton)
+            text = message("waits.goal-holds", condition=words.in_words(undone))
+            yield BlockingCondition(
+                HindranceKind.WRITTEN, text, undone, expansion(words.told_parts(undone), execution.state)
+            )
+
+    def _out_of_turn(self, operation: Operation) -> Iterable[BlockingCondition]:
+        """Yield the sequences in which it is not its turn."""
+        execution = self._execution
+        for name, turn in operation.turns.items():
+            undone = untrue(turn.condition, execution.state)
+            if not undone:
+                continue
+            operations, state = execution.automaton.operations, execution.state
+            before = [each for each in turn.after if evaluate(operations[each].goal, state) is not True]
+            kind, others = ("behind", before) if before else ("beside", turn.beside)
+            titles = quoted(dict.fromkeys(operations[each].title for each in others))
+            text = message(f"waits.sequence-{kind}", sequence=name, operations=titles)
+            condition = conjunction(*undone)
+            said = wording_of(execution.automaton).in_words(condition)
+            yield BlockingCondition(HindranceKind.WRITTEN, text, condition, said)
 
     def _progress(self, operation: Operation) -> Message:
         """Say how far an active operation is."""
@@ -140,10 +160,10 @@ class WhyNot:
         """Return what is in the way of a predicate. Raises `CommandRefused` for one that cannot be read."""
         execution, text = self._execution, query.predicate
         goal = read_predicate(execution.automaton, text)
-        lacking = list(self._lacking(goal))
-        if not lacking:
-            return self._view("goal", text, print_expression(goal), message("blocked.holds"), [])
-        view = self._view("goal", text, print_expression(goal), _summary(lacking), lacking)
+        found, title = list(self._lacking(goal)), wording_of(execution.automaton).in_words(goal)
+        if not found:
+            return self._view("goal", text, title, message("blocked.holds"), [])
+        view = self._view("goal", text, title, _summary(found), found)
         request = ErrandRequest(
             state=execution.state,
             goals=(),
@@ -166,11 +186,7 @@ class WhyNot:
 
     def _lacking(self, condition: Expression) -> Iterable[BlockingCondition]:
         """The parts of a condition that do not hold."""
-        for part in conjuncts(condition):
-            truth = evaluate(part, self._execution.state)
-            if truth is not True:
-                text = lacking_text(self._execution, part, truth is None, self._around.feeds)
-                yield BlockingCondition(HindranceKind.WRITTEN, text, part)
+        return lacking(self._execution, condition, self._around.feeds)
 
     def _view(
         self,

@@ -328,7 +328,8 @@ class InvolvedView(View):
 
 
 class ConditionView(View):
-    """Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
+    """Something that has to be otherwise. `involved` alone keep its parts from being true, and none of them could be
+    spared. Where `text` has names of the model for it, `expanded` is what does not hold of it, written out.
 
     `kind` is station (how the station executes), service (what does not take part), written (in the model),
     unpublished (a command has to leave first), supervisor (what synthesis has added), plan (nothing wants it yet) or
@@ -338,6 +339,7 @@ class ConditionView(View):
     kind: str
     text: str
     text_message: Message
+    expanded: str | None
     involved: list[InvolvedView]
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.lifting.wording import phrase, wording_of
 from sequence_planner.controller.commands.tasks import TaskProblem, WaitingTask
 from sequence_planner.controller.recovery.explain import of_station
 from sequence_planner.controller.views.station import AlarmView, JobStepState, JobStepView, JobView, Priority
@@ -16,9 +17,7 @@ from sequence_planner.execution.jobs import Job, Jobs
 from sequence_planner.execution.plan_tracker import PlannedStart
 from sequence_planner.execution.timeouts import Late, overdue
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
-from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.printer import print_expression
-from sequence_planner.language.syntax import Expression, conjunction, conjuncts
+from sequence_planner.language.syntax import Expression
 from sequence_planner.texts.message import Argument, Item, Message, as_it_was, message
 
 # In words, what keeps a job that is worked from going on: the one place where that is said.
@@ -151,8 +150,9 @@ class _Running:
 
     def _lacking(self, condition: Expression) -> str:
         """Say what of a condition does not hold, or all of it where that is not to be told."""
-        parts = [part for part in conjuncts(condition) if evaluate(part, self._execution.state) is not True]
-        return print_expression(conjunction(*parts) if parts else condition)
+        wording = wording_of(self._automaton)
+        undone = list(wording.lacking(condition, self._execution.state)) or wording.told_parts(condition)
+        return phrase(*undone)
 
     def _plan(self, moves: bool) -> Iterator[Message]:
         plan, titles = self._execution.plan, self._automaton.operations
@@ -190,7 +190,7 @@ class _Running:
         if not self._execution.plan.order.ahead:
             operations = self._automaton.operations
             for name in sorted(self._active):
-                goal = print_expression(operations[name].goal)
+                goal = wording_of(self._automaton).in_words(operations[name].goal)
                 yield message("waits.goal", operation=operations[name].title, goal=goal)
 
 

@@ -73,6 +73,7 @@ export const operate = {
 		again: 'Ask again',
 		asked: (clock: string): string => `As it was at ${clock}`,
 		asking: 'Asking',
+		expanded: 'What of it does not hold',
 		conditions: 'It waits until all of these are so',
 		kind: {
 			station: 'The station',

@@ -72,6 +72,7 @@ export const operate: Text['operate'] = {
 		again: 'Fråga igen',
 		asked: (clock) => `Som det var ${clock}`,
 		asking: 'Frågar',
+		expanded: 'Vad av det som inte gäller',
 		conditions: 'Det väntar tills allt detta gäller',
 		kind: {
 			station: 'Stationen',

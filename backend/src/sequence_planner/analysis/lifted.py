@@ -1,0 +1,62 @@
+"""What the supervisor adds, in the words of the model, and once for all instances of which the same is said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sequence_planner.analysis.report import Document, GuardDocument
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding
+from sequence_planner.automaton.lifting.wording import ModelWording
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import resolve_predicate
+
+
+class LiftedGuard(Document):
+    """Guards as they are told to people: of all `starts`, which `index` names where they are instances of one
+    declaration, as in `all pair in bolt_pair`. A word of the index stands for the value of each, in `name` too.
+
+    `guard`, `blocked` and `rest` are as those of a `GuardDocument`, and `specifications` are told together in the same
+    way.
+    """
+
+    name: str
+    index: str | None
+    starts: list[str]
+    guard: str | None
+    blocked: list[str]
+    specifications: list[str]
+    rest: bool
+
+
+def lifted_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> list[LiftedGuard]:
+    """The guards that synthesis has found of `automaton`, in the order in which the first of each stands."""
+    wording = ModelWording(automaton)
+    if not wording:
+        return [
+            LiftedGuard(name=name, index=None, **guard.model_dump(exclude={"literals"}))
+            for name, guard in guards.items()
+        ]
+    statements = {name: _statement(wording, guard) for name, guard in guards.items()}
+    found = []
+    for each in IndexFolding(wording).folded(statements):
+        first = guards[each.members[0]]
+        guard, blocked = (None, each.conditions) if first.guard is None else (each.conditions[0], ())
+        found.append(
+            LiftedGuard(
+                name=each.name,
+                index=each.over,
+                starts=[start for member in each.members for start in guards[member].starts],
+                guard=guard,
+                blocked=list(blocked),
+                specifications=list(each.names),
+                rest=first.rest,
+            )
+        )
+    return found
+
+
+def _statement(wording: ModelWording, guard: GuardDocument) -> GroundStatement:
+    texts = guard.blocked if guard.guard is None else [guard.guard]
+    conditions = tuple(resolve_predicate(parse(text), wording.scope) for text in texts)
+    return GroundStatement(conditions, tuple(guard.specifications), (guard.guard is None, guard.rest))
