@@ -46,6 +46,11 @@ COMMANDS = (
         "Change one entry of a station's document, and print the difference. Comments and order stay.",
     ),
     LazyCommand(
+        "migrate",
+        "model.migrate:migrate",
+        "Show what a station could say shorter with the same meaning, and write what is chosen of it.",
+    ),
+    LazyCommand(
         "language-server",
         "language_server:language_server",
         "Serve editors that speak the Language Server Protocol, over standard input and output.",
