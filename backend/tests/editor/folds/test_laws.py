@@ -15,8 +15,8 @@ from language.trees import predicates
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.editor.draft import applied
 from sequence_planner.editor.folds.finder import FoldFinder
-from sequence_planner.editor.folds.proposal import FoldKind
 from sequence_planner.editor.folds.sameness import are_equivalent, difference
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import Expression, occurrences
 from sequence_planner.language.types import Value
@@ -87,7 +87,7 @@ def stations(draw: st.DrawFn) -> dict[str, str]:
 def test_whatever_is_offered_means_the_same(files: dict[str, str]) -> None:
     before = _read(files)
     with tempfile.TemporaryDirectory() as folder:
-        for fold in FoldFinder(Path(folder)).folds(files):
+        for fold in FoldFinder(Path(folder)).folds(files).folds:
             after = applied(files, fold.edits)
             assert {**files, **fold.files} == after
             assert "# what is said of it stays" in after["station.yaml"]
@@ -104,7 +104,7 @@ def test_one_after_the_other_until_nothing_is_left(files: dict[str, str], data: 
     before, number = _read(files), 0
     with tempfile.TemporaryDirectory() as folder:
         finder = FoldFinder(Path(folder))
-        while folds := finder.folds(files):
+        while folds := finder.folds(files).folds:
             files = {**files, **data.draw(st.sampled_from(folds)).files}
             number += 1
             assert number < 30
@@ -149,7 +149,7 @@ def test_each_kind_is_found() -> None:
     )
     operations = "".join(f"o{n}: {{precondition: '{each}', goal: '{each}'}}\n" for n, each in enumerate(conditions))
     with tempfile.TemporaryDirectory() as folder:
-        found = FoldFinder(Path(folder)).folds({"station.yaml": STATION, "operations.yaml": operations})
+        found = FoldFinder(Path(folder)).folds({"station.yaml": STATION, "operations.yaml": operations}).folds
     assert {fold.kind for fold in found} == {
         FoldKind.QUANTIFIER,
         FoldKind.SET,

@@ -9,8 +9,8 @@ import pytest
 
 from golden.journals import model
 from sequence_planner.editor.folds.finder import Fold, FoldFinder
-from sequence_planner.editor.folds.proposal import FoldKind
 from sequence_planner.editor.folds.sameness import difference
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.model.files import read_files, write_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
@@ -33,7 +33,7 @@ def finder(tmp_path_factory: pytest.TempPathFactory) -> FoldFinder:
 
 @pytest.fixture(scope="module")
 def folds(finder: FoldFinder, files: dict[str, str]) -> list[Fold]:
-    return finder.folds(files)
+    return finder.folds(files).folds
 
 
 def _those(folds: list[Fold], kind: FoldKind) -> Iterator[Fold]:

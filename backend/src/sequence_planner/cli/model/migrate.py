@@ -13,7 +13,7 @@ import typer
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import AsJson, StationFolder, print_json, refuse
 from sequence_planner.editor.folds.finder import Fold, FoldFinder
-from sequence_planner.editor.folds.schemas import fold_view
+from sequence_planner.editor.folds.views import fold_view
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.files import Files, read_files
 from sequence_planner.model.paths import EditError
@@ -53,7 +53,7 @@ def migrate(
         if chosen:
             _write(model, files, known, finder, [(each, names.get(each)) for each in chosen], json)
             return
-        folds = finder.folds(files)
+        folds = finder.folds(files).folds
     if json:
         print_json({"folds": [fold_view(each).model_dump(mode="json") for each in folds]})
     else:
@@ -120,7 +120,7 @@ def _write(
             writing.take(finder.fold(writing.files, wanted, name).files)
         except EditError as error:
             behind = f" (after `{chosen[number - 1][0]}`)" if number else ""
-            marks = [fold.id for fold in finder.folds(files)]
+            marks = [fold.id for fold in finder.folds(files).folds]
             near = "" if wanted in marks else suggestion(wanted, marks)
             refuse(f"{error}{behind}{near}; nothing was written")
     try:

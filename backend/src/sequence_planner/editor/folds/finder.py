@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import re
+import time
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from sequence_planner.editor.draft import Edit, applied
 from sequence_planner.editor.folds.pipelines import list_proposals, pipeline_difference
 from sequence_planner.editor.folds.predicates import predicate_proposals
-from sequence_planner.editor.folds.proposal import FoldKind, Proposal, WrittenPlace
+from sequence_planner.editor.folds.proposal import Proposal, WrittenPlace
 from sequence_planner.editor.folds.quantifiers import quantifier_proposals
 from sequence_planner.editor.folds.relations import relation_proposals
 from sequence_planner.editor.folds.sameness import difference
 from sequence_planner.editor.folds.sets import include_proposals, set_proposals
 from sequence_planner.editor.folds.texts import FoldableStation
 from sequence_planner.editor.language.scope import Lexicon
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.paths import EditError
@@ -55,6 +58,13 @@ class Fold:
     saved_characters: int
 
 
+class FoundFolds(NamedTuple):
+    """Folds of a station, and whether all that could be any were looked at."""
+
+    folds: list[Fold]
+    is_whole: bool
+
+
 class FoldFinder:
     """Finds what can be written shorter in a station, which is written into the empty `folder`."""
 
@@ -63,12 +73,23 @@ class FoldFinder:
         self._written: dict[str, str] = {}
         self._before = Before()
 
-    def folds(self, files: Files) -> list[Fold]:
-        """All folds, those that save most first. Raises `ModelError` for a station that cannot be used."""
+    def folds(
+        self, files: Files, within: float | None = None, wanted: Callable[[Proposal], bool] = lambda _: True
+    ) -> FoundFolds:
+        """All folds that are `wanted`, those that save most first; as many as can be proven in so many seconds.
+
+        Raises `ModelError` for a station that cannot be used.
+        """
+        until = None if within is None else time.monotonic() + within
         meant, station = self._look(files)
-        proven = (self._proven(files, meant, each, each.name) for each in _proposed(station))
-        found = [fold for fold in proven if fold is not None]
-        return sorted(found, key=lambda fold: (-fold.saved_lines, -fold.saved_characters))
+        proposed = sorted(filter(wanted, _proposed(station)), key=lambda each: -each.worth)
+        found: list[Fold] = []
+        for proposal in proposed:
+            if until is not None and time.monotonic() > until:
+                return FoundFolds(_in_order(found), is_whole=False)
+            if (fold := self._proven(files, meant, proposal, proposal.name)) is not None:
+                found.append(fold)
+        return FoundFolds(_in_order(found), is_whole=True)
 
     def fold(self, files: Files, wanted: str, name: str | None = None) -> Fold:
         """The fold of which `wanted` is the mark, with another name for what it adds.
@@ -98,7 +119,7 @@ class FoldFinder:
     def _proven(self, files: Files, meant: MeantStation, proposal: Proposal, name: str | None) -> Fold | None:
         """The fold, if it is shorter, keeps all comments, and means the same."""
         made = proposal.named(name) if name is not None else proposal
-        if not made.is_worth_it:
+        if made.worth <= 0 and made.kind is not FoldKind.SET:
             return None
         try:
             after = applied(files, made.edits)
@@ -118,11 +139,16 @@ class FoldFinder:
         return Fold(proposal.id, proposal.kind, made.title, name, made.places, made.edits, changed, lines, characters)
 
     def _read(self, files: Files) -> MeantStation:
+        self._folder.mkdir(exist_ok=True)
         for file in self._written.keys() - files.keys():
             (self._folder / file).unlink()
         write_files({file: text for file, text in files.items() if self._written.get(file) != text}, self._folder)
         self._written = dict(files)
         return read_station(self._folder, self._before)
+
+
+def _in_order(folds: list[Fold]) -> list[Fold]:
+    return sorted(folds, key=lambda fold: (-fold.saved_lines, -fold.saved_characters))
 
 
 def _is_shorter(kind: FoldKind, characters: int) -> bool:

@@ -7,9 +7,10 @@ from itertools import product
 from math import prod
 
 from sequence_planner.editor.draft import Edit, RemoveEntry, SetEntry
-from sequence_planner.editor.folds.proposal import FoldKind, Proposal, WrittenPlace
+from sequence_planner.editor.folds.proposal import Proposal, WrittenPlace
 from sequence_planner.editor.folds.sameness import MOST_STATES
 from sequence_planner.editor.folds.texts import FoldableStation
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.records.field_paths import domain
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Stage

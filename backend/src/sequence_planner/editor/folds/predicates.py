@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from sequence_planner.editor.draft import AddEntry
-from sequence_planner.editor.folds.proposal import NAME, FoldKind, Proposal, apart, is_within
+from sequence_planner.editor.folds.proposal import NAME, Proposal, apart, is_within
 from sequence_planner.editor.folds.quantifiers import is_membership, over, quantified, runs, words_for
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
@@ -19,6 +19,7 @@ from sequence_planner.editor.folds.texts import (
     words_of,
 )
 from sequence_planner.editor.language.service import check
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression

@@ -6,28 +6,16 @@ import hashlib
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from typing import Any
 
 from sequence_planner.editor.draft import AddEntry, Edit, SetEntry
 from sequence_planner.editor.folds.texts import FoldableText, Replacement
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.source import SourceText
 
 NAME = "\0"
 """Stands for the name that what a fold adds is given."""
-
-
-class FoldKind(StrEnum):
-    """What a fold is for."""
-
-    QUANTIFIER = "quantifier"
-    SET = "set"
-    PREDICATE = "predicate"
-    RELATION = "relation"
-    INCLUDES = "includes"
-    MAP = "map"
-    ROWS = "rows"
 
 
 @dataclass(frozen=True)
@@ -75,14 +63,11 @@ class Proposal:
         )
 
     @property
-    def is_worth_it(self) -> bool:
-        """Return whether less is written with it, or a list of values once that was written several times."""
-        if self.entries:
-            return True
-        saved = sum(len(each.was) - len(each.now) for each in self.replacements)
-        if self.added is None:
-            return saved > 0
-        return self.kind is FoldKind.SET or saved > len(str(self.added.value))
+    def worth(self) -> int:
+        """About how many characters fewer are written with it, as far as that shows before it is made."""
+        added = 0 if self.added is None else len(str(self.added.value))
+        said = sum(len(each.was) - len(each.now) for each in self.replacements)
+        return said - added + sum(len(str(edit)) for edit, _ in self.entries)
 
     @property
     def places(self) -> list[WrittenPlace]:

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from sequence_planner.editor.folds.proposal import NAME, FoldKind, Proposal, apart, part_of, with_replacements
+from sequence_planner.editor.folds.proposal import NAME, Proposal, apart, part_of, with_replacements
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
     FoldableText,
@@ -15,6 +15,7 @@ from sequence_planner.editor.folds.texts import (
     with_word,
     words_of,
 )
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import And, Comparison, Component, Expression, Name, Not, Or
 

@@ -8,8 +8,9 @@ from itertools import product
 from typing import NamedTuple
 
 from sequence_planner.editor.draft import AddEntry
-from sequence_planner.editor.folds.proposal import NAME, FoldKind, Proposal, apart
+from sequence_planner.editor.folds.proposal import NAME, Proposal, apart
 from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Replacement
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.resolver import NameScope

@@ -8,9 +8,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 
 from sequence_planner.editor.draft import AddEntry, SetEntry
-from sequence_planner.editor.folds.proposal import NAME, FoldKind, Proposal, apart, place_of_text
+from sequence_planner.editor.folds.proposal import NAME, Proposal, apart, place_of_text
 from sequence_planner.editor.folds.quantifiers import is_membership, runs
 from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Replacement
+from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION, entry, pairs
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import And, Comparison, Membership, Name, Or, Span
