@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.cli.model import migrate as command_module
+from sequence_planner.cli.editing import migrate as command_module
 from sequence_planner.editor.folds.finder import Fold, FoldFinder
 from sequence_planner.model.files import Files
 from support.commands import as_json, command

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from sequence_planner.editor.folds.sameness import are_equivalent, difference
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import Expression, occurrences
-from sequence_planner.language.types import Value
+from sequence_planner.language.types import Type, Value
 from sequence_planner.model.files import write_files
 from sequence_planner.station import read_station
 
@@ -128,8 +128,8 @@ def _assert_same(before: Expression, now: Expression) -> None:
         assert evaluate(before, state) == evaluate(now, state), state
 
 
-def _states(types: dict[str, object]) -> Iterator[dict[str, Value | None]]:
-    domains = [(None, *getattr(type_, "domain")) for type_ in types.values()]  # noqa: B009
+def _states(types: Mapping[str, Type]) -> Iterator[dict[str, Value | None]]:
+    domains = [(None, *type_.domain) for type_ in types.values()]
     return (dict(zip(types, values, strict=True)) for values in product(*domains))
 
 

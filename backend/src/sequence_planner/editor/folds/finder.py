@@ -13,16 +13,14 @@ from typing import NamedTuple
 from sequence_planner.editor.draft import Edit, applied
 from sequence_planner.editor.folds.pipelines import list_proposals, pipeline_difference
 from sequence_planner.editor.folds.predicates import predicate_proposals
-from sequence_planner.editor.folds.proposal import Proposal, WrittenPlace
+from sequence_planner.editor.folds.proposal import FoldProposal, WrittenPlace
 from sequence_planner.editor.folds.quantifiers import quantifier_proposals
 from sequence_planner.editor.folds.relations import relation_proposals
 from sequence_planner.editor.folds.sameness import difference
 from sequence_planner.editor.folds.sets import include_proposals, set_proposals
 from sequence_planner.editor.folds.texts import FoldableStation
-from sequence_planner.editor.language.scope import Lexicon
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.model.files import Files, write_files
-from sequence_planner.model.loader import load_station
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import Before, MeantStation, read_station
@@ -74,7 +72,7 @@ class FoldFinder:
         self._before = Before()
 
     def folds(
-        self, files: Files, within: float | None = None, wanted: Callable[[Proposal], bool] = lambda _: True
+        self, files: Files, within: float | None = None, wanted: Callable[[FoldProposal], bool] = lambda _: True
     ) -> FoundFolds:
         """All folds that are `wanted`, those that save most first; as many as can be proven in so many seconds.
 
@@ -104,7 +102,7 @@ class FoldFinder:
             raise EditError(f"the fold `{wanted}` adds nothing that could be called `{name}`")
         if name is not None and _NAMED_SO.fullmatch(name) is None:
             raise EditError(f"`{name}` is no name: letters, digits and `_`, and no digit first")
-        if name is not None and name != proposal.name and name in station.names:
+        if name is not None and name != proposal.name and name in station.taken:
             raise EditError(f"`{name}` is the name of something else: take another one")
         if (fold := self._proven(files, meant, proposal, name or proposal.name)) is None:
             named = "" if name is None else f" with the name `{name}`"
@@ -113,12 +111,11 @@ class FoldFinder:
 
     def _look(self, files: Files) -> tuple[MeantStation, FoldableStation]:
         meant = self._read(files)
-        lexicon = Lexicon.of(load_station(self._folder, self._before.files), meant.registry)
-        return meant, FoldableStation.of(files, lexicon)
+        return meant, FoldableStation.made_of(files, meant)
 
-    def _proven(self, files: Files, meant: MeantStation, proposal: Proposal, name: str | None) -> Fold | None:
+    def _proven(self, files: Files, meant: MeantStation, proposal: FoldProposal, name: str | None) -> Fold | None:
         """The fold, if it is shorter, keeps all comments, and means the same."""
-        made = proposal.named(name) if name is not None else proposal
+        made = proposal.with_name(name) if name is not None else proposal
         if made.worth <= 0 and made.kind is not FoldKind.SET:
             return None
         try:
@@ -128,7 +125,7 @@ class FoldFinder:
         changed = {file: text for file, text in after.items() if files.get(file) != text}
         lines = sum(files.get(file, "").count("\n") - text.count("\n") for file, text in changed.items())
         characters = sum(len(files.get(file, "")) - len(text) for file, text in changed.items())
-        if not _is_shorter(proposal.kind, characters) or not _keep_comments(files, changed):
+        if not _is_shorter(proposal.kind, lines, characters) or not _keep_comments(files, changed):
             return None
         try:
             now = self._read(after)
@@ -151,12 +148,19 @@ def _in_order(folds: list[Fold]) -> list[Fold]:
     return sorted(folds, key=lambda fold: (-fold.saved_lines, -fold.saved_characters))
 
 
-def _is_shorter(kind: FoldKind, characters: int) -> bool:
+def _is_shorter(kind: FoldKind, lines: int, characters: int) -> bool:
     """Return whether a fold is worth it; values that are named are written once, be that longer."""
-    return kind is FoldKind.SET or characters > (_WORTH_A_NAME if kind is FoldKind.PREDICATE else 0)
+    match kind:
+        case FoldKind.SET:
+            return True
+        case FoldKind.PREDICATE:
+            return characters > _WORTH_A_NAME
+        case FoldKind.INCLUDES:
+            return lines >= 0
+    return characters > 0
 
 
-def _proposed(station: FoldableStation) -> Iterator[Proposal]:
+def _proposed(station: FoldableStation) -> Iterator[FoldProposal]:
     for find in _PROPOSALS:
         yield from find(station)
 

@@ -21,7 +21,7 @@ def answering(folder: Path) -> Callable[[FoldQuestion, object], object]:
     """Return what answers questions, in an empty folder; a process's life."""
     finder, files = FoldFinder(folder / "station"), dict[str, str]()
 
-    def answer(question: FoldQuestion, _: object) -> object:
+    def _answer(question: FoldQuestion, _: object) -> object:
         changed, _, (number, wanted, name) = question
         for path, text in changed.items():
             if text is None:
@@ -38,4 +38,4 @@ def answering(folder: Path) -> Callable[[FoldQuestion, object], object]:
         views = tuple(map(fold_view, found.folds))
         return encoded(FoldsView(number=number, folds=views, usable=True, whole=found.is_whole))
 
-    return answer
+    return _answer

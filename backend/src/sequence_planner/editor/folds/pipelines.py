@@ -7,7 +7,7 @@ from itertools import product
 from math import prod
 
 from sequence_planner.editor.draft import Edit, RemoveEntry, SetEntry
-from sequence_planner.editor.folds.proposal import Proposal, WrittenPlace
+from sequence_planner.editor.folds.proposal import FoldProposal, WrittenPlace, place_between
 from sequence_planner.editor.folds.sameness import MOST_STATES
 from sequence_planner.editor.folds.texts import FoldableStation
 from sequence_planner.editor.schemas.draft import FoldKind
@@ -23,7 +23,7 @@ from sequence_planner.station import MeantStation
 _FEWEST_ROWS = 2
 
 
-def list_proposals(station: FoldableStation) -> Iterator[Proposal]:
+def list_proposals(station: FoldableStation) -> Iterator[FoldProposal]:
     """A proposal for each list of a `map` that says nothing, and for rows of a `table` that are one for a set."""
     for file in station.content:
         for path, kind, content in _stages(station.content[file], ()):
@@ -46,54 +46,43 @@ def _stages(content: object, path: EntryPath) -> Iterator[tuple[EntryPath, str, 
                 yield from _stages(each, (*path, str(key)))
 
 
-def _without_list(file: str, path: EntryPath, content: dict[object, object]) -> Iterator[Proposal]:
+def _without_list(file: str, path: EntryPath, content: dict[object, object]) -> Iterator[FoldProposal]:
     values = content.get("values")
     if not isinstance(values, dict) or any(str(key) != str(value) for key, value in values.items()):
         return
-    first = next(iter(values))
-    if isinstance(first, SourceText):
+    first, last = next(iter(values), None), next(reversed(values), None)
+    if isinstance(first, SourceText) and isinstance(last, SourceText):
         edit = RemoveEntry(file=file, path=[*path, "values"], was=plain(values))
-        place = WrittenPlace(file, first.place.line, first.place.column, f"{len(values)} names", "")
+        place = place_between(file, first, last, f"{len(values)} names", "")
         title = f"Leave out the list of `{content.get('variable')}`: its names are the same on both sides"
-        yield Proposal(FoldKind.MAP, title, entries=((edit, place),))
+        yield FoldProposal(FoldKind.MAP, title, entries=((edit, place),))
 
 
 def _with_sets(
     station: FoldableStation, file: str, path: EntryPath, content: dict[object, object]
-) -> Iterator[Proposal]:
+) -> Iterator[FoldProposal]:
     """All rows that can be one, in one proposal for the table."""
     rows = content.get("rows")
     if not isinstance(rows, list):
         return
     edits: list[tuple[Edit, WrittenPlace]] = []
+    removals: list[tuple[Edit, WrittenPlace]] = []
     first = 0
     while first < len(rows):
         last, column, name = _folded(station, rows, first)
-        if name is not None:
-            cell = _when(rows[first])[column]
-            assert isinstance(cell, SourceText)
-            at = [*path, "rows", first, "when", column]
-            now = SetEntry(file=file, path=at, was=str(cell), value=name)
-            edits.append(
-                (now, WrittenPlace(file, cell.place.line, cell.place.column, f"{last - first + 1} rows", name))
-            )
+        for index in range(first, last + 1 if name is not None else first):
+            cell = _when(rows[index])[column]
+            assert isinstance(cell, SourceText), "it is a value of an enumeration"
+            if index == first:
+                edit = SetEntry(file=file, path=[*path, "rows", first, "when", column], was=str(cell), value=name)
+                edits.append((edit, place_between(file, cell, cell, f"{last - first + 1} rows", str(name))))
+            else:
+                removal = RemoveEntry(file=file, path=[*path, "rows", index], was=plain(rows[index]))
+                removals.insert(0, (removal, place_between(file, cell, cell, "a row", "")))
         first = last + 1
-    gone = [index for edit, _ in edits for index in _behind(station, rows, edit)]
-    removals: list[tuple[Edit, WrittenPlace]] = []
-    for index in sorted(gone, reverse=True):
-        cell = next(each for each in _when(rows[index]) if isinstance(each, SourceText))
-        place = WrittenPlace(file, cell.place.line, cell.place.column, "a row", "")
-        removals.append((RemoveEntry(file=file, path=[*path, "rows", index], was=plain(rows[index])), place))
     if edits:
         title = f"Write one row of the table for each set, in place of {len(edits) + len(removals)}"
-        yield Proposal(FoldKind.ROWS, title, entries=(*edits, *removals))
-
-
-def _behind(station: FoldableStation, rows: list[object], edit: Edit) -> Iterator[int]:
-    assert isinstance(edit, SetEntry)
-    first = edit.path[-3]
-    assert isinstance(first, int)
-    yield from range(first + 1, _folded(station, rows, first)[0] + 1)
+        yield FoldProposal(FoldKind.ROWS, title, entries=(*edits, *removals))
 
 
 def _when(row: object) -> list[object]:
@@ -105,11 +94,10 @@ def _folded(station: FoldableStation, rows: list[object], first: int) -> tuple[i
     """The last row that can be one with the row `first`, in which column they differ, and the set of these values."""
     for column, cell in enumerate(_when(rows[first])):
         values, last = [str(cell)], first
-        for row in rows[first + 1 :]:
-            if (
-                str(value := _without(row, column)[0]) in values
-                or _without(row, column)[1] != _without(rows[first], column)[1]
-            ):
+        rest = _without(rows[first], column)[1]
+        for row in rows[first + 1 :] if isinstance(cell, SourceText) else ():
+            value, others = _without(row, column)
+            if not isinstance(value, SourceText) or value in values or others != rest:
                 break
             values.append(str(value))
             last += 1

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from sequence_planner.editor.draft import AddEntry
-from sequence_planner.editor.folds.proposal import NAME, Proposal, apart, is_within
+from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, is_within
 from sequence_planner.editor.folds.quantifiers import is_membership, over, quantified, runs, words_for
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
     FoldableText,
-    Replacement,
+    Rewriting,
     names_in,
     nodes_of,
     words_of,
@@ -53,7 +53,7 @@ class _Part:
     tree: Expression
 
 
-def predicate_proposals(station: FoldableStation) -> Iterator[Proposal]:
+def predicate_proposals(station: FoldableStation) -> Iterator[FoldProposal]:
     """A proposal for each condition that stands in several places, the longest first."""
     places = _Names(station)
     groups: dict[str, list[_Part]] = defaultdict(list)
@@ -61,7 +61,7 @@ def predicate_proposals(station: FoldableStation) -> Iterator[Proposal]:
         for span, tree in _conditions(text):
             if (full := places.in_full(text, tree)) is not None and len(written := print_expression(full)) >= _SHORTEST:
                 groups[written].append(_Part(text, span, full))
-    shown: list[Proposal] = []
+    shown: list[FoldProposal] = []
     for _, parts in sorted(groups.items(), key=lambda each: -len(each[0]) * (len(each[1]) - 1)):
         found = _proposal(station, parts)
         if found is not None and not any(_says_more(other, found) for other in shown):
@@ -69,22 +69,22 @@ def predicate_proposals(station: FoldableStation) -> Iterator[Proposal]:
             yield found
 
 
-def _says_more(one: Proposal, other: Proposal) -> bool:
+def _says_more(one: FoldProposal, other: FoldProposal) -> bool:
     """Return whether all places of a proposal lie in those of another one."""
     return all(any(is_within(part, whole) for whole in one.replacements) for part in other.replacements)
 
 
-def _proposal(station: FoldableStation, parts: list[_Part]) -> Proposal | None:
+def _proposal(station: FoldableStation, parts: list[_Part]) -> FoldProposal | None:
     known = next((each for each in parts if _is_predicate(each)), None)
     found = apart(
-        [Replacement(each.text, each.text.with_brackets(each.span), NAME) for each in parts if not _is_predicate(each)]
+        [Rewriting(each.text, each.text.with_brackets(each.span), NAME) for each in parts if not _is_predicate(each)]
     )
     tree = parts[0].tree
     if known is not None and found:
         home = resource_of(known.text.file)
         full = str(known.text.path[1]) if home is None else f"{home}.{known.text.path[1]}"
-        named = tuple(Replacement(each.text, each.span, full) for each in found)
-        return Proposal(FoldKind.PREDICATE, f"Write `{full}` for what it says, in {_counted(len(named))}", named)
+        named = tuple(Rewriting(each.text, each.span, full) for each in found)
+        return FoldProposal(FoldKind.PREDICATE, f"Write `{full}` for what it says, in {_counted(len(named))}", named)
     if len(found) < 2:
         return None
     files = {each.text.file for each in found}
@@ -95,7 +95,7 @@ def _proposal(station: FoldableStation, parts: list[_Part]) -> Proposal | None:
         when = _without_prefix(when, own)
     added = AddEntry(file=file, path=["predicates", NAME], value=when)
     title = f"Name a predicate `{NAME}`, in {_counted(len(found))}"
-    return Proposal(FoldKind.PREDICATE, title, found, added=added, name=station.fresh(_called(station, tree)))
+    return FoldProposal(FoldKind.PREDICATE, title, found, added=added, name=station.unused(_called(station, tree)))
 
 
 def _counted(places: int) -> str:

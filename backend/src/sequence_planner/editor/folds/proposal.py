@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from sequence_planner.editor.draft import AddEntry, Edit, SetEntry
-from sequence_planner.editor.folds.texts import FoldableText, Replacement
+from sequence_planner.editor.folds.texts import FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.source import SourceText
@@ -20,22 +20,23 @@ NAME = "\0"
 
 @dataclass(frozen=True)
 class WrittenPlace:
-    """A place where something is written longer than it need be: what is there, and what would be there."""
+    """A place where something is written longer than it need be, to its `last` line: what is there, and would be."""
 
     file: str
     line: int
     column: int
+    last: int
     was: str
     now: str
 
 
 @dataclass(frozen=True)
-class Proposal:
+class FoldProposal:
     """What would be written instead of what. `name` is proposed for what it adds, None where that is nothing."""
 
     kind: FoldKind
     title: str
-    replacements: tuple[Replacement, ...] = ()
+    replacements: tuple[Rewriting, ...] = ()
     entries: tuple[tuple[Edit, WrittenPlace], ...] = ()
     added: AddEntry | None = None
     name: str | None = None
@@ -50,7 +51,7 @@ class Proposal:
         ]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:8]
 
-    def named(self, name: str) -> Proposal:
+    def with_name(self, name: str) -> FoldProposal:
         """The same with a name in its place."""
         if self.name is None:
             return self
@@ -75,10 +76,14 @@ class Proposal:
         found = [_place(each) for each in self.replacements] + [place for _, place in self.entries]
         return sorted(found, key=lambda each: (each.file, each.line, each.column))
 
+    def touches(self, file: str, first: int, last: int) -> bool:
+        """Return whether one of its places is in these lines of a file."""
+        return any(each.file == file and each.line <= last and first <= each.last for each in self.places)
+
     @property
     def edits(self) -> list[Edit]:
         """The edits that make it, to be carried out together."""
-        by_text: Mapping[tuple[str, tuple[str | int, ...]], list[Replacement]] = defaultdict(list)
+        by_text: Mapping[tuple[str, tuple[str | int, ...]], list[Rewriting]] = defaultdict(list)
         for each in self.replacements:
             by_text[each.text.file, each.text.path].append(each)
         changed: list[Edit] = [
@@ -88,7 +93,7 @@ class Proposal:
         return [*changed, *(edit for edit, _ in self.entries), *([] if self.added is None else [self.added])]
 
 
-def with_replacements(parts: list[Replacement]) -> str:
+def with_replacements(parts: list[Rewriting]) -> str:
     """The text that several parts of it are replaced in."""
     text = str(parts[0].text.text)
     for each in sorted(parts, key=lambda part: part.span, reverse=True):
@@ -96,39 +101,39 @@ def with_replacements(parts: list[Replacement]) -> str:
     return text
 
 
-def apart(parts: list[Replacement]) -> tuple[Replacement, ...]:
+def apart(parts: list[Rewriting]) -> tuple[Rewriting, ...]:
     """The same without those that lie in others."""
-    found: list[Replacement] = []
+    found: list[Rewriting] = []
     for each in sorted(parts, key=lambda part: (part.span.start, -part.span.end)):
         if not any(_meet(each, other) for other in found):
             found.append(each)
     return tuple(found)
 
 
-def _meet(one: Replacement, other: Replacement) -> bool:
+def _meet(one: Rewriting, other: Rewriting) -> bool:
     alike = one.text.file == other.text.file and one.text.path == other.text.path
     return alike and one.span.start < other.span.end and other.span.start < one.span.end
 
 
-def is_within(one: Replacement, other: Replacement) -> bool:
+def is_within(one: Rewriting, other: Rewriting) -> bool:
     """Return whether a part lies within another one."""
     return _meet(one, other) and other.span.start <= one.span.start and one.span.end <= other.span.end
 
 
-def part_of(text: FoldableText, span: Span, now: str) -> Replacement:
+def part_of(text: FoldableText, span: Span, now: str) -> Rewriting:
     """`now` in the place of a part, in brackets where there are none around it and `now` is of several words."""
     is_open = now.partition(" ")[0] in ("all", "any", "none") and ":" in now
-    return Replacement(text, span, f"({now})" if is_open and not text.is_bracketed(span) else now)
+    return Rewriting(text, span, f"({now})" if is_open and not text.is_bracketed(span) else now)
 
 
-def place_of_text(file: str, text: SourceText, was: str, now: str) -> WrittenPlace:
-    """The place of a text as a whole."""
-    return WrittenPlace(file, text.place.line, text.place.column, was, now)
+def place_between(file: str, first: SourceText, last: SourceText, was: str, now: str) -> WrittenPlace:
+    """The place of all that is written from one text to another one."""
+    return WrittenPlace(file, first.place.line, first.place.column, last.place.line, was, now)
 
 
-def _place(part: Replacement) -> WrittenPlace:
-    at = part.text.text.at(part.span)
-    return WrittenPlace(part.text.file, at.line, at.column, part.was, part.now)
+def _place(part: Rewriting) -> WrittenPlace:
+    at, end = (part.text.text.at(each) for each in (part.span, Span(part.span.end - 1, part.span.end)))
+    return WrittenPlace(part.text.file, at.line, at.column, end.line, part.was, part.now)
 
 
 def _named(value: Any, name: str) -> Any:  # noqa: ANN401 (as JSON is)

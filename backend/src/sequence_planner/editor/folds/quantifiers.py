@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from sequence_planner.editor.folds.proposal import NAME, Proposal, apart, part_of, with_replacements
+from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, part_of, with_replacements
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
     FoldableText,
-    Replacement,
+    Rewriting,
     names_in,
     with_word,
     words_of,
@@ -37,7 +37,7 @@ def runs(station: FoldableStation, node: And | Or) -> Iterator[ValueRun]:
     """What is said one value after the other among the operands of a junction, the longest that there is each time."""
     first = 0
     while first < len(node.operands) - 1:
-        starting = sorted(words_of(node.operands[first]) & station.values)
+        starting = sorted(words_of(node.operands[first]) & station.every_value)
         found = max((_run(station, node.operands, first, word) for word in starting), key=_length, default=None)
         if found is None or found.last == first:
             first += 1
@@ -54,7 +54,7 @@ def _run(station: FoldableStation, operands: Sequence[Expression], first: int, w
     body, values = with_word(operands[first], word, NAME), [word]
     for operand in operands[first + 1 :]:
         fitting = (
-            each for each in sorted(words_of(operand) & station.values) if with_word(operand, each, NAME) == body
+            each for each in sorted(words_of(operand) & station.every_value) if with_word(operand, each, NAME) == body
         )
         value = next(fitting, None)
         if value is None or value in values:
@@ -104,9 +104,9 @@ def words_for(station: FoldableStation, body: Expression, domain: str) -> Iterat
     yield from ("each", "one", "value")
 
 
-def quantifier_proposals(station: FoldableStation) -> Iterator[Proposal]:
+def quantifier_proposals(station: FoldableStation) -> Iterator[FoldProposal]:
     """A proposal for each thing that is said of all values of a set, or of any, wherever that is."""
-    groups: dict[tuple[bool, str, str], list[Replacement]] = defaultdict(list)
+    groups: dict[tuple[bool, str, str], list[Rewriting]] = defaultdict(list)
     for text in station.texts:
         for node in text.nodes:
             if not isinstance(node, And | Or):
@@ -120,15 +120,15 @@ def quantifier_proposals(station: FoldableStation) -> Iterator[Proposal]:
                         groups[isinstance(node, And), print_expression(part.body), domain].append(written)
     for parts in groups.values():
         found = apart(parts)
-        yield Proposal(FoldKind.QUANTIFIER, f"Write `{found[0].now.strip('()')}`", found)
+        yield FoldProposal(FoldKind.QUANTIFIER, f"Write `{found[0].now.strip('()')}`", found)
 
 
 def _written(
     station: FoldableStation, text: FoldableText, node: And | Or, run: ValueRun, domain: str
-) -> Replacement | None:
+) -> Rewriting | None:
     span = text.of_operands(node, run.first, run.last)
     for word in dict.fromkeys(words_for(station, run.body, domain)):
         found = part_of(text, span, quantified(isinstance(node, And), run.body, domain, word))
-        if word not in station.values and station.is_right(text, with_replacements([found])):
+        if word not in station.every_value and station.is_right(text, with_replacements([found])):
             return found
     return None

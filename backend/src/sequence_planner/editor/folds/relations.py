@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from itertools import product
 from typing import NamedTuple
 
+from pydantic import JsonValue
+
 from sequence_planner.editor.draft import AddEntry
-from sequence_planner.editor.folds.proposal import NAME, Proposal, apart
-from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Replacement
+from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart
+from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION
 from sequence_planner.language.printer import print_expression
@@ -44,9 +46,9 @@ class PairRun(NamedTuple):
     pairs: tuple[PairOfLists, ...]
 
 
-def relation_proposals(station: FoldableStation) -> Iterator[Proposal]:
+def relation_proposals(station: FoldableStation) -> Iterator[FoldProposal]:
     """A proposal for each list of pairs of values."""
-    groups: dict[tuple[frozenset[tuple[str, str]], str, str], list[tuple[Replacement, PairRun]]] = defaultdict(list)
+    groups: dict[tuple[frozenset[tuple[str, str]], str, str], list[tuple[Rewriting, PairRun]]] = defaultdict(list)
     for text in station.texts:
         scope = next(text.field.scopes(station.lexicon.meaning(text.field)), None)
         for node in text.nodes if scope is not None else ():
@@ -57,14 +59,16 @@ def relation_proposals(station: FoldableStation) -> Iterator[Proposal]:
                     continue
                 span = text.with_brackets(text.of_operands(node, run.first, run.last))
                 one, other = map(print_expression, run.subjects)
-                part = Replacement(text, span, f"{NAME}({one}, {other})")
+                part = Rewriting(text, span, f"{NAME}({one}, {other})")
                 groups[_all_pairs(run.pairs), *_widened(station, domains[0], domains[1])].append((part, run))
     for (_, left, right), found in groups.items():
         parts = apart([part for part, _ in found])
-        value = _written(station, left, right, found[0][1].pairs)
+        is_symmetric, rows = _rows(station, left == right, found[0][1].pairs)
+        value: dict[str, JsonValue] = {"between": [left, right]}
+        value |= {"symmetric": True, "pairs": rows} if is_symmetric else {"pairs": rows}
         added = AddEntry(file=STATION, path=["relations", NAME], value=value)
-        title = f"Name a relation `{NAME}` of {len(value['pairs'])} lines of pairs"
-        yield Proposal(FoldKind.RELATION, title, parts, added=added, name=station.fresh("belong_together"))
+        title = f"Name a relation `{NAME}` of {len(rows)} lines of pairs"
+        yield FoldProposal(FoldKind.RELATION, title, parts, added=added, name=station.unused("belong_together"))
 
 
 def _longest(station: FoldableStation, node: Or) -> PairRun | None:
@@ -103,10 +107,10 @@ def _pair(station: FoldableStation, operand: Expression) -> tuple[_Side, _Side] 
 
 def _side(station: FoldableStation, part: Expression) -> _Side | None:
     match part:
-        case Comparison("==", Name() as left, Name() as right) if str(right) in station.values:
+        case Comparison("==", Name() as left, Name() as right) if str(right) in station.every_value:
             return left, (str(right),)
         case Membership(Name() as left, options):
-            values = tuple(str(each) for each in options if isinstance(each, Name) and str(each) in station.values)
+            values = tuple(str(each) for each in options if isinstance(each, Name) and str(each) in station.every_value)
             return (left, values) if len(values) == len(options) else None
         case NamedMembership(Name() as left, domain) if str(domain) in station.domains:
             return left, station.domains[str(domain)].values
@@ -137,13 +141,11 @@ def _all_pairs(pairs: tuple[PairOfLists, ...]) -> frozenset[tuple[str, str]]:
     return frozenset(each for lists in pairs for each in product(*lists))
 
 
-def _written(
-    station: FoldableStation, left: str, right: str, pairs: tuple[PairOfLists, ...]
-) -> dict[str, list[list[str | list[str]]] | list[str] | bool]:
-    """The document of a relation of these pairs, of which each stands there once if they hold both ways."""
+def _rows(station: FoldableStation, is_of_one: bool, pairs: tuple[PairOfLists, ...]) -> tuple[bool, list[JsonValue]]:
+    """Whether pairs hold both ways, which only those of one enumeration can, and the lines that they then need."""
     whole = _all_pairs(pairs)
-    is_symmetric = left == right and whole == {(other, one) for one, other in whole}
-    rows: list[list[str | list[str]]] = []
+    is_symmetric = is_of_one and whole == {(other, one) for one, other in whole}
+    rows: list[JsonValue] = []
     known: set[tuple[str, str]] = set()
     for lists in pairs:
         own = set(product(*lists))
@@ -151,10 +153,10 @@ def _written(
             continue
         known |= own | ({(other, one) for one, other in own} if is_symmetric else set())
         rows.append([_shortly(station, lists.left), _shortly(station, lists.right)])
-    return {"between": [left, right], **({"symmetric": True} if is_symmetric else {}), "pairs": rows}
+    return is_symmetric, rows
 
 
-def _shortly(station: FoldableStation, values: tuple[str, ...]) -> str | list[str]:
+def _shortly(station: FoldableStation, values: tuple[str, ...]) -> JsonValue:
     """Values as they are written in a pair: one by itself, several by the name of their set, or as a list."""
     if len(values) == 1:
         return values[0]

@@ -7,10 +7,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 
+from pydantic import JsonValue
+
 from sequence_planner.editor.draft import AddEntry, SetEntry
-from sequence_planner.editor.folds.proposal import NAME, Proposal, apart, place_of_text
+from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, place_between
 from sequence_planner.editor.folds.quantifiers import is_membership, runs
-from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Replacement
+from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION, entry, pairs
 from sequence_planner.language.printer import print_expression
@@ -22,33 +24,33 @@ _FEWEST_NAMED = 3  # values that are worth a name
 _FEWEST_SHARED = 3  # values that an enumeration is worth to be included for
 
 
-def set_proposals(station: FoldableStation) -> Iterator[Proposal]:
+def set_proposals(station: FoldableStation) -> Iterator[FoldProposal]:
     """A proposal for each list of values that has a name, or could have one."""
-    groups: dict[frozenset[str], list[Replacement]] = defaultdict(list)
+    groups: dict[frozenset[str], list[Rewriting]] = defaultdict(list)
     for text in station.texts:
         for node in text.nodes:
-            for values, part in _lists(station, text, node):
-                groups[frozenset(values)].append(part)
+            for listed, part in _lists(station, text, node):
+                groups[frozenset(listed)].append(part)
     for values, parts in groups.items():
         found = apart(parts)
         places = f"{len(found)} places" if len(found) > 1 else "one place"
         if known := station.with_values(values):
-            named = tuple(Replacement(each.text, each.span, each.now.replace(NAME, known[0])) for each in found)
-            yield Proposal(FoldKind.SET, f"Name `{known[0]}` in place of its values, in {places}", named)
+            named = tuple(Rewriting(each.text, each.span, each.now.replace(NAME, known[0])) for each in found)
+            yield FoldProposal(FoldKind.SET, f"Name `{known[0]}` in place of its values, in {places}", named)
         elif len(found) > 1 and len(values) >= _FEWEST_NAMED and (whole := station.smallest_with(values)) is not None:
-            members = _as_members(station, values, whole)
+            members: list[JsonValue] = [*_as_members(station, values, whole)]
             added = AddEntry(file=STATION, path=["sets", NAME], value={"of": whole, "values": members})
             title = f"Name a set `{NAME}` of {len(values)} values of `{whole}`, in {places}"
-            yield Proposal(FoldKind.SET, title, found, added=added, name=_name_for(station, values, whole))
+            yield FoldProposal(FoldKind.SET, title, found, added=added, name=_name_for(station, values, whole))
 
 
-def _lists(station: FoldableStation, text: FoldableText, node: object) -> Iterator[tuple[Sequence[str], Replacement]]:
+def _lists(station: FoldableStation, text: FoldableText, node: object) -> Iterator[tuple[Sequence[str], Rewriting]]:
     """The lists of values that something is, or is not, one of."""
     if isinstance(node, Membership):
-        values = [str(each) for each in node.options if isinstance(each, Name) and str(each) in station.values]
+        values = [str(each) for each in node.options if isinstance(each, Name) and str(each) in station.every_value]
         if len(set(values)) == len(node.options) > 1:
             start = text.text.rfind("{", node.span.start, node.options[0].span.start)
-            yield values, Replacement(text, Span(start, node.span.end), NAME)
+            yield values, Rewriting(text, Span(start, node.span.end), NAME)
     elif isinstance(node, And | Or):
         for run in runs(station, node):
             body = run.body
@@ -57,7 +59,7 @@ def _lists(station: FoldableStation, text: FoldableText, node: object) -> Iterat
             if body.operator == ("!=" if isinstance(node, And) else "=="):
                 span = text.with_brackets(text.of_operands(node, run.first, run.last))
                 is_not = "not " if isinstance(node, And) else ""
-                yield run.values, Replacement(text, span, f"{is_not}{print_expression(body.left)} in {NAME}")
+                yield run.values, Rewriting(text, span, f"{is_not}{print_expression(body.left)} in {NAME}")
 
 
 def _as_members(station: FoldableStation, values: Iterable[str], whole: str) -> list[str]:
@@ -82,7 +84,7 @@ def _name_for(station: FoldableStation, values: Iterable[str], whole: str) -> st
     name = "_".join(word.lower() for word in common if not word.isdigit())
     enumerations = (station.domains[each] for each in (whole,))
     is_telling = any(not all(name in _flat(value) for value in each.values) for each in enumerations)
-    return station.fresh(name if len(name) > 3 and is_telling else f"some_{whole}s")
+    return station.unused(name if len(name) > 3 and is_telling else f"some_{whole}s")
 
 
 def _flat(value: str) -> str:
@@ -92,7 +94,7 @@ def _flat(value: str) -> str:
 # Enumerations that others have at their end
 
 
-def include_proposals(station: FoldableStation) -> Iterator[Proposal]:
+def include_proposals(station: FoldableStation) -> Iterator[FoldProposal]:
     """A proposal for each enumeration that ends with all values of another one, in their order."""
     written = entry(station.content.get(STATION), "enumerations")
     lists = {key: value for key, value in pairs(written) if isinstance(value, list)}
@@ -107,10 +109,11 @@ def include_proposals(station: FoldableStation) -> Iterator[Proposal]:
         if best is None or any(not isinstance(each, SourceText) for each in values):
             continue
         own = plain[: len(plain) - len(station.domains[best].values)]
-        now = {**({"values": own} if own else {}), "includes": [best]}
+        now: dict[str, JsonValue] = {"values": [*own]} if own else {}
+        now["includes"] = [best]
         edit = SetEntry(file=STATION, path=["enumerations", str(name)], was=list(plain), value=now)
-        place = place_of_text(STATION, name, f"{len(plain)} values", f"includes: [{best}]")
-        yield Proposal(FoldKind.INCLUDES, f"Include `{best}` in `{name}`", entries=((edit, place),))
+        place = place_between(STATION, name, values[-1], f"{len(plain)} values", f"includes: [{best}]")
+        yield FoldProposal(FoldKind.INCLUDES, f"Include `{best}` in `{name}`", entries=((edit, place),))
 
 
 def _ends(values: list[str], other: Sequence[str]) -> bool:

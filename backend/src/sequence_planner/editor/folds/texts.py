@@ -36,6 +36,7 @@ from sequence_planner.language.types import EnumerationType
 from sequence_planner.model.documents import VariableDocument
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.yaml.reader import EntryPath
+from sequence_planner.station import MeantStation
 
 _JOINING = re.compile(r"\b(?:and|or)\b")
 
@@ -97,7 +98,7 @@ class FoldableText:
 
 
 @dataclass(frozen=True)
-class Replacement:
+class Rewriting:
     """A part of a text, and what can be written in its place."""
 
     text: FoldableText
@@ -119,9 +120,9 @@ class FoldableStation:
     texts: tuple[FoldableText, ...] = field(repr=False)
 
     @classmethod
-    def of(cls, files: Mapping[str, str], lexicon: Lexicon) -> FoldableStation:
-        """The station of these files. What is written in types and packages is left alone."""
-        content = ModelContent(files)
+    def made_of(cls, files: Mapping[str, str], meant: MeantStation) -> FoldableStation:
+        """The station of these files, which was read. What is written in types and packages is left alone."""
+        content, lexicon = ModelContent(files), Lexicon.of(meant.station, meant.registry)
         found = (
             FoldableText(file, path, text, where)
             for file in content
@@ -136,7 +137,7 @@ class FoldableStation:
         return dict(self.lexicon.declarations.enumerations)
 
     @cached_property
-    def values(self) -> frozenset[str]:
+    def every_value(self) -> frozenset[str]:
         """The values of all of them."""
         return frozenset(value for each in self.domains.values() for value in each.values)
 
@@ -174,15 +175,15 @@ class FoldableStation:
         return not check(self.lexicon, text.field, new)
 
     @cached_property
-    def names(self) -> frozenset[str]:
+    def taken(self) -> frozenset[str]:
         """All words that stand for something already: a new name is none of them."""
-        declared = (*self.lexicon.declarations.types, *self.domains, *self.lexicon.short, *self.values)
+        declared = (*self.lexicon.declarations.types, *self.domains, *self.lexicon.short, *self.every_value)
         return frozenset(word for name in declared for word in re.findall(r"\w+", name))
 
-    def fresh(self, wanted: str) -> str:
+    def unused(self, wanted: str) -> str:
         """A name like `wanted` that nothing has."""
         name, number = wanted, 1
-        while name in self.names:
+        while name in self.taken:
             number += 1
             name = f"{wanted}_{number}"
         return name
@@ -229,26 +230,26 @@ def words_of(expression: Expression) -> set[str]:
 def with_word(expression: Expression, word: str, other: str) -> Expression:
     """An expression with `other` wherever it has the value `word`."""
 
-    def part(inner: Expression) -> Expression:
+    def _part(inner: Expression) -> Expression:
         return with_word(inner, word, other)
 
     match expression:
         case Name():
             return _renamed(expression, word, other)
         case Not(operand) | UnaryTemporal(_, operand):
-            return replace(expression, operand=part(operand))
+            return replace(expression, operand=_part(operand))
         case And(operands) | Or(operands):
-            return replace(expression, operands=tuple(map(part, operands)))
+            return replace(expression, operands=tuple(map(_part, operands)))
         case Implies(left, right) | Comparison(_, left, right) | Arithmetic(_, left, right):
-            return replace(expression, left=part(left), right=part(right))
+            return replace(expression, left=_part(left), right=_part(right))
         case BinaryTemporal(_, left, right):
-            return replace(expression, left=part(left), right=part(right))
+            return replace(expression, left=_part(left), right=_part(right))
         case Membership(left, options):
-            return replace(expression, left=part(left), options=tuple(map(part, options)))
+            return replace(expression, left=_part(left), options=tuple(map(_part, options)))
         case NamedMembership(left):
-            return replace(expression, left=part(left))
+            return replace(expression, left=_part(left))
         case Quantified(where=where, body=body):
-            return replace(expression, where=where and part(where), body=part(body))
+            return replace(expression, where=where and _part(where), body=_part(body))
     return expression
 
 

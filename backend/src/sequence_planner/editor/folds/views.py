@@ -13,7 +13,10 @@ def fold_view(fold: Fold) -> FoldView:
         kind=fold.kind,
         title=fold.title,
         name=fold.name,
-        places=tuple(FoldPlaceView(**vars(each)) for each in fold.places),
+        places=tuple(
+            FoldPlaceView(file=each.file, line=each.line, column=each.column, was=each.was, now=each.now)
+            for each in fold.places
+        ),
         saved_lines=fold.saved_lines,
         saved_characters=fold.saved_characters,
         edits=tuple(fold.edits),

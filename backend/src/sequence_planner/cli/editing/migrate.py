@@ -100,7 +100,7 @@ class _Writing:
     files: dict[str, str]
     changed: set[str] = field(default_factory=set)
 
-    def take(self, changed: Mapping[str, str]) -> None:
+    def put_in(self, changed: Mapping[str, str]) -> None:
         self.files |= changed
         self.changed |= changed.keys()
 
@@ -117,7 +117,7 @@ def _write(
     writing = _Writing(dict(files))
     for number, (wanted, name) in enumerate(chosen):
         try:
-            writing.take(finder.fold(writing.files, wanted, name).files)
+            writing.put_in(finder.fold(writing.files, wanted, name).files)
         except EditError as error:
             behind = f" (after `{chosen[number - 1][0]}`)" if number else ""
             marks = [fold.id for fold in finder.folds(files).folds]
