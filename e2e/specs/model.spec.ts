@@ -288,3 +288,44 @@ test('the tree is gone through by keyboard and searched; who may not edit can lo
 	await expect(page.getByRole('treeitem').filter({ hasText: 'tighten_bolt_pair' })).toBeVisible();
 	await expect(page.getByRole('treeitem').filter({ hasText: 'robot' })).toHaveCount(0);
 });
+
+test('what could be said shorter is found, proven, written under a name that is given, and taken back', async ({
+	browse,
+	complaints
+}) => {
+	const page = await browse(INA, at('operations.yaml', 'new_engine'));
+	await ready(page);
+	const shorter = page.getByRole('region', { name: 'Shorter with the same meaning' });
+	await shorter.getByRole('button', { name: 'Look for shorter ways' }).click();
+	const predicate = shorter.getByRole('listitem').filter({ hasText: 'Name a predicate `all_tightened`' });
+	await expect(predicate.getByLabel('Name')).toHaveValue('all_tightened', { timeout: 60_000 });
+	await expect(shorter.getByRole('status').first()).toContainText('ways found');
+	await expect(shorter).toContainText('any pair in bolt_pair: bolts[pair] == placed');
+	expect(await findings(page)).toEqual([]);
+
+	// Each place leads to where it is written.
+	await predicate.getByRole('button', { name: /^resources\/engine\.yaml:\d+$/ }).click();
+	await expect(form(page).getByRole('heading').first()).toContainText('next_engine');
+	await expect(file(page).locator('.cm-chosen').filter({ hasText: 'bolts[bolt_pair_1] == tightened' })).toBeVisible();
+
+	// A name that means something else is refused, and nothing is written.
+	await predicate.getByLabel('Name').fill('bolts');
+	await predicate.getByRole('button', { name: 'Write it so' }).click();
+	await expect(shorter.getByRole('alert')).toContainText('is the name of something else');
+	await predicate.getByLabel('Name').fill('is_done');
+	await predicate.getByRole('button', { name: 'Write it so' }).click();
+	await expect(changes(page).getByRole('listitem').first()).toContainText('Name a predicate `is_done`, in 2 places', {
+		timeout: 60_000
+	});
+	await expect(file(page)).toContainText('is_done');
+	await expect(file(page)).not.toContainText('bolts[bolt_pair_1] == tightened');
+	await expect(problems(page).getByRole('status')).toContainText('Checked', { timeout: 60_000 });
+	await expect(problems(page).getByRole('status')).not.toContainText('error');
+	await expect(predicate).toHaveCount(0, { timeout: 60_000 });
+
+	// All of it is one change.
+	await page.getByRole('button', { name: /^Undo: Name a predicate `is_done`/ }).click();
+	await expect(file(page)).toContainText('bolts[bolt_pair_1] == tightened');
+	await expect(shorter.getByRole('status').first()).toContainText('look again');
+	expect(complaints.filter((each) => !each.includes('422'))).toEqual([]);
+});

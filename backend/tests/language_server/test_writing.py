@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -253,4 +254,45 @@ def test_what_the_supervisor_adds(editor: Editor, station: Path) -> None:
     assert hints() == []
     editor.tell("workspace/didChangeConfiguration", settings={"sequencePlanner": {"supervisorHints": True}})
     assert hints()
+    editor.close(uri)
+
+
+def _asked(editor: Editor, uri: str, mark: str, **context: object) -> list[dict[str, Any]]:
+    """The actions that rewrite what stands at a mark."""
+    position = editor.at(uri, mark, 0)["position"]
+    found = editor.ask(
+        "textDocument/codeAction",
+        textDocument={"uri": uri},
+        range={"start": position, "end": position},
+        context={"diagnostics": [], **context},
+    )
+    return [each for each in found if each["kind"] == "refactor.rewrite"]
+
+
+def test_what_can_be_said_shorter_is_offered_where_it_is_written(editor: Editor, station: Path) -> None:
+    uri = editor.open(station / "operations.yaml")
+    other = editor.open(station / "resources" / "engine.yaml")
+    actions = {each["title"]: each for each in _asked(editor, uri, "bolts[bolt_pair_2] == tightened", triggerKind=1)}
+    assert actions.keys() == {
+        "Write `all pair in bolt_pair: bolts[pair] == tightened`",
+        "Name a predicate `all_tightened`, in 2 places",
+    }
+    editor.apply(actions["Name a predicate `all_tightened`, in 2 places"]["edit"])
+    assert "bolts[bolt_pair_2] == tightened" not in editor.text(uri) + editor.text(other)
+    assert "enabled: all_tightened\n" in editor.text(other)
+    named = editor.open(station / "station.yaml")
+    editor.until_clean(named)
+    editor.until_clean(uri)
+    editor.close(uri)
+    editor.close(other)
+    editor.close(named)
+
+
+def test_a_lamp_beside_a_line_does_not_wait_for_proofs(editor: Editor, station: Path) -> None:
+    uri = editor.open(station / "operations.yaml")
+    assert _asked(editor, uri, "bolts[bolt_pair_2] == tightened", triggerKind=2) == []
+    assert _asked(editor, uri, "bolts[bolt_pair_2] == tightened", triggerKind=1, only=["quickfix"]) == []
+    assert _asked(editor, uri, "title:", triggerKind=1) == []
+    editor.type(uri, "bolts[bolt_pair_2] == tightened", "bolts[bolt_pair_2] == tight")
+    assert _asked(editor, uri, "bolts[bolt_pair_1] == tightened", triggerKind=1) == []
     editor.close(uri)

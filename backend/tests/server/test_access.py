@@ -83,6 +83,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/model/rename": ("engineer", None),
     "GET /api/v1/model/usages": ("viewer", "read"),
     "GET /api/v1/model/graph": ("viewer", "read"),
+    "GET /api/v1/model/folds": ("viewer", "read"),
     "POST /api/v1/model/undo": ("engineer", None),
     "POST /api/v1/model/redo": ("engineer", None),
     "GET /api/v1/ros/graph": ("viewer", "read"),

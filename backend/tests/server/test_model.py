@@ -286,6 +286,30 @@ def test_a_part_is_renamed_wherever_it_is_named(eva: httpx.Client) -> None:
     assert {each["state"] for each in read(eva)["files"].values()} == {"same"}
 
 
+def test_what_could_be_said_shorter_is_one_change(eva: httpx.Client, adam: httpx.Client) -> None:
+    found = read(eva, "/folds")
+    assert (found["number"], found["usable"], found["whole"]) == (read(eva)["number"], True, True)
+    predicate = next(each for each in found["folds"] if each["kind"] == "predicate")
+    assert [each["file"] for each in predicate["places"]] == ["operations.yaml", "resources/engine.yaml"]
+    (named,) = read(eva, "/folds", fold=predicate["id"], name="is_done")["folds"]
+    made(eva, *named["edits"])
+    files = read(eva, "/files")["files"]
+    assert files["station.yaml"]["content"]["predicates"] == {
+        "is_done": "all pair in bolt_pair: bolts[pair] == tightened"
+    }
+    assert files["resources/engine.yaml"]["content"]["abilities"]["next_engine"]["enabled"] == "is_done"
+    assert checked(eva)["findings"] == []
+    assert predicate["id"] not in [each["id"] for each in read(eva, "/folds")["folds"]]
+    problem(adam.post(f"{MODEL}/changes", json={"title": "once more", "edits": named["edits"]}), 409, "part-changed")
+    problem(eva.get(f"{MODEL}/folds", params={"fold": predicate["id"]}), 422, "edit-refused")
+    problem(eva.get(f"{MODEL}/folds", params={"fold": "../"}), 422, "invalid-request")
+    assert eva.post(f"{MODEL}/undo", json={}).status_code == 200
+    assert {each["state"] for each in read(eva)["files"].values()} == {"same"}
+    edit = {"kind": "set", "file": "station.yaml", "path": ["rest"], "value": "robot.pos == home"}
+    made(eva, {**edit, "was": read(eva, "/files", path="station.yaml")["files"]["station.yaml"]["content"]["rest"]})
+    assert read(eva, "/folds")["usable"] is False
+
+
 def test_the_model_as_a_whole_follows_the_draft(eva: httpx.Client) -> None:
     def tied(part: str) -> set[tuple[str, str]]:
         """What the part uses, and how."""

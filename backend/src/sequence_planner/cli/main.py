@@ -42,8 +42,13 @@ COMMANDS = (
     ),
     LazyCommand(
         "edit",
-        "model.edit:edit",
+        "editing.edit:edit",
         "Change one entry of a station's document, and print the difference. Comments and order stay.",
+    ),
+    LazyCommand(
+        "migrate",
+        "editing.migrate:migrate",
+        "Show what a station could say shorter with the same meaning, and write what is chosen of it.",
     ),
     LazyCommand(
         "language-server",

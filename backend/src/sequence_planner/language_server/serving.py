@@ -17,8 +17,9 @@ from pygls.exceptions import JsonRpcException
 from sequence_planner.language_server.server import StationLanguageServer
 from sequence_planner.language_server.streams import ClientStreams, talk
 
-_LATER = ("station", "answers.assistance", "answers.navigation", "answers.findings")
+_LATER = ("station", "answers.assistance", "answers.navigation", "answers.findings", "answers.code_actions")
 _ASSISTANCE, _NAVIGATION = "answers.assistance:Assistance", "answers.navigation:Navigation"
+_ACTING = "answers.code_actions:CodeActions"
 _TRIGGERS = [".", "(", "[", "{", " "]
 _ACTIONS = [types.CodeActionKind.QuickFix, types.CodeActionKind.RefactorRewrite]
 
@@ -27,7 +28,7 @@ _ACTIONS = [types.CodeActionKind.QuickFix, types.CodeActionKind.RefactorRewrite]
 _OFFERED: Mapping[str, tuple[str, str, object]] = {
     types.TEXT_DOCUMENT_COMPLETION: (_ASSISTANCE, "completion", types.CompletionOptions(trigger_characters=_TRIGGERS)),
     types.TEXT_DOCUMENT_HOVER: (_ASSISTANCE, "hover", None),
-    types.TEXT_DOCUMENT_CODE_ACTION: (_ASSISTANCE, "code_actions", types.CodeActionOptions(_ACTIONS)),
+    types.TEXT_DOCUMENT_CODE_ACTION: (_ACTING, "code_actions", types.CodeActionOptions(_ACTIONS)),
     types.TEXT_DOCUMENT_INLAY_HINT: (_ASSISTANCE, "inlay_hints", None),
     types.TEXT_DOCUMENT_DEFINITION: (_NAVIGATION, "definition", None),
     types.TEXT_DOCUMENT_REFERENCES: (_NAVIGATION, "references", None),
@@ -66,12 +67,12 @@ def _offer(server: StationLanguageServer) -> None:
     """Have the server answer all that."""
 
     @cache
-    def answering(place: str) -> object:
+    def _answering(place: str) -> object:
         module, _, name = place.partition(":")
         return getattr(importlib.import_module(f"{__package__}.{module}"), name)(server)
 
     def asked_of(place: str, name: str, params: object) -> object:
-        return getattr(answering(place), name)(params)
+        return getattr(_answering(place), name)(params)
 
     for method, (place, name, options) in _OFFERED.items():
         server.offer(method, partial(asked_of, place, name), options)

@@ -11,7 +11,7 @@ from pydantic import JsonValue
 
 from sequence_planner.analysis.report import FindingDocument, error_document
 from sequence_planner.controller.views.part import View
-from sequence_planner.editor.draft import ChangeKind, Draft, DraftChange, digest
+from sequence_planner.editor.draft import ChangeKind, Draft, DraftChange, Edit, digest
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView
 from sequence_planner.model.source import ModelError
@@ -147,6 +147,59 @@ class WorkshopView(View):
 
 
 # The draft as it is shown.
+
+# What could be said shorter in the draft.
+
+
+class FoldKind(StrEnum):
+    """What a fold is for."""
+
+    QUANTIFIER = "quantifier"
+    SET = "set"
+    PREDICATE = "predicate"
+    RELATION = "relation"
+    INCLUDES = "includes"
+    MAP = "map"
+    ROWS = "rows"
+
+
+class FoldPlaceView(View):
+    """A place where something is written longer than it need be: what is there, and what would be there."""
+
+    file: str
+    line: int
+    column: int
+    was: str
+    now: str
+
+
+class FoldView(View):
+    """A way to write something shorter that was proven to mean the same. `name` is proposed for what it adds.
+
+    `edits` make it, carried out together.
+    """
+
+    id: str
+    kind: FoldKind
+    title: str
+    name: str | None
+    places: tuple[FoldPlaceView, ...]
+    saved_lines: int
+    saved_characters: int
+    edits: tuple[Edit, ...]
+
+
+class FoldsView(View):
+    """The folds of the draft after change `number`, those first that save most.
+
+    Of one that is not `usable` there are none; where it is not `whole`, time was up before all had been looked at.
+    """
+
+    number: int
+    usable: bool
+    whole: bool
+    folds: tuple[FoldView, ...]
+
 
 MOST_READ, MOST_CHARACTERS = 5000, 50_000_000  # files whose content is remembered, and what they may take together
 

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
 from lsprotocol import types
 
-from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.editor.language.completion import MOST_OPTIONS
 from sequence_planner.editor.language.schemas import NameKind
-from sequence_planner.editor.language.types.places import text_place
 from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.language_server.answers.completing import Proposal, proposals
-from sequence_planner.language_server.answers.findings import diagnostics_of, new_name, range_of, replacements
 from sequence_planner.language_server.answers.hints import guard_hints
 from sequence_planner.language_server.answers.hovering import explanation
-from sequence_planner.language_server.documents.cursor import read_at
 from sequence_planner.language_server.documents.schemas import DocumentSchemas
 from sequence_planner.language_server.documents.texts import DocumentText
 from sequence_planner.language_server.server import StationLanguageServer
-from sequence_planner.language_server.snapshot import StationSnapshot
-from sequence_planner.language_server.workspace import StationFile
 
 _COMPLETION_KINDS = {
     None: types.CompletionItemKind.Property,
@@ -75,20 +67,6 @@ class Assistance:
         told = types.MarkupContent(types.MarkupKind.Markdown, found.text)
         return types.Hover(told, text.range(found.start, found.end))
 
-    async def code_actions(self, params: types.CodeActionParams) -> list[types.CodeAction]:
-        """What mends the findings in a range, and the usual form of a condition or an action."""
-        file = self._server.stations.file(params.text_document.uri, of_model=False)
-        if file is None:
-            return []
-        text, wanted = self._server.text_of_file(file), params.context.only
-        actions: list[types.CodeAction] = []
-        if _is_wanted(types.CodeActionKind.QuickFix, wanted):
-            actions += self._fixes(file, text, params.range)
-        if _is_wanted(types.CodeActionKind.RefactorRewrite, wanted):
-            snapshot, index = await file.station.snapshot(), text.index(params.range.start)
-            actions += await self._at_once(lambda: list(self._rewritten(file, snapshot, text, index)))
-        return actions
-
     async def inlay_hints(self, params: types.InlayHintParams) -> list[types.InlayHint] | None:
         """What the supervisor adds to the abilities in a range, as far as that is known."""
         file = self._server.stations.file(params.text_document.uri)
@@ -108,53 +86,6 @@ class Assistance:
             if first <= hint.line - 1 <= last
         ]
 
-    def _fixes(self, file: StationFile, text: DocumentText, where: types.Range) -> Iterator[types.CodeAction]:
-        if file.station.checked_files.get(file.name) != file.station.files.get(file.name):
-            return  # what was found is not where it was
-        for finding in file.station.findings:
-            if finding.file != file.name or not _touch(range_of(finding, text), where):
-                continue
-            yield from self._mended(file, text, finding)
-
-    def _mended(self, file: StationFile, text: DocumentText, finding: FindingDocument) -> Iterator[types.CodeAction]:
-        about = diagnostics_of([finding], text)
-        for each in replacements(finding):
-            edit = types.TextEdit(range_of(finding, text), each.text)
-            yield types.CodeAction(
-                title=f"Write `{each.text}`",
-                kind=types.CodeActionKind.QuickFix,
-                diagnostics=about,
-                is_preferred=each.is_sure,
-                edit=types.WorkspaceEdit(changes={self._server.uri(file.station, file.name): [edit]}),
-            )
-        if (name := new_name(finding)) is not None:
-            path = file.station.folder / finding.file
-            moved = types.RenameFile(path.as_uri(), path.with_name(name).as_uri())
-            yield types.CodeAction(
-                title=f"Call the file {name}",
-                kind=types.CodeActionKind.QuickFix,
-                diagnostics=about,
-                is_preferred=True,
-                edit=types.WorkspaceEdit(document_changes=[moved]),
-            )
-
-    def _rewritten(
-        self, file: StationFile, snapshot: StationSnapshot, text: DocumentText, index: int
-    ) -> Iterator[types.CodeAction]:
-        """The usual form of what stands there in one line, which means the same."""
-        cursor = read_at(text.text, index)
-        if cursor is None or "\n" in cursor.text.raw or cursor.text.raw[:1] in "'\"":
-            return
-        place = text_place(snapshot.lexicon, file.name, cursor.path, cursor.parameters)
-        if place is None or (new := place.formatted(str(cursor.text))) == cursor.text:
-            return
-        edit = types.TextEdit(text.range(*cursor.span_in_file(0, len(cursor.text))), new)
-        yield types.CodeAction(
-            title=f"Write it as `{new}`",
-            kind=types.CodeActionKind.RefactorRewrite,
-            edit=types.WorkspaceEdit(changes={self._server.uri(file.station, file.name): [edit]}),
-        )
-
 
 def _item(text: DocumentText, number: int, proposal: Proposal) -> types.CompletionItem:
     return types.CompletionItem(
@@ -165,16 +96,4 @@ def _item(text: DocumentText, number: int, proposal: Proposal) -> types.Completi
         sort_text=f"{number:04}",
         filter_text=proposal.insert.rstrip(": "),
         text_edit=types.TextEdit(text.range(proposal.start, proposal.end), proposal.insert),
-    )
-
-
-def _touch(one: types.Range, other: types.Range) -> bool:
-    return one.start <= other.end and other.start <= one.end
-
-
-def _is_wanted(kind: types.CodeActionKind, only: Sequence[types.CodeActionKind | str] | None) -> bool:
-    """Return whether actions of a kind are asked for; a kind stands for all below it."""
-    return only is None or any(
-        kind.value == str(getattr(each, "value", each)) or kind.value.startswith(f"{getattr(each, 'value', each)}.")
-        for each in only
     )

@@ -48,7 +48,7 @@ from sequence_planner.editor.processes import (
     TextAt,
 )
 from sequence_planner.editor.schemas.check import CheckView
-from sequence_planner.editor.schemas.draft import DraftView, FilesView, UsagesView
+from sequence_planner.editor.schemas.draft import DraftView, FilesView, FoldsView, UsagesView
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.model.files import read_files, write_files
@@ -78,6 +78,8 @@ from sequence_planner.server.stream.endpoints import serve
 
 Finding = Annotated[int, Path(ge=0, le=2**31)]
 AbilityName = Annotated[str, Query(min_length=1, max_length=400)]
+FoldMark = Annotated[str, Query(pattern="^[0-9a-f]{8}$")]
+FoldName = Annotated[str, Query(min_length=1, max_length=200)]
 PartId = Annotated[str, Field(min_length=3, max_length=500)]
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
@@ -185,6 +187,17 @@ async def usages(shop: TheWorkshop, part: PartId) -> Response:
 async def model_graph(shop: TheWorkshop) -> Response:
     """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
     return found(await shop.tied())
+
+
+@model_router.get("/folds", dependencies=[VIEWER], response_model=FoldsView, responses=refused(422))
+async def folds(shop: TheWorkshop, fold: FoldMark | None = None, name: FoldName | None = None) -> Response:
+    """Ways to say something shorter in the draft that are proven to mean the same; only `fold`, with `name` for what
+    it adds, where these are given. Nothing is changed: `POST /model/changes` takes the edits of one.
+    """
+    try:
+        return found(await shop.folded(fold, name))
+    except EditError as error:
+        raise refusal(error) from error
 
 
 @model_router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))

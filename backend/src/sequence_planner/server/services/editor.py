@@ -83,6 +83,7 @@ class Workshop:
         self._revisions = revisions
         self._editing = DraftProcess("editing_worker")
         self._process = DraftProcess()
+        self._folding = DraftProcess("folds.folding_worker")
         self._desk = CheckDesk(model, start, self._process, self._found)
         self._pipelines = DraftAnswering("pipelines.worker", 2)  # the draft, and what runs
         self._check: CheckView | None = None
@@ -97,7 +98,7 @@ class Workshop:
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
-        for each in (self._editing, self._process, self._pipelines):
+        for each in (self._editing, self._process, self._folding, self._pipelines):
             each.close()
 
     async def open(self) -> Draft:
@@ -182,6 +183,17 @@ class Workshop:
                 assert isinstance(found, str)
                 self._tied = draft.number, found
             return self._tied[1]
+
+    async def folded(self, wanted: str | None, name: str | None) -> str:
+        """Return what could be said shorter, or one of that with another name for what it adds, as JSON of a
+        `FoldsView`.
+
+        Raises `EditError` where there is no such fold, and `WorkerError`.
+        """
+        draft = await self.open()
+        found = await self._folding.ask(draft.files, "folded", draft.number, wanted, name)
+        assert isinstance(found, str)
+        return found
 
     async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
         """Return how an ability goes through the run that shows a finding of the check of change `number`.

@@ -397,5 +397,21 @@ export const model = {
 		warning: 'Warning',
 		place: (file: string, line: number): string => `${file}:${line}`,
 		more: (n: number): string => `Show ${n} more`
+	},
+	folds: {
+		title: 'Shorter with the same meaning',
+		about: 'What is written several times, or value by value, can often be said once. Each such way is proven to mean the same.',
+		look: 'Look for shorter ways',
+		again: 'Look again',
+		looking: 'Being looked for and proven.',
+		old: 'The draft has changed since: look again.',
+		unusable: 'What the draft means must be right first: see its problems.',
+		found: (n: number, whole: boolean): string =>
+			(n === 0 ? 'Nothing is known to be said shorter.' : `${count(n, 'way', 'ways')} found.`) +
+			(whole ? '' : ' There was no time to look at all.'),
+		saved: (lines: number): string =>
+			lines === 0 ? 'as many lines' : `${count(Math.abs(lines), 'line', 'lines')} ${lines > 0 ? 'fewer' : 'more'}`,
+		name: 'Name',
+		write: 'Write it so'
 	}
 };

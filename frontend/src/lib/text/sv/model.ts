@@ -388,5 +388,21 @@ export const model: Text['model'] = {
 		warning: 'Varning',
 		place: (file, line) => `${file}:${line}`,
 		more: (n) => `Visa ${n} till`
+	},
+	folds: {
+		title: 'Kortare med samma innebörd',
+		about: 'Det som står flera gånger, eller värde för värde, kan ofta sägas en gång. Varje sådant sätt är bevisat betyda detsamma.',
+		look: 'Sök kortare sätt',
+		again: 'Sök igen',
+		looking: 'Söks och bevisas.',
+		old: 'Utkastet har ändrats sedan dess: sök igen.',
+		unusable: 'Det som utkastet betyder måste först vara rätt: se dess problem.',
+		found: (n, whole) =>
+			(n === 0 ? 'Inget känt kan sägas kortare.' : `${count(n, 'sätt', 'sätt')} hittades.`) +
+			(whole ? '' : ' Tiden räckte inte till allt.'),
+		saved: (lines) =>
+			lines === 0 ? 'lika många rader' : `${count(Math.abs(lines), 'rad', 'rader')} ${lines > 0 ? 'färre' : 'fler'}`,
+		name: 'Namn',
+		write: 'Skriv så'
 	}
 };

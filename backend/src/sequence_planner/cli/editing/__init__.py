@@ -1,0 +1,1 @@
+"""Commands on a model: nothing of them needs a running station."""

@@ -1,0 +1,1 @@
+"""What a station could say shorter."""
