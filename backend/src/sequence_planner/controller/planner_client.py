@@ -27,6 +27,7 @@ from sequence_planner.planning.recovery.proposals import Advice, RecoveryProposa
 from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
 from sequence_planner.planning.recovery.worker import advisor_process
 from sequence_planner.process.task import WorkerError
+from sequence_planner.texts.message import message
 
 # A second planner, for what people ask, so that neither they nor the station ever wait for the other's plan.
 #
@@ -70,12 +71,14 @@ class AdvisorClient:
             async with asyncio.timeout(deadline):
                 return await self._process.ask(request, request.deadline)
         except TimeoutError:
-            detail = "No answer was found in time; nothing was changed by asking. Try again."
-            raise CommandRefused("advisor-timeout", "The adviser was too slow", detail, 504) from None
+            raise CommandRefused("advisor-timeout", message("refused.advisor-timeout.again"), 504) from None
         except (PlannerError, WorkerError) as error:
             why = str(error)
-            detail = f"{why[:1].upper()}{why[1:]}. Nothing was changed by asking; try again in a moment."
-            raise CommandRefused("advisor-unavailable", "The adviser cannot answer", detail, 503) from None
+            raise CommandRefused(
+                "advisor-unavailable",
+                message("refused.advisor-unavailable.again", why=f"{why[:1].upper()}{why[1:]}"),
+                503,
+            ) from None
 
 
 # Plans to something that a person wants to hold, as the adviser finds them, and why there is none.

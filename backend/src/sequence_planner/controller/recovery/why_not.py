@@ -205,5 +205,4 @@ def _more(view: WhyNotView, text: Message, **found: object) -> WhyNotView:
 
 
 def _unknown(kind: str, name: str) -> CommandRefused:
-    detail = f"The station has no {kind} `{name}`. Look at what it has."
-    return CommandRefused(f"unknown-{kind}", f"There is no such {kind}", detail, 404)
+    return CommandRefused(f"unknown-{kind}", message(f"refused.unknown-{kind}.those", name=name), 404)
