@@ -15,7 +15,7 @@ from support.server import Loop
 
 from .example_answers import DEFINITION
 from .test_acting import problem
-from .test_errands import Asked, engineer
+from .test_operator_plans import Asked, engineer
 
 __all__ = ["engineer"]
 

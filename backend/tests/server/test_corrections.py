@@ -21,7 +21,7 @@ from support.server import Loop, Server
 
 from .example_answers import CORRECTION
 from .test_acting import problem
-from .test_errands import Asked
+from .test_operator_plans import Asked
 
 WHY = "seen with my own eyes"
 VALUES: dict[str, bool | int | str] = {"bolts[left]": "placed", "count": 1, "ready": True}

@@ -24,7 +24,7 @@ from sequence_planner.planning.problem import Goal, PlanAnswer, PlanRequest, Way
 from sequence_planner.planning.recovery.consultation import Answer as AdvisorAnswer
 from sequence_planner.planning.recovery.consultation import Request as AdvisorRequest
 from sequence_planner.planning.recovery.proposals import Advice, RecoveryProposal
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest
 from sequence_planner.planning.recovery.worker import advisor_process
 from sequence_planner.process.task import WorkerError
 from sequence_planner.texts.message import message
@@ -35,7 +35,7 @@ from sequence_planner.texts.message import message
 
 
 class AdvisorClient:
-    """Asks an adviser in another process. Used from one event loop."""
+    """Asks an advisor in another process. Used from one event loop."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._process = advisor_process(automaton, supervisor)
@@ -54,7 +54,7 @@ class AdvisorClient:
         self._process.close()
 
     @overload
-    async def answer(self, request: AdviceRequest | ErrandRequest, deadline: float) -> Advice: ...
+    async def answer(self, request: AdviceRequest | GoalPlanRequest, deadline: float) -> Advice: ...
 
     @overload
     async def answer(self, request: PlanRequest, deadline: float) -> PlanAnswer: ...
@@ -63,7 +63,7 @@ class AdvisorClient:
     async def answer(self, request: DiagnosisRequest, deadline: float) -> Diagnosis: ...
 
     async def answer(self, request: AdvisorRequest, deadline: float) -> AdvisorAnswer:
-        """Return what the adviser answers within `deadline` seconds, of which it may have to wait for its turn.
+        """Return what the advisor answers within `deadline` seconds, of which it may have to wait for its turn.
 
         Raises `CommandRefused`: `advisor-timeout` (504), `advisor-unavailable` (503).
         """
@@ -81,9 +81,9 @@ class AdvisorClient:
             ) from None
 
 
-# Plans to something that a person wants to hold, as the adviser finds them, and why there is none.
+# Plans to something that a person wants to hold, as the advisor finds them, and why there is none.
 
-WAITING = 3.0  # seconds beyond a request's deadline: the adviser may be at something else
+WAITING = 3.0  # seconds beyond a request's deadline: the advisor may be at something else
 GOAL = "asked for"  # its name in reasons
 AIMED_WITHIN = 5.0  # seconds a plan may take
 EXPLAINED_WITHIN = 5.0  # seconds, where nothing was found
@@ -98,15 +98,15 @@ class GoalPlan:
     why_not: Diagnosis | None = None
 
 
-async def aim(adviser: AdvisorClient, request: ErrandRequest) -> GoalPlan:
+async def aim(advisor: AdvisorClient, request: GoalPlanRequest) -> GoalPlan:
     """Ask for a plan, and where there is none for the reasons. Raises `CommandRefused`."""
-    advice = await adviser.answer(request, request.deadline + WAITING)
+    advice = await advisor.answer(request, request.deadline + WAITING)
     if advice.offers:
         return GoalPlan(advice.offers[0])
     goal = Goal(GOAL, request.target)
     reasons = DiagnosisRequest(request.state, (goal,), request.circumstances, EXPLAINED_WITHIN)
     try:
-        diagnosis = await adviser.answer(reasons, EXPLAINED_WITHIN + WAITING)
+        diagnosis = await advisor.answer(reasons, EXPLAINED_WITHIN + WAITING)
     except CommandRefused:
         return GoalPlan(None, advice.complete)
     if diagnosis.reason is None:

@@ -35,7 +35,7 @@ from sequence_planner.texts.message import Message, message
 # What follows from a correction, found out without making it.
 
 PLANNED_WITHIN = 1.5  # seconds
-WAITING = 2.0  # seconds beyond that: the adviser may be at something else
+WAITING = 2.0  # seconds beyond that: the advisor may be at something else
 MOST_RELATED = 12
 
 _WHY_NONE = {

@@ -1,4 +1,4 @@
-"""Plans that people may take: asked of the adviser, shown with all that they contain, and kept until the state moves.
+"""Plans that people may take: asked of the advisor, shown with all that they contain, and kept until the state moves.
 
 An offer belongs to the state it was made for. Whoever takes it repeats what it contains, as a second confirmation; as
 soon as anything has changed at the station it is refused, and has to be asked for again.
@@ -39,7 +39,7 @@ from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.problem import goals_of
 from sequence_planner.planning.recovery.manual_plans import stalled_effects
 from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest, Pairing
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest, Pairing
 from sequence_planner.texts.message import joined, message
 
 LONGER = 5.0  # seconds for advice where in less nothing was found but what a person would have to know
@@ -68,13 +68,13 @@ class Offers:
     def __init__(
         self,
         execution: Executor,
-        adviser: AdvisorClient,
+        advisor: AdvisorClient,
         correct: Callable[[CorrectEstimates, Timestamp], None],
         impossible: Callable[[], frozenset[Pairing]],
         still: StallDetector,
     ) -> None:
         self._execution = execution
-        self._adviser = adviser
+        self._advisor = advisor
         self._correct = correct
         self._impossible = impossible
         self._last_known = LastKnown(execution)
@@ -118,7 +118,7 @@ class Offers:
                 return view
         until = Timestamp.now().monotonic + deadline
         asked = replace(request, deadline=deadline, until=until)
-        advice = await self._adviser.answer(asked, deadline + WAITING)
+        advice = await self._advisor.answer(asked, deadline + WAITING)
         kept = self._keep(advice.offers, revision)
         view = AdviceView(
             revision=revision,
@@ -152,7 +152,7 @@ class Offers:
     async def _offered(self, target: Expression, operation: str | None) -> OfferView:
         self._require_no_operator_plan()
         execution, revision = self._execution, self._execution.revision
-        request = ErrandRequest(
+        request = GoalPlanRequest(
             state=execution.state,
             goals=hopeful_goals(execution),
             violated=violated_goals(execution),
@@ -162,7 +162,7 @@ class Offers:
             stalled=self._stalled(),
             deadline=AIMED_WITHIN,
         )
-        aimed = await aim(self._adviser, request)
+        aimed = await aim(self._advisor, request)
         if aimed.offer is None:
             raise _no_plan(aimed, self._unused)
         (view,) = self._keep((aimed.offer,), revision)
@@ -186,16 +186,16 @@ class Offers:
                 actor=command.actor, reason=command.reason, values=values, revision=kept.revision
             )
             self._correct(correcting, moment)
-        if offer.errand is not None:
+        if offer.operator_plan is not None:
             execution.start_operator_plan(self._operator_plan(offer, command, moment), moment)
 
     def _operator_plan(self, offer: RecoveryProposal, command: ExecuteOperatorPlan, moment: Timestamp) -> OperatorPlan:
-        assert offer.errand is not None
+        assert offer.operator_plan is not None
         kind = {OfferKind.RESET: OperatorPlanKind.RESET, OfferKind.GOAL: OperatorPlanKind.GOAL}
         return OperatorPlan(
             kind=kind.get(offer.kind, OperatorPlanKind.WAY_BACK),
             title=offer_title(self._execution.automaton, offer),
-            plan=offer.errand,
+            plan=offer.operator_plan,
             goal=offer.goal,
             restart=offer.restart or offer.unsupervised,
             unsupervised=offer.unsupervised,
@@ -269,7 +269,7 @@ def _no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused
 
 def _require_confirmation(offer: RecoveryProposal, command: ExecuteOperatorPlan) -> None:
     """Raises `CommandRefused` unless the command repeats what the offer contains."""
-    starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
+    starts = [] if offer.operator_plan is None else [name for _, name in offer.operator_plan.starts]
     corrections = {change.name: change.new for change in offer.corrections}
     if command.starts != starts or not _same(command.corrections, corrections):
         raise CommandRefused("not-confirmed", message("refused.not-confirmed.offer"))

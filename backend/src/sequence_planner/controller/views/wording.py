@@ -45,8 +45,8 @@ def offer_view(
         in_service=list(offer.in_service),
         assumed=_changes(offer.assumed),
         corrections=_changes(offer.corrections),
-        errand=None if offer.errand is None else plan_preview(automaton, offer.errand),
-        ends=None if offer.errand is None else end_text(offer.goal, offer.into_safe),
+        errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan),
+        ends=None if offer.operator_plan is None else end_text(offer.goal, offer.into_safe),
         into_safe=offer.into_safe,
         operation=offer.operation,
         needs_restart=needs_restart(offer),
@@ -80,7 +80,12 @@ def end_text(goal: Expression, into_safe: bool) -> str | None:
 def needs_restart(offer: RecoveryProposal) -> bool:
     """Return whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
     ordinary = offer.kind in (OfferKind.GOAL, OfferKind.RESET)
-    return offer.restart or offer.unsupervised or bool(offer.corrections) or (offer.errand is not None and not ordinary)
+    return (
+        offer.restart
+        or offer.unsupervised
+        or bool(offer.corrections)
+        or (offer.operator_plan is not None and not ordinary)
+    )
 
 
 def offer_title(automaton: Automaton, offer: RecoveryProposal) -> Message:
@@ -129,9 +134,9 @@ def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
         yield message("offer.reset", operation=automaton.operations[offer.operation].title)
     elif offer.kind is OfferKind.GOAL:
         yield message("offer.goal", goal=print_expression(offer.goal))
-    elif offer.errand is not None and offer.errand.starts:
-        yield message("offer.start", titles=[automaton.abilities[name].title for _, name in offer.errand.starts])
-    elif offer.errand is not None:
+    elif offer.operator_plan is not None and offer.operator_plan.starts:
+        yield message("offer.start", titles=[automaton.abilities[name].title for _, name in offer.operator_plan.starts])
+    elif offer.operator_plan is not None:
         safe = [message("offer.safe")] if offer.into_safe else []
         condition = end_text(offer.goal, offer.into_safe)
         yield message("offer.wait", conditions=[*safe, *([condition] if condition else [])])
@@ -211,7 +216,7 @@ def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused |
         return plan_running(execution.operator_plan.title)
     if offer.physical or offer.online or offer.in_service:
         return CommandRefused("manual-step-required", message("refused.manual-step-required.station"))
-    if offer.errand is None:
+    if offer.operator_plan is None:
         if offer.corrections:
             return correcting_refused(execution)
         return CommandRefused("nothing-to-execute", message("refused.nothing-to-execute.restart"))
