@@ -93,7 +93,7 @@ campaign: install-test page e2e/node_modules/done.stamp chromium ## The long run
 types: install frontend/node_modules/done.stamp ## Make the REST interface's document, the page's types of it and the editors' schemas again
 	cd backend && .venv/bin/python -m sequence_planner.model.json_schema ../docs/schemas
 	cd backend && .venv/bin/python -m sequence_planner.server.openapi > ../frontend/openapi.json
-	cd backend && .venv/bin/python -m sequence_planner.texts.catalogue ../frontend/src/lib/text/en/messages.json
+	cd backend && .venv/bin/python -m sequence_planner.texts.catalogue ../frontend/src/lib/text/en
 	cd frontend && npm run generate
 
 golden: install-test ## Write down anew the names on which others rely: commands, settings, alarms, metrics, records of the journal

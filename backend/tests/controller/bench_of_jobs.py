@@ -148,10 +148,10 @@ class Bench:
     def reset(self, operation: str) -> None:
         """A reset that has nothing to do: it is done in the next tick."""
         plan = Plan((PlanTick((), ()), PlanTick((), ())), False, False)
-        errand = OperatorPlan(
+        operator_plan = OperatorPlan(
             OperatorPlanKind.RESET, "reset", plan, TRUE, operation=operation, by="Eva", taken=self.now
         )
-        self.execution.start_operator_plan(errand, self.now)
+        self.execution.start_operator_plan(operator_plan, self.now)
 
     def tick(self, **measured: Value | None) -> None:
         self.measured |= measured

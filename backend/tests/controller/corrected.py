@@ -1,4 +1,4 @@
-"""The bolt tightening station in a test, with whoever corrects it; the adviser plans at once, in this process."""
+"""The bolt tightening station in a test, with whoever corrects it; the advisor plans at once, in this process."""
 
 from __future__ import annotations
 

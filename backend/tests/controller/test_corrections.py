@@ -108,7 +108,7 @@ def test_a_plan_that_nobody_can_make_now_leaves_the_rest() -> None:
     station = Station()
 
     async def is_away(request: PlanRequest, deadline: float) -> PlanAnswer:
-        raise CommandRefused("advisor-unavailable", "There is no adviser", "It is started again.", 503)
+        raise CommandRefused("advisor-unavailable", "It is started again.", 503)
 
     station.corrections._plan = is_away
     shown = preview(station)

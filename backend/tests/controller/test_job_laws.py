@@ -135,8 +135,8 @@ class Orders(RuleBasedStateMachine):
         self._follow()
 
     def _follow(self) -> None:
-        jobs, errand = self.jobs, self.on.execution.operator_plan
-        reset, self.resetting = (self.resetting, None) if errand is None else (None, self.resetting)
+        jobs, operator_plan = self.jobs, self.on.execution.operator_plan
+        reset, self.resetting = (self.resetting, None) if operator_plan is None else (None, self.resetting)
         for job in jobs.taken:
             before = self._before.get(job.id)
             assert before is not None, "a tick takes no job"

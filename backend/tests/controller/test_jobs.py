@@ -351,9 +351,9 @@ def test_why_an_operation_is_not_active(on: Bench) -> None:
 def test_who_asks_why_not_is_told_of_the_job() -> None:
     async def scenario() -> None:
         on = Bench()
-        adviser = AdvisorClient(STATION, on.execution.supervisor)
+        advisor = AdvisorClient(STATION, on.execution.supervisor)
         try:
-            asked = Inquirer(adviser, on.execution)
+            asked = Inquirer(advisor, on.execution)
             on.by_order()
             on.execution.start_production()
             on.ticks(2)
@@ -367,7 +367,7 @@ def test_who_asks_why_not_is_told_of_the_job() -> None:
             assert found(await asked.operation("check_it"))[0] == ("order", "what comes before it for Job a: fill_it")
             assert "order" not in dict(found(await asked.operation("fill_it")))
         finally:
-            adviser.close()
+            advisor.close()
 
     asyncio.run(scenario())
 

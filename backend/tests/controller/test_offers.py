@@ -67,11 +67,11 @@ def made(precondition: str = "loaded") -> Executor:
 class Desk:
     """The station, and who offers what there is to do."""
 
-    def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
-        self.adviser, self.execution = adviser, execution
+    def __init__(self, advisor: AdvisorClient, execution: Executor) -> None:
+        self.advisor, self.execution = advisor, execution
         doubting = ConsistencyMonitor(execution)
-        corrections = Corrections(execution, adviser.answer, Beliefs(execution), doubting, lambda names: None)
-        self.offers = Offers(execution, adviser, corrections.correct, doubting.impossible, StallDetector(execution))
+        corrections = Corrections(execution, advisor.answer, Beliefs(execution), doubting, lambda names: None)
+        self.offers = Offers(execution, advisor, corrections.correct, doubting.impossible, StallDetector(execution))
         self.seconds = 0.0
         self.at: Value = "home"
 
@@ -130,11 +130,11 @@ async def refused_later(slug: str, asking: Awaitable[object], status: int = 409)
 @asynccontextmanager
 async def desk(precondition: str = "loaded") -> AsyncIterator[Desk]:
     execution = made(precondition)
-    adviser = AdvisorClient(execution.automaton, execution.supervisor)
+    advisor = AdvisorClient(execution.automaton, execution.supervisor)
     try:
-        yield Desk(adviser, execution)
+        yield Desk(advisor, execution)
     finally:
-        adviser.close()
+        advisor.close()
 
 
 def test_a_goal_by_hand_is_shown_confirmed_and_carried_out_as_it_was_shown() -> None:
@@ -215,7 +215,7 @@ def test_an_operation_is_reset_to_where_it_begins() -> None:
 
 def test_where_there_was_too_little_time_for_advice_asking_again_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proposals, "AdviceRequest", partial(AdviceRequest, deadline=0.0))
-    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the adviser is only being started
+    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
 
     async def scenario() -> None:
         async with desk() as there:
@@ -232,7 +232,7 @@ def test_where_there_was_too_little_time_for_advice_asking_again_finds_it(monkey
 def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monkeypatch: pytest.MonkeyPatch) -> None:
     async def scenario() -> None:
         async with desk() as there:
-            at_leisure = there.adviser.answer
+            at_leisure = there.advisor.answer
 
             async def answer(request: AdviceRequest, deadline: float) -> Advice:
                 advice = await at_leisure(request, deadline)
@@ -240,8 +240,8 @@ def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monk
                     return advice
                 return replace(advice, offers=tuple(each for each in advice.offers if each.corrections), complete=False)
 
-            monkeypatch.setattr(there.adviser, "answer", answer)
-            monkeypatch.setattr(proposals, "WAITING", 60.0)  # the adviser is only being started
+            monkeypatch.setattr(there.advisor, "answer", answer)
+            monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
             there.execution.start_production()
             there.correct(loaded=True)
             there.tick()
@@ -257,7 +257,7 @@ def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monk
 
 
 def test_all_who_ask_at_once_get_one_answer_though_one_of_them_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the adviser is only being started
+    monkeypatch.setattr(proposals, "WAITING", 60.0)  # the advisor is only being started
 
     async def scenario() -> None:
         async with desk() as there:

@@ -82,7 +82,7 @@ def test_a_command_is_recorded_before_its_effect_and_with_its_outcome(database: 
 
 def test_a_refusal_and_a_failure_are_outcomes_too(database: Database) -> None:
     async def refuse(command: Command) -> None:
-        raise CommandRefused("production-started", "Started", "It is.")
+        raise CommandRefused("production-started", "It is.")
 
     async def fail(command: Command) -> None:
         raise RuntimeError("a fault")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from controller.ways import Taken, after_a_fault, errand_of, execution_in
+from controller.ways import Taken, after_a_fault, execution_in, operator_plan_of
 from planning.advice.rules import station
 from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise, update_operations
@@ -61,8 +61,8 @@ def test_the_way_to_make_the_bolts_tight_comes_first_and_nobody_is_asked_to_say_
     request = AdviceRequest(state, goals_of(tried.automaton, sorted(active)), deadline=60)
     first, *others = tried.advisor.advise(request).offers
     assert (first.kind, first.only_if_checked) == (OfferKind.WAY_BACK, False)
-    assert first.errand is not None
-    assert first.errand.starts == ((1, "nutrunner.run_nut"),)
+    assert first.operator_plan is not None
+    assert first.operator_plan.starts == ((1, "nutrunner.run_nut"),)
     assert [[(c.name, c.new) for c in offer.corrections] for offer in others] == [
         [("bolts[bolt_pair_1]", "empty")],
         [("bolts[bolt_pair_1]", "tightened")],
@@ -95,7 +95,7 @@ def test_what_is_offered_there_is_carried_out_to_its_end() -> None:
     offer = tried.advisor.advise(request).offers[0]
     assert offer.into_safe
     taken = standing()
-    take(taken, errand_of(tried.automaton, offer))
+    take(taken, operator_plan_of(tried.automaton, offer))
     assert taken.tick() == ("nutrunner.run_nut",)
     taken.tick((ACKNOWLEDGES, "nutrunner.run_nut.tool_starts"))
     assert taken.execution.operator_plan is None

@@ -37,11 +37,11 @@ UNSUPERVISED = Supervisor(StateSet((), ()), {})
 class Inquirer:
     """Somebody who asks about the cart."""
 
-    def __init__(self, adviser: AdvisorClient, execution: Executor) -> None:
-        self.desk = Desk(adviser, execution)
+    def __init__(self, advisor: AdvisorClient, execution: Executor) -> None:
+        self.desk = Desk(advisor, execution)
         around = ConditionContext({"at": "/cart/state"}, lambda name: 7.0, Beliefs(execution), dict)
         self.execution = execution
-        self.why_not = WhyNot(execution, around, adviser)
+        self.why_not = WhyNot(execution, around, advisor)
 
     async def ability(self, name: str) -> WhyNotView:
         return self.why_not.ability(AskAbilityBlockers(name=name))
@@ -62,11 +62,11 @@ class Inquirer:
 @asynccontextmanager
 async def inquirer() -> AsyncIterator[Inquirer]:
     execution = made()
-    adviser = AdvisorClient(execution.automaton, execution.supervisor)
+    advisor = AdvisorClient(execution.automaton, execution.supervisor)
     try:
-        yield Inquirer(adviser, execution)
+        yield Inquirer(advisor, execution)
     finally:
-        adviser.close()
+        advisor.close()
 
 
 def found(view: WhyNotView) -> list[tuple[str, str]]:

@@ -82,13 +82,13 @@ def execution_in(
     return execution
 
 
-def errand_of(automaton: Automaton, offer: RecoveryProposal, goal: Expression | None = None) -> OperatorPlan:
+def operator_plan_of(automaton: Automaton, offer: RecoveryProposal, goal: Expression | None = None) -> OperatorPlan:
     """What is carried out of an offer; with a `goal`, for that instead."""
-    assert offer.errand is not None
+    assert offer.operator_plan is not None
     return OperatorPlan(
         kind=OperatorPlanKind.WAY_BACK,
         title=offer_title(automaton, offer),
-        plan=offer.errand,
+        plan=offer.operator_plan,
         goal=offer.goal if goal is None else goal,
         restart=offer.restart or offer.unsupervised,
         unsupervised=offer.unsupervised,
@@ -114,14 +114,14 @@ def after_a_fault(name: str, seed: str, deadline: float) -> Counter[str]:
     real = stalling(automaton, stalls(automaton, request.state, request.stalled))
     met: Counter[str] = Counter()
     for offer in advisor.advise(request).offers:
-        if offer.errand is None:
+        if offer.operator_plan is None:
             continue
         stopped = Stopped(automaton, supervisor, request.state, request.goals, request.circumstances)
         state, circumstances = changed(stopped, offer)
         execution = execution_in(automaton, supervisor, state, moment.active, circumstances)
         taken = Taken(execution, real, circumstances.offline)
         taken.tick()
-        execution.start_operator_plan(errand_of(automaton, offer), Timestamp(taken.seconds, taken.seconds))
+        execution.start_operator_plan(operator_plan_of(automaton, offer), Timestamp(taken.seconds, taken.seconds))
         hurry, started = chance.choice((0.05, 0.3, 1.0)), 0
         for _ in range(PATIENCE):
             possible = taken.possible()
@@ -138,7 +138,7 @@ def after_a_fault(name: str, seed: str, deadline: float) -> Counter[str]:
             met[f"{name}: {offer.kind} came to its end"] += 1
         else:
             # Two devices may have come in another order than they must: then nothing leads there any more.
-            order = [] if offer.errand is None else [ability for _, ability in offer.errand.starts]
+            order = [] if offer.operator_plan is None else [ability for _, ability in offer.operator_plan.starts]
             left = order[started:]
             assert not can_come(taken, offer, left), f"{case}: {last.why}, with {left} ahead, in {execution.state}"
             met[f"{name}: {offer.kind} was departed from, and its end was out of reach"] += 1

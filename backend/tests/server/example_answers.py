@@ -57,7 +57,7 @@ from sequence_planner.controller.views.proposals import (
 )
 from sequence_planner.controller.views.station import BeliefView, SpecificationView
 from sequence_planner.core.distribution import Distribution
-from sequence_planner.texts.message import as_it_was
+from sequence_planner.texts.message import as_it_was, message
 
 WORK_MASTERS = WorkMastersView(
     work_masters={
@@ -73,6 +73,7 @@ WORK_MASTERS = WorkMastersView(
     abilities={"robot.move": WorkAbilityView(title="Move", writes=["robot.pose"], instant=False)},
 )
 STEP = PreviewStepView(tick=1, ability="robot.move", title="Move", resource="robot", human=False, restart=True)
+PAUSE_FIRST = message("refused.wrong-mode.try", mode=message("mode.automatic"))
 PLAN = PlanPreviewView(ticks=2, steps=[STEP], minimal_ticks=True, minimal_starts=False)
 OFFER = OfferView(
     id="81a0a8-1",
@@ -101,6 +102,7 @@ OFFER = OfferView(
     only_if_checked=False,
     effort=EffortView(cost=36.5, corrections=1, physical=0, returns=0, starts=1, seconds=4.5),
     obstacle=None,
+    obstacle_message=None,
 )
 CLAIM = OFFER.model_copy(update={"kind": "correction", "errand": None, "claims": ["tighten"], "only_if_checked": True})
 ADVICE = AdviceView(revision=7, offers=[OFFER], if_checked=[CLAIM], reasons=None, complete=True, seconds=0.4)
@@ -154,6 +156,7 @@ CORRECTION = CorrectionPreview(
     reason="",
     reason_message=None,
     obstacle="Enter restart mode first.",
+    obstacle_message=as_it_was("Enter restart mode first."),
 )
 
 
@@ -196,7 +199,8 @@ DEFINITION = AbilityDefinitionView(
             name="robot.move.arrives", kind="executing", guard=HOME, actions=[], shortest=1.0, longest=2.0, fault=False
         )
     ],
-    obstacle="The mode is automatic: an ability is tried while the station is paused. Pause it first.",
+    obstacle=str(PAUSE_FIRST),
+    obstacle_message=PAUSE_FIRST,
     real_devices=[],
     trial=TrialView(
         by="Eva",
@@ -246,7 +250,7 @@ def example_answer(ask: Query[Any]) -> View:
             return OFFER
         case AskDefinition(ability=name):
             if name != DEFINITION.name:
-                raise CommandRefused("unknown-ability", "There is no such ability", "Look at what it has.", 404)
+                raise CommandRefused("unknown-ability", "Look at what it has.", 404)
             return DEFINITION
         case AskAbilityBlockers(name=name):
             return _blockers("ability", name)
@@ -259,7 +263,7 @@ def example_answer(ask: Query[Any]) -> View:
 
 def _blockers(of: str, name: str) -> WhyNotView:
     if of != "goal" and name not in ("robot.move", "tighten"):
-        raise CommandRefused(f"unknown-{of}", f"There is no such {of}", "Look at what it has.", 404)
+        raise CommandRefused(f"unknown-{of}", "Look at what it has.", 404)
     return WhyNotView(
         of=of,
         name=name,

@@ -15,7 +15,7 @@ from support.server import Loop
 
 from .example_answers import DEFINITION
 from .test_acting import problem
-from .test_errands import Asked, engineer
+from .test_operator_plans import Asked, engineer
 
 __all__ = ["engineer"]
 
@@ -65,6 +65,6 @@ def test_a_trial_is_a_command_of_who_has_control(engineer: httpx.Client, control
 def test_what_the_controller_refuses_is_said_in_its_words(
     engineer: httpx.Client, controller: Trying, slug: str, status: int
 ) -> None:
-    controller.refused = CommandRefused(slug, "Refused", "It waits for robot.pose == home.", status)
+    controller.refused = CommandRefused(slug, "It waits for robot.pose == home.", status)
     found = problem(engineer.post("test-runs", json={"ability": "robot.move"}), status, slug)
     assert found["detail"] == "It waits for robot.pose == home."

@@ -21,7 +21,7 @@ from support.server import Loop, Server
 
 from .example_answers import CORRECTION
 from .test_acting import problem
-from .test_errands import Asked
+from .test_operator_plans import Asked
 
 WHY = "seen with my own eyes"
 VALUES: dict[str, bool | int | str] = {"bolts[left]": "placed", "count": 1, "ready": True}
@@ -95,7 +95,7 @@ def test_a_preview_is_asked_for_and_commands_nothing(operator: httpx.Client, con
     [(404, "unknown-variable"), (422, "not-in-domain"), (422, "not-estimated"), (504, "advisor-timeout")],
 )
 def test_a_refused_preview_is_a_problem(operator: httpx.Client, controller: Asked, status: int, slug: str) -> None:
-    controller.refusal = CommandRefused(slug, "No", "Because.", status)
+    controller.refusal = CommandRefused(slug, "Because.", status)
     problem(operator.post("corrections/preview", json={"values": VALUES}), status, slug)
 
 

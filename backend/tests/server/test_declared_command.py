@@ -86,14 +86,14 @@ class Lamps:
     def set(self, command: SetLamp, moment: Timestamp) -> None:
         """Light it."""
         if command.lamp not in self.brightness:
-            raise CommandRefused("no-lamp", "There is no such lamp", f"There is no `{command.lamp}`.", 404)
+            raise CommandRefused("no-lamp", f"There is no `{command.lamp}`.", 404, title="There is no such lamp")
         self.brightness[command.lamp] = command.brightness
 
     @answers(AskLamp)
     async def ask(self, query: AskLamp) -> LampView:
         """Look at it."""
         if query.lamp not in self.brightness:
-            raise CommandRefused("no-lamp", "There is no such lamp", f"There is no `{query.lamp}`.", 404)
+            raise CommandRefused("no-lamp", f"There is no `{query.lamp}`.", 404, title="There is no such lamp")
         brightness = self.brightness[query.lamp]
         return LampView(brightness=brightness, together=query.number * brightness)
 

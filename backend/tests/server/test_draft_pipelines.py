@@ -123,7 +123,7 @@ class Hearing(Controller):
     async def answer(self, ask: Query[Any]) -> View:
         assert isinstance(ask, AskRecord)
         if ask.pipeline != STATE:
-            raise CommandRefused("no-record", "There is no record", "Try again.", 409)
+            raise CommandRefused("no-record", "Try again.", 409)
         first: dict[str, JsonValue] = {"joint_positions": [0.0, -1.57, 1.57, -1.57, -1.57, 0.0], "moving": False}
         return RecordView(first=first, last={**first, "pose": "home", "previous_pose": "bolt_pair_1"}, at=1000.0)
 

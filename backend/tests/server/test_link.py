@@ -251,7 +251,7 @@ def test_replies_find_their_commands_whatever_their_order(path: Path) -> None:
     async def handle(command: Command) -> None:
         if command.actor.name == "slow":
             await asyncio.sleep(0.1)
-            raise CommandRefused("too-slow", "Too slow", "Be quicker.")
+            raise CommandRefused("too-slow", "Be quicker.", title="Too slow")
 
     async def scenario() -> None:
         async with ControllerLink(path, handle) as link:

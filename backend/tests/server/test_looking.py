@@ -26,6 +26,7 @@ from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import EdgeFlowView, FlowsView, PipelineFlowView
 from sequence_planner.ros.transport import NetworkEndpoint
 from sequence_planner.server.settings import Settings
+from sequence_planner.texts.message import message
 from support.cell import COMMAND, STATE, cell
 from support.server import Controller, Loop, Server, listen
 from support.waiting import patience, until
@@ -49,7 +50,7 @@ class Telling(Controller):
 
     async def answer(self, ask: Query[Any]) -> View:
         if self.preparing:
-            raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
+            raise CommandRefused("preparing", message("refused.preparing.again"), 503)
         if isinstance(ask, AboutPipelines):
             return pipelines_view(cell()[0].pipelines)
         if not isinstance(ask, AboutFlows):

@@ -41,7 +41,7 @@ class Working(Telling):
     async def handle(self, command: Command) -> None:
         self.commands.append(command)
         if (slug := self.refuses.get(type(command))) is not None:
-            raise CommandRefused(slug, "No", "Not now.")
+            raise CommandRefused(slug, "Not now.")
 
     def said(self, kind: type[Command]) -> list[Any]:
         return [each for each in self.commands if isinstance(each, kind)]

@@ -81,7 +81,7 @@ class Controller:
         if isinstance(command, TaskCommand):
             task = self.view.tasks.get(command.task)
             if task is None or task.revision != command.revision:
-                raise CommandRefused("task-gone", "The task is gone", "Look at what is asked for now.")
+                raise CommandRefused("task-gone", "Look at what is asked for now.")
             if command.task == "broken":
                 raise RuntimeError("a fault of the controller")
         self.commands.append(command)

@@ -15,6 +15,7 @@ from sequence_planner.auth.tables import KEYS
 from sequence_planner.auth.tokens import clean_name, hash_of, is_id, new_id, new_token, record, same, short
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.data_models import DataModel
+from sequence_planner.texts.message import message
 
 DAY = 86400.0  # seconds
 LONGEST_LIFE = 730  # days
@@ -60,9 +61,7 @@ def make_key(
     name = clean_name(name)
     _check_days(days)
     if not scopes:
-        raise IdentityRefused(
-            "no-scope", "No scope", "Say what the key is for: a key without a scope opens nothing.", 422
-        )
+        raise IdentityRefused("no-scope", message("refused.no-scope.say"), 422)
     key = Key(
         id=new_id(),
         name=name,
@@ -106,7 +105,7 @@ def require_live(connection: Connection, by: Actor, now: float) -> None:
         return
     row = _row(connection, by.id)
     if row.revoked is not None or row.expires <= now:
-        raise IdentityRefused("signed-out", "The key works no more", "Ask an administrator for another key.", 401)
+        raise IdentityRefused("signed-out", message("refused.signed-out.key-ended"), 401)
 
 
 def used(connection: Connection, id: str, now: float) -> None:
@@ -132,10 +131,9 @@ def rotate_key(
     if days is not None:
         _check_days(days)
     if not 0 <= overlap <= LONGEST_OVERLAP:
-        detail = f"The secret that is replaced works for 0 to {LONGEST_OVERLAP} hours more."
-        raise IdentityRefused("invalid-overlap", "Unfit overlap", detail, 422)
+        raise IdentityRefused("invalid-overlap", message("refused.invalid-overlap.hours", longest=LONGEST_OVERLAP), 422)
     if row.revoked is not None or row.expires <= now:
-        raise IdentityRefused("key-expired", "The key works no more", "Make another key: this one works no more.")
+        raise IdentityRefused("key-expired", message("refused.key-expired.another"))
     expires = row.expires if days is None else now + days * DAY
     changes = {"expires": expires, "former_until": min(now + overlap * HOUR, row.expires)}
     key = _key(row).model_copy(update=changes)
@@ -157,15 +155,13 @@ def revoke_key(connection: Connection, id: str, by: Actor, now: float) -> None:
 def _row(connection: Connection, id: str) -> Row[tuple[object, ...]]:
     row = connection.execute(select(KEYS).where(KEYS.c.id == id)).first() if is_id(id) else None
     if row is None:
-        raise IdentityRefused(
-            "no-key", "No such key", "There is no key with this id. Look at those that there are.", 404
-        )
+        raise IdentityRefused("no-key", message("refused.no-key.id"), 404)
     return row
 
 
 def _check_days(days: int) -> None:
     if not 1 <= days <= LONGEST_LIFE:
-        raise IdentityRefused("invalid-days", "Unfit days", f"A key works for 1 to {LONGEST_LIFE} days.", 422)
+        raise IdentityRefused("invalid-days", message("refused.invalid-days.most", longest=LONGEST_LIFE), 422)
 
 
 def _key(row: Row[tuple[object, ...]]) -> Key:

@@ -13,6 +13,7 @@ from sequence_planner.auth.tables import FIRST_START_LINKS
 from sequence_planner.auth.tokens import hash_of, new_token, record, same, short
 from sequence_planner.auth.users import Person, add, administrator_exists
 from sequence_planner.core.actor import SYSTEM, Actor, ActorKind
+from sequence_planner.texts.message import message
 
 LIFE = 900.0  # seconds that a link works
 
@@ -20,8 +21,7 @@ LIFE = 900.0  # seconds that a link works
 def new_link_token(connection: Connection, now: float) -> str:
     """The token of a new link. Raises `IdentityRefused` (`administrator-exists`, 409)."""
     if administrator_exists(connection):
-        detail = "There is an administrator already, who can add people and set passwords."
-        raise IdentityRefused("administrator-exists", "Administrator exists", detail, 409)
+        raise IdentityRefused("administrator-exists", message("refused.administrator-exists.ask"), 409)
     token = new_token()
     connection.execute(delete(FIRST_START_LINKS))
     connection.execute(insert(FIRST_START_LINKS).values(token_hash=hash_of(token), expires=now + LIFE))
@@ -53,8 +53,4 @@ def use_link(connection: Connection, token: str, name: str, password_hash: str, 
 
 def unusable() -> IdentityRefused:
     """Return what to say of a link that does not work, whatever the reason."""
-    detail = (
-        "This link does not work, or no longer: it works once, for 15 minutes, while there is no administrator. "
-        "On the station's computer, sequence-planner users setup-link prints a new one."
-    )
-    return IdentityRefused("setup-link-invalid", "Link does not work", detail, 403)
+    return IdentityRefused("setup-link-invalid", message("refused.setup-link-invalid.new"), 403)

@@ -29,6 +29,7 @@ from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.db.database import Database
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.texts.message import message
 
 # Clearing away what is over: sessions, attempts, links and offers at once, keys and watches after 90 days.
 
@@ -116,8 +117,7 @@ class SignIn:
             entered = None
             await asyncio.to_thread(self._record, attempt, known)
         if entered is None:
-            detail = "The name or the password is wrong. Try again, or ask an administrator for another password."
-            raise IdentityRefused("wrong-name-or-password", "Not signed in", detail, 401)
+            raise IdentityRefused("wrong-name-or-password", message("refused.wrong-name-or-password.again"), 401)
         return entered
 
     async def change_password(
@@ -131,29 +131,20 @@ class SignIn:
         """
         person = signed_in.person
         if signed_in.kind is not ActorKind.PERSON:
-            raise IdentityRefused(
-                "no-password", "No password", "A demonstration has no password that could be changed.", 403
-            )
+            raise IdentityRefused("no-password", message("refused.no-password.demonstration"), 403)
         check_password(new, person.name)
         if new == old:
-            detail = "This cannot be the password: it is the one that was to be changed."
-            raise IdentityRefused("weak-password", "Too weak a password", detail, 422)
+            raise IdentityRefused("weak-password", message("refused.weak-password.same"), 422)
         attempt = _Attempt(signed_in.actor(address), PASSWORD_CHANGED, person.name, address, now)
         with self._passwords.place():
             known = await asyncio.to_thread(self._admit, attempt)
             right = await self._passwords.verify_in_place(known.password_hash if known else None, old)
             hashed = await self._passwords.hash_in_place(new) if right else None
         if known is not None and not known.password_hash:
-            detail = "You sign in with a provider, and have no password here: change it there."
-            raise IdentityRefused("no-password", "No password", detail, 403)
+            raise IdentityRefused("no-password", message("refused.no-password.provider"), 403)
         if known is None or hashed is None:
             await asyncio.to_thread(self._record, attempt, known)
-            raise IdentityRefused(
-                "wrong-password",
-                "Wrong password",
-                "The old password is wrong: type the one that you sign in with now.",
-                403,
-            )
+            raise IdentityRefused("wrong-password", message("refused.wrong-password.old"), 403)
         return await asyncio.to_thread(self._replace, attempt, known, hashed, signed_in, agent)
 
     async def _newer_hash(self, known: _Known, password: str) -> str | None:

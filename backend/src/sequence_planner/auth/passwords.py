@@ -16,6 +16,7 @@ from argon2.exceptions import InvalidHashError, VerificationError
 
 from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.auth.tokens import name_key, new_token
+from sequence_planner.texts.message import Message, message
 
 SHORTEST, LONGEST = 12, 256  # characters
 MOST_WAITING = 16  # so the last of them waits less than a second
@@ -42,13 +43,13 @@ def check_password(password: str, name: str) -> None:
     text, key = unicodedata.normalize("NFKC", password), name_key(name)
     folded = name_key(password)
     if len(text) < SHORTEST or max(len(text), len(password)) > LONGEST:
-        raise _weak(f"it has to have {SHORTEST} to {LONGEST} characters")
+        raise _weak(message("refused.weak-password.length", shortest=SHORTEST, longest=LONGEST))
     if len(set(folded)) == 1:
-        raise _weak("it is one character over and over")
+        raise _weak(message("refused.weak-password.repeated"))
     if folded in _COMMON:
-        raise _weak("it is among the first that somebody would try")
+        raise _weak(message("refused.weak-password.common"))
     if key and (key in folded if len(key) >= _SHORT_NAME else not folded.replace(key, "").strip()):
-        raise _weak("it has the name in it")
+        raise _weak(message("refused.weak-password.name"))
 
 
 class Passwords:
@@ -71,8 +72,7 @@ class Passwords:
         With it, what has to be done before a hash is not done in vain.
         """
         if self._inside >= self._most:
-            detail = "Too many passwords are being checked right now. Try again in a few seconds."
-            raise IdentityRefused("busy", "Busy", detail, 503, retry_after=2)
+            raise IdentityRefused("busy", message("refused.busy.passwords"), 503, retry_after=2)
         self._inside += 1
         try:
             yield
@@ -133,5 +133,5 @@ def _bytes(password: str) -> bytes:
     return unicodedata.normalize("NFKC", password[: LONGEST + 1]).encode("utf-8", "surrogatepass")
 
 
-def _weak(why: str) -> IdentityRefused:
-    return IdentityRefused("weak-password", "Too weak a password", f"This cannot be the password: {why}.", 422)
+def _weak(detail: Message) -> IdentityRefused:
+    return IdentityRefused("weak-password", detail, 422)

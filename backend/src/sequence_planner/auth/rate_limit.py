@@ -14,6 +14,7 @@ from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.auth.tables import ATTEMPTS
 from sequence_planner.auth.tokens import hash_of, name_key
 from sequence_planner.journal.entry import Entry
+from sequence_planner.texts.message import message
 
 # How often somebody may be wrong. Kept in the database, so that a restart does not forget it.
 #
@@ -85,8 +86,9 @@ class Waiting:
     def refusal(self) -> IdentityRefused:
         """Return what to say; the same whoever has to wait."""
         seconds = math.ceil(self.seconds)
-        detail = f"There were too many wrong attempts. Try again in {seconds} s."
-        return IdentityRefused("too-many-attempts", "Too many attempts", detail, 429, retry_after=seconds)
+        return IdentityRefused(
+            "too-many-attempts", message("refused.too-many-attempts.seconds", seconds=seconds), 429, retry_after=seconds
+        )
 
 
 def waiting(connection: Connection, counters: tuple[Counter, ...], now: float) -> Waiting | None:

@@ -4,24 +4,19 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from sequence_planner.texts.refused import Refused
+
 # How `identity` says no.
 
 
-class IdentityRefused(Exception):
+class IdentityRefused(Refused):
     """The error that what was asked for is not done, and nothing has changed.
 
-    `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
-    `status` is the HTTP status that says the same, `retry_after` the seconds after which to try again makes sense.
+    `retry_after` is the number of seconds after which to try again makes sense.
     """
 
-    def __init__(
-        self, slug: str, title: str, detail: str, status: int = 409, *, retry_after: int | None = None
-    ) -> None:
-        super().__init__(detail)
-        self.slug = slug
-        self.title = title
-        self.detail = detail
-        self.status = status
+    def __init__(self, slug: str, detail: str, status: int = 409, *, retry_after: int | None = None) -> None:
+        super().__init__(slug, detail, status)
         self.retry_after = retry_after
 
 

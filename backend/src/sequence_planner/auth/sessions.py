@@ -16,6 +16,7 @@ from sequence_planner.auth.tokens import hash_of, new_id, new_token, record, sho
 from sequence_planner.auth.users import DEMONSTRATOR, Person, get_user
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.data_models import DataModel
+from sequence_planner.texts.message import message
 
 LONGEST = 12 * 3600.0  # seconds from the sign-in
 LONGEST_IDLE = 3600.0  # seconds without a request or an open stream
@@ -103,7 +104,7 @@ def require_live(connection: Connection, by: Actor, now: float) -> None:
     As a session ends with the rights it had, whoever asks this in the transaction of an act cannot be too late.
     """
     if by.session is not None and find_live(connection, by.session, now) is None:
-        raise IdentityRefused("signed-out", "Signed out", "Your session has ended: sign in again.", 401)
+        raise IdentityRefused("signed-out", message("refused.signed-out.ended"), 401)
 
 
 def seen(connection: Connection, session: str, now: float) -> None:

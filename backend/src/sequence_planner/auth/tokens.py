@@ -14,6 +14,7 @@ from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.core.actor import Actor
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry
+from sequence_planner.texts.message import Message, message
 
 # Names of people, watches and keys: as they are kept, as they are found by, and as they look.
 #
@@ -41,16 +42,16 @@ def clean_name(text: str) -> str:
     none that does not show or changes the direction of writing.
     """
     if len(text) > 4 * LONGEST_NAME:
-        raise _unfit(f"it is longer than {LONGEST_NAME} characters")
+        raise _unfit(message("refused.invalid-name.too-long", longest=LONGEST_NAME))
     name = " ".join(unicodedata.normalize("NFKC", text).split())
     if not 1 <= len(name) <= LONGEST_NAME:
-        raise _unfit(f"it has to have 1 to {LONGEST_NAME} characters")
+        raise _unfit(message("refused.invalid-name.length", longest=LONGEST_NAME))
     if any(unicodedata.category(each) in _UNFIT or each in _BLANK for each in text + name):
-        raise _unfit("it has characters that do not show; type it again instead of copying it")
+        raise _unfit(message("refused.invalid-name.hidden"))
     if not any(each.isalnum() for each in name):
-        raise _unfit("it has neither a letter nor a digit")
+        raise _unfit(message("refused.invalid-name.no-letter"))
     if _piled(name):
-        raise _unfit(f"it has more than {_MOST_MARKS} marks on one letter")
+        raise _unfit(message("refused.invalid-name.marks", most=_MOST_MARKS))
     return name
 
 
@@ -82,8 +83,8 @@ def _piled(name: str) -> bool:
     return False
 
 
-def _unfit(why: str) -> IdentityRefused:
-    return IdentityRefused("invalid-name", "Not a name", f"This cannot be a name: {why}.", 422)
+def _unfit(detail: Message) -> IdentityRefused:
+    return IdentityRefused("invalid-name", detail, 422)
 
 
 # Entries of this package in the journal.

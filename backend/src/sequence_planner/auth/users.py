@@ -19,6 +19,7 @@ from sequence_planner.auth.tokens import (
 )
 from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.core.data_models import DataModel
+from sequence_planner.texts.message import message
 
 
 class Person(DataModel):
@@ -74,9 +75,9 @@ def add(connection: Connection, name: str, role: Role, password_hash: str, now: 
     same = (PEOPLE.c.name_key == name_key(name)) | (PEOPLE.c.name_shape == shape)
     other = connection.execute(select(PEOPLE.c.name).where(same)).scalar()
     if other is not None or shape in _RESERVED:
-        taken = f"`{other}` is there already" if other is not None else "the program goes by it"
-        detail = f"The name `{name}` is taken, or looks like one that is: {taken}. Take one that nobody mistakes."
-        raise IdentityRefused("name-taken", "Name taken", detail, 409)
+        if other is not None:
+            raise IdentityRefused("name-taken", message("refused.name-taken.there", name=name, other=other))
+        raise IdentityRefused("name-taken", message("refused.name-taken.program", name=name))
     person = Person(
         id=new_id(),
         name=name,
@@ -133,19 +134,18 @@ def change(
     """
     person = get_user(connection, id)
     if revision is not None and person.revision != revision:
-        detail = f"{person.name} has been changed meanwhile: look at what is there now, and change that."
-        raise IdentityRefused("user-changed", "Changed meanwhile", detail, 412)
+        raise IdentityRefused("user-changed", message("refused.user-changed.look", name=person.name), 412)
     wanted = {"role": role, "disabled": disabled}
     changes = {key: value for key, value in wanted.items() if value is not None and value != getattr(person, key)}
     if not changes:
         return person
     if "role" in changes and person.issuer is not None:
-        detail = f"The role of {person.name} is what {person.issuer} says at each sign-in: change it there."
-        raise IdentityRefused("role-from-provider", "The provider decides", detail)
+        raise IdentityRefused(
+            "role-from-provider", message("refused.role-from-provider.issuer", name=person.name, issuer=person.issuer)
+        )
     changed = person.model_copy(update={**changes, "revision": person.revision + 1})
     if _administers(person) and not _administers(changed) and not administrator_exists(connection, but=id):
-        detail = f"{person.name} is the last administrator: make somebody else administrator first."
-        raise IdentityRefused("last-administrator", "Last administrator", detail, 409)
+        raise IdentityRefused("last-administrator", message("refused.last-administrator.other", name=person.name), 409)
     connection.execute(update(PEOPLE).where(PEOPLE.c.id == id).values(**changes, revision=changed.revision))
     ended = connection.execute(delete(SESSIONS).where(SESSIONS.c.person == id)).rowcount
     told = {key: [getattr(person, key), value] for key, value in changes.items()}
@@ -178,8 +178,9 @@ def set_password(
 def check_has_password(person: Person, *, recovery: bool = False) -> None:
     """Raises `IdentityRefused` (`no-password-here`, 409) where `set_password` would."""
     if person.issuer is not None and not (recovery and person.role is Role.ADMINISTRATOR):
-        detail = f"{person.name} signs in with the provider {person.issuer}, and has no password here."
-        raise IdentityRefused("no-password-here", "No password here", detail)
+        raise IdentityRefused(
+            "no-password-here", message("refused.no-password-here.issuer", name=person.name, issuer=person.issuer)
+        )
 
 
 def replace_password(connection: Connection, person: Person, password_hash: str, *, temporary: bool) -> Person:
@@ -209,9 +210,7 @@ def get_user(connection: Connection, id: str) -> Person:
     """The person with this id. Raises `IdentityRefused` (`no-user`, 404)."""
     person = find(connection, id)
     if person is None:
-        raise IdentityRefused(
-            "no-user", "No such person", "There is no person with this id. Look at who there is.", 404
-        )
+        raise IdentityRefused("no-user", message("refused.no-user.id"), 404)
     return person
 
 

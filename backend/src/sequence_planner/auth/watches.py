@@ -27,6 +27,7 @@ from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.database import Database
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.texts.message import message
 
 # Watches of people at the station. Each belongs to a resource, whose tasks it shows and acknowledges.
 #
@@ -79,8 +80,13 @@ def confirm(connection: Connection, id: str, by: Actor, now: float) -> Watch:
     """Let a watch in that waits. Raises `IdentityRefused`: `no-wearable` (404), `wearable-not-waiting` (409)."""
     watch = _known(connection, id, now)
     if watch.state is not WatchState.WAITING:
-        detail = f"The watch {watch.name} does not wait to be let in: it is {watch.state.value}."
-        raise IdentityRefused("wearable-not-waiting", "Watch does not wait", detail, 409)
+        raise IdentityRefused(
+            "wearable-not-waiting",
+            message(
+                "refused.wearable-not-waiting.state", name=watch.name, state=message(f"watch-state.{watch.state.value}")
+            ),
+            409,
+        )
     changes = {"paired_by": by.name, "expires": now + LIFE}
     connection.execute(update(WATCHES).where(WATCHES.c.id == id).values(**changes, confirmed=now))
     _record(connection, watch, "watch-confirmed", by, now)
@@ -140,8 +146,7 @@ def _known(connection: Connection, id: str, now: float) -> Watch:
     found = select(WATCHES).where(WATCHES.c.id == id, ~given_up(now))
     row = connection.execute(found).first() if is_id(id) else None
     if row is None:
-        detail = "There is no watch with this id, or nobody has let it in within two minutes."
-        raise IdentityRefused("no-wearable", "No such watch", detail, 404)
+        raise IdentityRefused("no-wearable", message("refused.no-wearable.id"), 404)
     return watch_of(row, now)
 
 
@@ -176,11 +181,9 @@ def offer(connection: Connection, name: str, resource: str, by: Actor, now: floa
     """
     name = clean_name(name)
     if _name_taken(connection, name, now):
-        detail = f"There is a watch `{name}` already: take another name, or revoke that one."
-        raise IdentityRefused("wearable-exists", "Watch exists", detail, 409)
+        raise IdentityRefused("wearable-exists", message("refused.wearable-exists.name", name=name), 409)
     if len(offers(connection, now)) >= MOST_OFFERS:
-        detail = f"There are {MOST_OFFERS} offers already: withdraw one, or wait until they expire."
-        raise IdentityRefused("too-many-offers", "Too many offers", detail, 409)
+        raise IdentityRefused("too-many-offers", message("refused.too-many-offers.most", most=MOST_OFFERS), 409)
     made = PairingOffer(id=new_id(), name=name, resource=resource, offered_by=by.name, expires=now + OFFER_LIFE)
     code = new_code()
     hashes = {"code_hash": _code_hash(made.id, code), "name_key": name_key(name)}
@@ -198,8 +201,7 @@ def withdraw_offer(connection: Connection, id: str, by: Actor, now: float) -> No
     """Let a code work no more. Raises `IdentityRefused` (`no-offer`, 404) when it was used, withdrawn or expired."""
     row = connection.execute(_open(now).where(PAIRING_OFFERS.c.id == id)).first() if is_id(id) else None
     if row is None:
-        detail = "There is no such offer: its code was used, withdrawn, or has expired."
-        raise IdentityRefused("no-offer", "No such offer", detail, 404)
+        raise IdentityRefused("no-offer", message("refused.no-offer.used"), 404)
     connection.execute(delete(PAIRING_OFFERS).where(PAIRING_OFFERS.c.id == id))
     _record_pairing(connection, _offer(row), "watch-offer-withdrawn", by, now)
 
@@ -225,8 +227,7 @@ def redeem(database: Database, code: str, now: float, *, address: str, agent: st
                 append(connection, Entry(actor=stranger, action="watch-redeemed", outcome=Outcome.REFUSED), now)
     if waiting is not None:
         raise waiting.refusal()
-    detail = "This code does not work, or no longer: it works once, within two minutes. Ask for a new one."
-    raise IdentityRefused("wrong-code", "Code does not work", detail, 403)
+    raise IdentityRefused("wrong-code", message("refused.wrong-code.again"), 403)
 
 
 def _redeem(connection: Connection, code: str, now: float) -> PairingOffer | None:

@@ -16,6 +16,7 @@ from sequence_planner.auth.users import Person, create, everybody, find_by_name,
 from sequence_planner.cli.local_actor import at_the_command_line
 from sequence_planner.core.actor import Actor
 from sequence_planner.db.database import Database
+from sequence_planner.texts.message import message
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,7 @@ class PeopleAtHand:
         with self.database.reading() as connection:
             person = find_by_name(connection, name)
         if person is None:
-            detail = f"There is nobody of the name `{name}`: `users list` shows who there is."
-            raise IdentityRefused("no-user", "No such person", detail, 404)
+            raise IdentityRefused("no-user", message("refused.no-user.name", name=name), 404)
         hashed = _hash(ask(), person.name)
         with self.database.writing() as connection:
             set_password(connection, person.id, hashed, self.by, time.time(), temporary=True, recovery=True)

@@ -58,10 +58,10 @@ def build_controller(
     # Whoever listens to the execution hears of each event in this order: it is written down first.
     records = Records(execution, known.beginning, devices, database, fence, failures, wake.set)
     tasks, in_control = TaskHandler(automaton, station.pipelines.feeds), ControlLock(known.control)
-    adviser = AdvisorClient(automaton, supervisor)
+    advisor = AdvisorClient(automaton, supervisor)
     beliefs = Beliefs(execution, known.beginning, known.beliefs, partial(records.add_note, BELIEFS, lasts=True))
     records.recorder.know(BELIEFS, beliefs.document())
-    watching = build_alarms(execution, devices, records, known, adviser.expect)
+    watching = build_alarms(execution, devices, records, known, advisor.expect)
     alarms, links, outside, consequences = watching.alarms, watching.links, watching.outside, watching.consequences
     consistency = ConsistencyMonitor(execution, untold=lambda: links.untold)
     ticker = Ticker(execution, devices, tasks, records, failures, wake.set)
@@ -76,7 +76,7 @@ def build_controller(
     variables = Variables(execution, devices.feeds.heard_on, beliefs)
     around, forces, approvals, recovery = build_recovery(
         execution,
-        adviser,
+        advisor,
         beliefs,
         consistency,
         watching.still,
@@ -134,7 +134,7 @@ def build_controller(
             lambda: records.trouble is not None,
             ticker.took,
             planner.answers,
-            lambda: {"planner": planner.replaced, "adviser": adviser.replaced},
+            lambda: {"planner": planner.replaced, "adviser": advisor.replaced},
         ),
     )
     alarms.look_at(features)
@@ -165,7 +165,7 @@ def build_controller(
             queries=QueryBus(features, QUERIES.values()),
             works=works,
             begin=consistency.begin,
-            close=(devices.close, planner.close, consistency.close, adviser.close),
+            close=(devices.close, planner.close, consistency.close, advisor.close),
             wake=wake,
         )
     )

@@ -19,6 +19,7 @@ from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.controller import Controller
 from sequence_planner.journal.entry import Outcome, described
 from sequence_planner.journal.last_accepted import LastWord, Word
+from sequence_planner.texts.message import message
 
 LOG = structlog.get_logger(__name__)
 PATIENCE = 1.0  # seconds for the journal, and for the file beside it
@@ -80,8 +81,6 @@ class Lasting:
 
 
 def _not_kept(last_word: LastWord) -> CommandRefused:
-    detail = (
-        "It was carried out, but neither the journal nor the file beside it could be written: a controller that begins "
-        f"anew would not know of it. Stay at the station, and make room for its database and for {last_word.path}."
+    return CommandRefused(
+        "stop-not-recorded", message("refused.stop-not-recorded.nowhere", path=str(last_word.path)), 503
     )
-    return CommandRefused("stop-not-recorded", "The station is stopped, and it is not written down", detail, 503)

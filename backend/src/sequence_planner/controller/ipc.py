@@ -23,6 +23,7 @@ from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.process.unix_socket import listen_on
+from sequence_planner.texts.message import Message, message
 
 # Lines from a byte stream, of bounded length.
 #
@@ -69,8 +70,8 @@ class Refusal(LinkMessage):
     """`CommandRefused` on its way to the server."""
 
     slug: str
-    title: str
-    detail: str
+    title: Message
+    detail: Message
     status: int
     place: TextPlace | None = None
 
@@ -87,7 +88,7 @@ class Refusal(LinkMessage):
 
     def error(self) -> CommandRefused:
         """Make the exception again that the controller raised."""
-        return CommandRefused(self.slug, self.title, self.detail, self.status, self.place)
+        return CommandRefused(self.slug, self.detail, self.status, title=self.title, place=self.place)
 
 
 class ViewMessage(LinkMessage):
@@ -178,35 +179,37 @@ MOST_ASKS = 16  # of one peer, waiting for their answers at the same time
 def read(line: bytes | None) -> FromServer | Reply:
     """Return what the server says, or the reply to what cannot be read."""
     if line is None:
-        return refusal(None, malformed(f"The line is longer than {LONGEST_COMMAND} bytes."))
+        return refusal(None, malformed(message("refused.malformed-command.too-long", longest=LONGEST_COMMAND)))
     try:
         return FROM_SERVER.validate_json(line)
     except ValidationError as error:
         places = ", ".join(".".join(map(str, each["loc"])) or "the line" for each in error.errors()[:5])
-        return refusal(_id_in(line), malformed(f"Not a command of this controller: see {places}."))
+        return refusal(_id_in(line), malformed(message("refused.malformed-command.places", places=places)))
 
 
 def too_many() -> CommandRefused:
     """Somebody asks too much at once."""
-    detail = f"{MOST_ASKS} questions wait for their answers already. Try again in a moment."
-    return CommandRefused("controller-busy", "Too much is asked at once", detail, 503)
+    return CommandRefused("controller-busy", message("refused.controller-busy.most", most=MOST_ASKS), 503)
 
 
 def late() -> CommandRefused:
     """Nobody waits for the answer any more."""
-    detail = "The answer was not found in time. Nothing was changed by asking; try again."
-    return CommandRefused("answer-timeout", "The answer would come too late", detail, 504)
+    return CommandRefused("answer-timeout", message("refused.answer-timeout.again"), 504)
 
 
-def failed(title: str) -> CommandRefused:
+def failed() -> CommandRefused:
     """The controller has met an error of its own."""
-    detail = "The controller met an error of its own; it is written in the controller's log."
-    return CommandRefused("controller-error", title, detail, 500)
+    return CommandRefused("controller-error", message("refused.controller-error.log"), 500)
 
 
-def malformed(detail: str) -> CommandRefused:
+def malformed(detail: Message) -> CommandRefused:
     """Return the refusal of something that came and is no message."""
-    return CommandRefused("malformed-command", "The command cannot be read", detail, 422)
+    return CommandRefused("malformed-command", detail, 422)
+
+
+def expired() -> CommandRefused:
+    """Nobody waited any more for a command when it came."""
+    return CommandRefused("command-expired", message("refused.command-expired.look"))
 
 
 def refusal(command: int | None, refused: CommandRefused) -> Reply:
@@ -257,7 +260,7 @@ class _Peer:
 
 
 async def _nothing_to_tell(ask: Query[Any]) -> View:
-    raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
+    raise CommandRefused("preparing", message("refused.preparing.again"), 503)
 
 
 class ControllerLink:
@@ -406,8 +409,7 @@ class ControllerLink:
 
     async def _carry_out(self, message: CommandMessage) -> Reply:
         if message.expires is not None and time.monotonic() > message.expires:
-            detail = "It came too late and was not carried out. Look at the station, then try again."
-            return refusal(message.id, CommandRefused("command-expired", "The command came too late", detail))
+            return refusal(message.id, expired())
         try:
             with structlog.contextvars.bound_contextvars(**_named(message.request)):
                 recorded = await self._handle(message.command)
@@ -415,7 +417,7 @@ class ControllerLink:
             return refusal(message.id, refused)
         except Exception:
             LOG.exception("a command failed", command=message.command.kind)
-            return refusal(message.id, failed("The command failed"))
+            return refusal(message.id, failed())
         return Reply(id=message.id, ok=True, recorded=recorded is not False)
 
     async def _told(self, message: AskMessage) -> LinkMessage:
@@ -428,7 +430,7 @@ class ControllerLink:
             return refusal(message.id, refused)
         except Exception:
             LOG.exception("a question failed", about=message.ask.kind)
-            return refusal(message.id, failed("The question could not be answered"))
+            return refusal(message.id, failed())
         return AnswerMessage(id=message.id, answer=view.model_dump(mode="json"))
 
 
@@ -530,7 +532,7 @@ class ControllerClient:
         """
         expires = time.monotonic() + self._reply_deadline
         request: str | None = structlog.contextvars.get_contextvars().get("request")
-        unknown = "It is not known whether the command was carried out: look at the station before trying again."
+        unknown = message("refused.controller-timeout.command")
         reply = await self._exchange(
             lambda number: CommandMessage(id=number, command=command, expires=expires, request=request),
             self._reply_deadline,
@@ -545,39 +547,29 @@ class ControllerClient:
         answer = await self._exchange(
             lambda number: AskMessage(id=number, ask=ask, expires=expires),
             patience + ON_THE_WAY,
-            "Nothing was changed by asking; try again.",
+            message("refused.controller-timeout.question"),
         )
         assert isinstance(answer, AnswerMessage)
         return ask.answer_type().model_validate(answer.answer)
 
-    async def _exchange(self, message: Callable[[int], LinkMessage], deadline: float, silence: str) -> Heard:
+    async def _exchange(self, numbered: Callable[[int], LinkMessage], deadline: float, silence: Message) -> Heard:
         """Send a message and wait for what comes back under its number. Raises `CommandRefused`.
 
         `silence` says what to make of it when nothing comes back within `deadline` seconds.
         """
         writer = self._writer
         if writer is None:
-            raise CommandRefused(
-                "controller-unavailable",
-                "The controller is not there",
-                "Nothing was sent. Start the controller, then try again.",
-                503,
-            )
+            raise CommandRefused("controller-unavailable", message("refused.controller-unavailable.not-sent"), 503)
         number = next(self._numbers)
         awaited: asyncio.Future[Heard] = asyncio.get_running_loop().create_future()
         self._awaited[number] = awaited
         try:
             async with asyncio.timeout(deadline):
-                writer.write(encode(message(number)))
+                writer.write(encode(numbered(number)))
                 await writer.drain()
                 answer = await awaited
         except (TimeoutError, ConnectionError) as error:
-            raise CommandRefused(
-                "controller-timeout",
-                "The controller did not answer",
-                silence,
-                504,
-            ) from error
+            raise CommandRefused("controller-timeout", silence, 504) from error
         finally:
             self._awaited.pop(number, None)
         if isinstance(answer, Reply) and not answer.ok and answer.problem is not None:

@@ -15,6 +15,7 @@ from sequence_planner.controller.views.station import StandbyView
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.journal.last_accepted import LastEnding
 from sequence_planner.standby.lease import Lease, LeaseKeeper, digest_of, open_lease
+from sequence_planner.texts.message import message
 
 LOG = structlog.get_logger(__name__)
 
@@ -73,8 +74,7 @@ def stands_by(keeper: LeaseKeeper) -> CommandRefused:
     holder = keeper.standing.holder
     if keeper.standing.active:
         why = keeper.standing.trouble or "the database is slow"
-        detail = f"This station cannot renew the lease of the command: {why}. Try again in a moment."
-        return CommandRefused("lease-not-renewed", "The lease of the command is not renewed", detail, 503)
-    where = "Another station" if holder is None or holder == keeper.standing.name else holder
-    detail = f"{where} commands the devices, and this station stands by for it. Open that one's page."
-    return CommandRefused("on-standby", "This station stands by", detail, 503)
+        return CommandRefused("lease-not-renewed", message("refused.lease-not-renewed.why", why=why), 503)
+    if holder is None or holder == keeper.standing.name:
+        return CommandRefused("on-standby", message("refused.on-standby.other"), 503)
+    return CommandRefused("on-standby", message("refused.on-standby.holder", holder=holder), 503)

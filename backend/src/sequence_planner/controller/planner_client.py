@@ -24,9 +24,10 @@ from sequence_planner.planning.problem import Goal, PlanAnswer, PlanRequest, Way
 from sequence_planner.planning.recovery.consultation import Answer as AdvisorAnswer
 from sequence_planner.planning.recovery.consultation import Request as AdvisorRequest
 from sequence_planner.planning.recovery.proposals import Advice, RecoveryProposal
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest
 from sequence_planner.planning.recovery.worker import advisor_process
 from sequence_planner.process.task import WorkerError
+from sequence_planner.texts.message import message
 
 # A second planner, for what people ask, so that neither they nor the station ever wait for the other's plan.
 #
@@ -34,7 +35,7 @@ from sequence_planner.process.task import WorkerError
 
 
 class AdvisorClient:
-    """Asks an adviser in another process. Used from one event loop."""
+    """Asks an advisor in another process. Used from one event loop."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._process = advisor_process(automaton, supervisor)
@@ -53,7 +54,7 @@ class AdvisorClient:
         self._process.close()
 
     @overload
-    async def answer(self, request: AdviceRequest | ErrandRequest, deadline: float) -> Advice: ...
+    async def answer(self, request: AdviceRequest | GoalPlanRequest, deadline: float) -> Advice: ...
 
     @overload
     async def answer(self, request: PlanRequest, deadline: float) -> PlanAnswer: ...
@@ -62,7 +63,7 @@ class AdvisorClient:
     async def answer(self, request: DiagnosisRequest, deadline: float) -> Diagnosis: ...
 
     async def answer(self, request: AdvisorRequest, deadline: float) -> AdvisorAnswer:
-        """Return what the adviser answers within `deadline` seconds, of which it may have to wait for its turn.
+        """Return what the advisor answers within `deadline` seconds, of which it may have to wait for its turn.
 
         Raises `CommandRefused`: `advisor-timeout` (504), `advisor-unavailable` (503).
         """
@@ -70,17 +71,19 @@ class AdvisorClient:
             async with asyncio.timeout(deadline):
                 return await self._process.ask(request, request.deadline)
         except TimeoutError:
-            detail = "No answer was found in time; nothing was changed by asking. Try again."
-            raise CommandRefused("advisor-timeout", "The adviser was too slow", detail, 504) from None
+            raise CommandRefused("advisor-timeout", message("refused.advisor-timeout.again"), 504) from None
         except (PlannerError, WorkerError) as error:
             why = str(error)
-            detail = f"{why[:1].upper()}{why[1:]}. Nothing was changed by asking; try again in a moment."
-            raise CommandRefused("advisor-unavailable", "The adviser cannot answer", detail, 503) from None
+            raise CommandRefused(
+                "advisor-unavailable",
+                message("refused.advisor-unavailable.again", why=f"{why[:1].upper()}{why[1:]}"),
+                503,
+            ) from None
 
 
-# Plans to something that a person wants to hold, as the adviser finds them, and why there is none.
+# Plans to something that a person wants to hold, as the advisor finds them, and why there is none.
 
-WAITING = 3.0  # seconds beyond a request's deadline: the adviser may be at something else
+WAITING = 3.0  # seconds beyond a request's deadline: the advisor may be at something else
 GOAL = "asked for"  # its name in reasons
 AIMED_WITHIN = 5.0  # seconds a plan may take
 EXPLAINED_WITHIN = 5.0  # seconds, where nothing was found
@@ -95,15 +98,15 @@ class GoalPlan:
     why_not: Diagnosis | None = None
 
 
-async def aim(adviser: AdvisorClient, request: ErrandRequest) -> GoalPlan:
+async def aim(advisor: AdvisorClient, request: GoalPlanRequest) -> GoalPlan:
     """Ask for a plan, and where there is none for the reasons. Raises `CommandRefused`."""
-    advice = await adviser.answer(request, request.deadline + WAITING)
+    advice = await advisor.answer(request, request.deadline + WAITING)
     if advice.offers:
         return GoalPlan(advice.offers[0])
     goal = Goal(GOAL, request.target)
     reasons = DiagnosisRequest(request.state, (goal,), request.circumstances, EXPLAINED_WITHIN)
     try:
-        diagnosis = await adviser.answer(reasons, EXPLAINED_WITHIN + WAITING)
+        diagnosis = await advisor.answer(reasons, EXPLAINED_WITHIN + WAITING)
     except CommandRefused:
         return GoalPlan(None, advice.complete)
     if diagnosis.reason is None:

@@ -39,6 +39,7 @@ from sequence_planner.model.source import Finding
 from sequence_planner.process.task import TooLargeError, WorkerError
 from sequence_planner.simulation.device_state import standing_file
 from sequence_planner.synthesis.guards import SupervisorGuard
+from sequence_planner.texts.message import as_it_was, message
 
 # Another model in the place of the one that runs: its files are put into the folder of the model, and the controller
 # begins anew.
@@ -68,8 +69,7 @@ class Deploying:
     def check(self, command: Deploy) -> None:
         """Raises `CommandRefused` for what can never be done here."""
         if command.reset and not self._emulated:
-            detail = "Only emulated devices can begin anew as the model says. Deploy without resetting the simulation."
-            raise CommandRefused("not-emulated", "There are real devices", detail)
+            raise CommandRefused("not-emulated", message("refused.not-emulated.reset"))
 
     def refusal(self) -> CommandRefused | None:
         """Return why nothing but a stop is carried out any more, once a deployment was accepted; None else.
@@ -102,14 +102,15 @@ class Deploying:
         try:
             files = await asyncio.to_thread(read_files, self._beside / command.staged)
             if "station.yaml" not in files:
-                raise CommandRefused("not-staged", "The files are not there", "Try once more to deploy the revision.")
+                raise CommandRefused("not-staged", message("refused.not-staged.again"))
             before = await asyncio.to_thread(read_contents, self._model)
             await asyncio.to_thread(folder.begin, note, before)
             await asyncio.to_thread(_put_in_place, files, self._model, before, note)
         except OSError as error:
             folder.remove()
-            detail = f"The files of the model cannot be written: {error.strerror}. Look at who may write to its folder."
-            raise CommandRefused("model-not-written", "The model cannot be written", detail) from error
+            raise CommandRefused(
+                "model-not-written", message("refused.model-not-written.why", why=str(error.strerror))
+            ) from error
 
     async def end(self) -> None:
         """Wait until files are in place. Raises `DeployedError` then."""
@@ -120,11 +121,7 @@ class Deploying:
 
 def under_way(name: str, by: str) -> CommandRefused:
     """Return why nothing is commanded while a deployment is under way."""
-    detail = (
-        f"{by} has deployed {name}, and the station begins anew with it. Nothing is published until it runs and "
-        "somebody starts production. Try again then."
-    )
-    return CommandRefused("deployment-under-way", "Another model is being started", detail, 503)
+    return CommandRefused("deployment-under-way", message("refused.deployment-under-way.by", by=by, name=name), 503)
 
 
 def _put_in_place(files: Files, model: Path, before: Contents, note: DeploymentNote) -> None:
@@ -351,15 +348,17 @@ class Preparation:
 
     def refusal(self) -> CommandRefused:
         """Return why nothing can be commanded yet."""
-        if self.unusable:
-            return CommandRefused("model-unusable", "The model cannot be used", f"{self.trouble}.")
-        if self.too_large:
-            return CommandRefused("no-supervisor", "It is not known what is safe", f"{self.trouble}.")
         if self.trouble is not None:
-            return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
+            why = as_it_was(self.trouble)
+            if self.unusable:
+                return CommandRefused("model-unusable", message("refused.model-unusable.why", why=why))
+            title = message("refused.safety-unknown") if self.too_large else None
+            return CommandRefused("no-supervisor", message("refused.no-supervisor.why", why=why), title=title)
         if self._others is not None:
-            return CommandRefused("other-controller", "Somebody else commands the devices", f"{self._others}.")
-        return CommandRefused(PREPARING, "The station is being prepared", "Try again in a moment.", 503)
+            return CommandRefused(
+                "other-controller", message("refused.other-controller.waits", who=as_it_was(self._others))
+            )
+        return CommandRefused(PREPARING, message("refused.preparing.again"), 503)
 
 
 async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) -> None:

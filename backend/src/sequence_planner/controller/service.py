@@ -49,6 +49,7 @@ from sequence_planner.ros.transports.routing import gated
 from sequence_planner.simulation.supported import emulation_findings
 from sequence_planner.standby.lease import LeaseKeeper
 from sequence_planner.station import ReadyStation
+from sequence_planner.texts.message import message
 
 LOG = structlog.get_logger(__name__)
 
@@ -328,12 +329,12 @@ class _Life:
             return refusal
         keeper, now = self.keeper, time.monotonic()
         if keeper is not None and keeper.epoch is None:
-            until, what = now + WISH_LASTS, f"Should it take over within {WISH_LASTS:g} s, nothing"
+            until, what = now + WISH_LASTS, message("refused.preparing.stays-at-rest-if", seconds=WISH_LASTS)
         else:
-            until, what = math.inf, "Nothing"
+            until, what = math.inf, message("refused.preparing.stays-at-rest")
         self._at_rest_until = max(self._at_rest_until, until)
-        detail = f"{refusal.detail} {what} goes on by itself before a person starts production."
-        return CommandRefused(refusal.slug, refusal.title, detail, refusal.status)
+        detail = message("sentences", first=refusal.detail, second=what)
+        return CommandRefused(refusal.slug, detail, refusal.status, title=refusal.title)
 
     def _refusal(self) -> CommandRefused:
         """Return why nothing can be commanded or asked yet."""

@@ -17,6 +17,7 @@ from sequence_planner.core.clock import iso
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.mes.order import OrderRefused
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_EVENTS
+from sequence_planner.texts.message import message
 
 _OF_STATION: Final = ""  # in the database, in place of an order
 
@@ -94,8 +95,4 @@ def last(connection: Connection) -> int:
 def require_kept(connection: Connection, after: int) -> None:
     """Raises `OrderRefused` (`events-gone`, 410) where an event behind `after` is kept no more."""
     if after < (gone := last_trimmed_event(connection)):
-        detail = (
-            f"The events up to {gone} are kept no more: whoever administers the station finds them in its archive. "
-            f"Read the orders and their responses anew, and the events after {gone}."
-        )
-        raise OrderRefused("events-gone", "These events are kept no more", detail, 410)
+        raise OrderRefused("events-gone", message("refused.events-gone.up-to", number=gone), 410)

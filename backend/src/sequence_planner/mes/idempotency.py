@@ -15,6 +15,7 @@ from sqlalchemy import Connection, delete, insert, select
 
 from sequence_planner.mes.order import OrderRefused
 from sequence_planner.mes.tables import JOB_ANSWERS
+from sequence_planner.texts.message import message
 
 KEPT: Final = 7 * 86400.0  # seconds
 
@@ -44,8 +45,7 @@ def recall(connection: Connection, bearer: str, key: str, digest: str) -> KeptAn
     if row is None:
         return None
     if row.digest != digest:
-        detail = "Another request had the same Idempotency-Key. A key belongs to one request and its repetitions."
-        raise OrderRefused("idempotency-key-reused", "The key belongs to another request", detail, 422)
+        raise OrderRefused("idempotency-key-reused", message("refused.idempotency-key-reused.other"), 422)
     return KeptAnswer(row.status, row.tag, row.content)
 
 

@@ -12,6 +12,7 @@ from sqlalchemy import RowMapping
 
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.data_models import DataModel
+from sequence_planner.texts.refused import Refused
 
 # The states of a job order and the commands that each allows, after OPC 10031-4.
 #
@@ -173,19 +174,12 @@ class JobOrder(OrderContent):
 # Errors of the interface for job orders.
 
 
-class OrderRefused(Exception):
+class OrderRefused(Refused):
     """A refusal: what was asked of an order is not done, and nothing has changed.
 
-    `slug`, `title`, `detail` and `status` are as in `controller.commands.command.CommandRefused`; `allowed` are
-    the commands that the order does allow, where another one was given.
+    `allowed` are the commands that the order does allow, where another one was given.
     """
 
-    def __init__(
-        self, slug: str, title: str, detail: str, status: int = 409, *, allowed: Sequence[OrderCommand] = ()
-    ) -> None:
-        super().__init__(detail)
-        self.slug = slug
-        self.title = title
-        self.detail = detail
-        self.status = status
+    def __init__(self, slug: str, detail: str, status: int = 409, *, allowed: Sequence[OrderCommand] = ()) -> None:
+        super().__init__(slug, detail, status)
         self.allowed = tuple(allowed)

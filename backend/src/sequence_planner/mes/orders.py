@@ -31,6 +31,7 @@ from sequence_planner.mes.order import (
     Wish,
 )
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_ORDERS, JOB_ORDERS_GONE
+from sequence_planner.texts.message import Argument, message
 
 MOST_OPEN: Final = 10_000  # orders that are not over
 _MOST_NAMED: Final = 500  # in one question to the database
@@ -65,11 +66,9 @@ def store(
     Raises `OrderRefused`: `job-order-exists` (409) for an id that was used before, `too-many-job-orders` (409).
     """
     if id is not None and (find(connection, id) is not None or _gone(connection, id) is not None):
-        detail = f"There is a job order {id} already, or there was. Every order has an id of its own."
-        raise OrderRefused("job-order-exists", "There is such a job order", detail)
+        raise OrderRefused("job-order-exists", message("refused.job-order-exists.id", id=id))
     if count_open(connection) >= MOST_OPEN:
-        detail = f"The station holds {MOST_OPEN} orders that are not over. Try again when some are."
-        raise OrderRefused("too-many-job-orders", "There are too many job orders", detail)
+        raise OrderRefused("too-many-job-orders", message("refused.too-many-job-orders.most", most=MOST_OPEN))
     number = max(connection.execute(select(func.max(each))).scalar_one() or 0 for each in _NUMBERS)
     state = OrderState.ALLOWED_TO_START if start else OrderState.NOT_ALLOWED_TO_START
     id = id or new_id()
@@ -100,12 +99,14 @@ def change(
     """
     order = get(connection, id)
     if revision is not None and order.revision != revision:
-        detail = f"Somebody or the station has changed it since: it has the revision {order.revision}. Read it again."
-        raise OrderRefused("job-order-changed", "The job order has changed", detail, 412)
+        raise OrderRefused(
+            "job-order-changed", message("refused.job-order-changed.revision", revision=order.revision), 412
+        )
     if order.state not in BEFORE_START or order.handed_over is not None:
         state = order.state.value
-        detail = f"It is {state}, and an order can be changed until the station works on it. Store another one instead."
-        raise OrderRefused("job-order-started", "The job order has started", detail)
+        raise OrderRefused(
+            "job-order-started", message("refused.job-order-started.state", state=message(f"order-state.{state}"))
+        )
     told = content.model_dump(mode="json")
     changed = _set(connection, order, now, content.model_dump())
     _record(connection, by, "job-order-updated", id, now, told)
@@ -122,10 +123,13 @@ def command(
     """
     order = get(connection, id)
     if given not in order.allowed:
-        able = ", ".join(order.allowed) or "nothing"
-        wish = "" if order.wish is None else f", and the station is to {order.wish} it"
-        detail = f"The order is {order.state.value}{wish}: it allows {able}."
-        raise OrderRefused("command-not-allowed", "The command is not allowed", detail, allowed=order.allowed)
+        able = [message(f"order-command.{each}") for each in order.allowed or ("none",)]
+        said: dict[str, Argument] = {"state": message(f"order-state.{order.state}"), "allowed": able}
+        if order.wish is None:
+            detail = message("refused.command-not-allowed.allows", **said)
+        else:
+            detail = message("refused.command-not-allowed.allows-wish", wish=message(f"wish.{order.wish}"), **said)
+        raise OrderRefused("command-not-allowed", detail, allowed=order.allowed)
     _record(connection, by, f"job-order-{_dashed(given)}", id, now, {"state": order.state.value}, reason)
     if order.is_at_station:
         wished = {"wish": WISHES[given].value, "wished_by": by.model_dump_json(), "wished_because": reason}
@@ -206,23 +210,18 @@ def get(connection: Connection, id: str) -> JobOrder:
     if order is None:
         require_kept(connection, id)
     if order is None or order.removed is not None:
-        raise OrderRefused(
-            "no-job-order",
-            "There is no such job order",
-            "There is no job order with this id. Look at those that there are.",
-            404,
-        )
+        raise OrderRefused("no-job-order", message("refused.no-job-order.id"), 404)
     return order
 
 
 def require_kept(connection: Connection, id: str) -> None:
     """Raises `OrderRefused` (`job-order-gone`, 410) for an order that was over long ago."""
     if (ended := _gone(connection, id)) is not None:
-        detail = (
-            f"It was over at {datetime.fromtimestamp(ended, UTC):%Y-%m-%d %H:%M:%S UTC}, and is kept no more: whoever "
-            "administers the station finds it in its archive."
+        raise OrderRefused(
+            "job-order-gone",
+            message("refused.job-order-gone.ended", time=f"{datetime.fromtimestamp(ended, UTC):%Y-%m-%d %H:%M:%S UTC}"),
+            410,
         )
-        raise OrderRefused("job-order-gone", "The job order is kept no more", detail, 410)
 
 
 def page(connection: Connection, state: OrderState | None, after: int, limit: int) -> list[JobOrder]:

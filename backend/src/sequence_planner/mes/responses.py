@@ -16,6 +16,7 @@ from sequence_planner.controller.views.part import Value
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState
 from sequence_planner.mes.tables import JOB_BEGIN, JOB_RESPONSES
+from sequence_planner.texts.message import message
 
 
 class JobOutcome(StrEnum):
@@ -132,11 +133,7 @@ def last_trimmed_response(connection: Connection) -> int:
 def require_kept(connection: Connection, after: int) -> None:
     """Raises `OrderRefused` (`responses-gone`, 410) where a response behind `after` is kept no more."""
     if after < (gone := last_trimmed_response(connection)):
-        detail = (
-            f"The responses up to {gone} are kept no more: whoever administers the station finds them in its archive. "
-            f"Read those after {gone}."
-        )
-        raise OrderRefused("responses-gone", "These responses are kept no more", detail, 410)
+        raise OrderRefused("responses-gone", message("refused.responses-gone.up-to", number=gone), 410)
 
 
 def remove(connection: Connection, job_order: str, now: float) -> None:

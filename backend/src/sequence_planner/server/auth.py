@@ -24,6 +24,7 @@ from sequence_planner.server.http.credentials import Credentials, credentials
 from sequence_planner.server.http.middleware import ConnectionKind, belongs_to
 from sequence_planner.server.services.identity import Bearer, IdentityService
 from sequence_planner.server.settings import Settings
+from sequence_planner.texts.message import message
 
 # Where a demonstration may be opened: at the machine itself, and only as long as all devices are emulated.
 
@@ -143,28 +144,29 @@ class Access:
     def _wrong(self, signed_in: SignedIn) -> ProblemFound | None:
         person = signed_in.person
         if person.must_change_password and not self.unready:
-            detail = "Your password was set by somebody else. Choose one of your own first."
-            return ProblemFound(403, "password-must-change", "The password must be changed", detail)
+            return ProblemFound(403, "password-must-change", message("refused.password-must-change.own"))
         if self.role is None or not person.role.includes(self.role):
-            needed = "a paired watch" if self.role is None else f"the role {self.role.value}"
-            detail = f"This takes {needed}; you have the role {person.role.value}. Ask an administrator."
-            return ProblemFound(403, "role-too-low", "You may not do this", detail)
+            if self.role is None:
+                detail = message("refused.role-too-low.watch", role=person.role.value)
+            else:
+                detail = message("refused.role-too-low.role", needed=self.role.value, role=person.role.value)
+            return ProblemFound(403, "role-too-low", detail)
         return None
 
     def _judge_key(self, key: Key | None, address: str) -> Admitted:
         if key is None:
-            detail = "The key is unknown, has expired or was revoked. Ask an administrator for another."
-            raise _signed_out(detail)
+            raise _signed_out("refused.signed-out.key")
         if not self.any_key and (self.scope is None or self.scope not in key.scopes):
-            needed = "no key may do this" if self.scope is None else f"it takes one with the scope {self.scope.value}"
-            detail = f"The key {key.name} may not do this: {needed}."
-            raise ProblemFound(403, "scope-missing", "The key may not do this", detail)
+            if self.scope is None:
+                detail = message("refused.scope-missing.none", key=key.name)
+            else:
+                detail = message("refused.scope-missing.scope", key=key.name, scope=self.scope.value)
+            raise ProblemFound(403, "scope-missing", detail)
         return Admitted(key.actor(address), key=key)
 
     def _judge_watch(self, watch: Watch, address: str) -> Admitted:
         if watch.state is not WatchState.ACTIVE and not (self.waiting and watch.state is WatchState.WAITING):
-            detail = "Whoever made the code must first confirm this watch."
-            raise ProblemFound(403, "wearable-unconfirmed", "The watch is not confirmed yet", detail)
+            raise ProblemFound(403, "wearable-unconfirmed", message("refused.wearable-unconfirmed.confirm"))
         return Admitted(watch.actor(address), watch=watch)
 
 
@@ -235,8 +237,8 @@ async def bearer_of(connection: HTTPConnection, shown: Credentials) -> Bearer:
     return bearer if may_go_on else replace(bearer, signed_in=None)
 
 
-def _signed_out(detail: str = "Sign in, then try again.") -> ProblemFound:
-    return ProblemFound(401, "signed-out", "Nobody is signed in", detail, {"WWW-Authenticate": "Bearer"})
+def _signed_out(why: str = "refused.signed-out.sign-in") -> ProblemFound:
+    return ProblemFound(401, "signed-out", message(why), {"WWW-Authenticate": "Bearer"})
 
 
 # Whose the connection of a request is, before anybody is looked up.

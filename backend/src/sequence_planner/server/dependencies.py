@@ -20,6 +20,7 @@ from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.server.auth import address_of
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.services.identity import IdentityService
+from sequence_planner.texts.message import message
 
 # What requests have in common: bodies with nothing undeclared, names that people give, identifiers.
 
@@ -72,8 +73,7 @@ Controller = Annotated[ControllerClient, Depends(controller)]
 async def live_view(client: Controller) -> StationView:
     """The view, if it is not older than two seconds; else the request is answered with 503."""
     if client.view is None or not client.heard:
-        detail = "The controller is silent, so nothing is known of the station now. Try again."
-        raise ProblemFound(503, "controller-unavailable", "The controller is not heard", detail)
+        raise ProblemFound(503, "controller-unavailable", message("refused.controller-unavailable.silent"))
     return client.view
 
 
@@ -127,8 +127,7 @@ async def json_only(request: Request) -> None:
     """Refuse any body but JSON: a form, which any page may post across sites, is never read."""
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/json":
-        detail = "Send the body as JSON, with the header Content-Type: application/json."
-        raise ProblemFound(415, "not-json", "The body is not declared as JSON", detail)
+        raise ProblemFound(415, "not-json", message("refused.not-json.header"))
 
 
 JSON_ONLY = Depends(json_only)

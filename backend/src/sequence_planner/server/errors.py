@@ -17,7 +17,8 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.routing import iter_route_contexts
 from pydantic import BaseModel, JsonValue
 from starlette.exceptions import HTTPException
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Message as Event
 
 from sequence_planner.auth.roles import IdentityRefused
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
@@ -26,6 +27,8 @@ from sequence_planner.editor.processes import BodyError
 from sequence_planner.mes.order import OrderCommand, OrderRefused
 from sequence_planner.model.validation import members
 from sequence_planner.process.task import WorkerError
+from sequence_planner.texts.message import Message, as_it_was, message
+from sequence_planner.texts.refused import Refused
 
 LOG = structlog.get_logger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -39,11 +42,9 @@ SLUGS = {
 }
 # What FastAPI says of a body that Python's parser of JSON gives up.
 UNREAD = "There was an error parsing the body"
-UNREADABLE = "The body cannot be read: it has to be JSON in UTF-8, and not nested more than some hundred times."
-DETAILS = {
-    404: "There is nothing at this address. GET /api/v1/openapi.json describes what there is.",
-    405: "This address does not know the method; the header Allow names those it knows.",
-}
+UNREADABLE = message("refused.bad-request.unreadable")
+TITLES = {status: message(f"refused.{SLUGS[status]}") for status in (400, 404, 405)}
+DETAILS = {404: message("refused.not-found.address"), 405: message("refused.method-not-allowed.allow")}
 
 
 def refused(*statuses: int) -> dict[int | str, dict[str, Any]]:
@@ -62,33 +63,38 @@ class Problem(BaseModel):
     """Why a request was refused.
 
     `errors` is empty unless `type` is `/problems/invalid-request`, `place` null unless it is `/problems/bad-predicate`.
-    `allowed` are the commands that a job order does allow where `type` is `/problems/command-not-allowed`.
+    `allowed` are the commands that a job order does allow where `type` is `/problems/command-not-allowed`. The messages
+    are `title` and `detail` for readers of other languages.
     """
 
     type: str
     title: str
+    title_message: Message
     status: int
     detail: str
+    detail_message: Message
     errors: list[FieldError]
     place: TextPlace | None
     allowed: list[OrderCommand]
 
 
-class ProblemFound(HTTPException):
-    """Raised anywhere in a request to answer it with a problem."""
+class ProblemFound(Refused, HTTPException):
+    """Raised anywhere in a request to answer it with a problem. FastAPI lets pass what is an `HTTPException`."""
+
+    detail: Message
 
     def __init__(
         self,
         status: int,
         slug: str,
-        title: str,
         detail: str,
         headers: Mapping[str, str] | None = None,
         errors: Sequence[FieldError] = (),
+        *,
+        title: str | None = None,
     ) -> None:
-        super().__init__(status, detail, headers)
-        self.slug = slug
-        self.title = title
+        HTTPException.__init__(self, status, detail, headers)
+        Refused.__init__(self, slug, detail, status, title=title)
         self.errors = errors
 
 
@@ -108,8 +114,10 @@ def problem_response(
     problem = Problem(
         type=f"/problems/{slug}",
         title=title,
+        title_message=as_it_was(title),
         status=status,
         detail=detail,
+        detail_message=as_it_was(detail),
         errors=list(errors),
         place=place,
         allowed=list(allowed),
@@ -124,9 +132,7 @@ def install(app: FastAPI) -> None:
     """Let `app` answer every refusal and every failure with a problem."""
     app.add_exception_handler(HTTPException, _http)
     app.add_exception_handler(RequestValidationError, _invalid)
-    app.add_exception_handler(CommandRefused, _refused)
-    app.add_exception_handler(IdentityRefused, _identity_refused)
-    app.add_exception_handler(OrderRefused, _order_refused)
+    app.add_exception_handler(Refused, _refused)
     app.add_exception_handler(StorageError, _storage_unavailable)
     app.add_exception_handler(BodyError, _unexpected)
     app.add_exception_handler(WorkerError, _work_ended)
@@ -134,13 +140,9 @@ def install(app: FastAPI) -> None:
 
 async def _http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
-    if isinstance(error, ProblemFound):
-        return problem_response(
-            error.status_code, error.slug, error.title, error.detail, headers=error.headers, errors=error.errors
-        )
     status = error.status_code
-    title = HTTPStatus(status).phrase
-    detail = DETAILS.get(status, UNREADABLE if error.detail == UNREAD else str(error.detail))
+    title = TITLES.get(status) or HTTPStatus(status).phrase
+    detail = DETAILS.get(status) or (UNREADABLE if error.detail == UNREAD else str(error.detail))
     headers = dict(error.headers or {})
     if status == 405 and (methods := _methods(request)):
         headers["Allow"] = ", ".join(sorted(methods))
@@ -171,45 +173,57 @@ async def _unexpected(request: Request, error: Exception) -> Response:
 
 
 def _not_json(why: str) -> Response:
-    return problem_response(400, "malformed-json", "The body is not JSON", f"The body is not JSON: {why}.")
+    return refusal_response(ProblemFound(400, "malformed-json", message("refused.malformed-json.why", why=why)))
 
 
 def _not_as_expected(wrong: Iterable[tuple[str, str]]) -> Response:
     errors = [FieldError(field=place, expected=what) for place, what in wrong]
     detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
-    return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
+    return refusal_response(ProblemFound(422, "invalid-request", detail, errors=errors))
 
 
 async def _work_ended(request: Request, error: Exception) -> Response:
     assert isinstance(error, WorkerError)
     text = str(error)
     end = "" if text.endswith("?") else "."
-    detail = f"{text[:1].upper()}{text[1:]}{end} Try again."
-    return problem_response(503, "worker-failed", "It could not be found out", detail)
+    detail = message("refused.worker-failed.again", why=f"{text[:1].upper()}{text[1:]}{end}")
+    return refusal_response(ProblemFound(503, "worker-failed", detail))
 
 
 async def _refused(request: Request, error: Exception) -> Response:
-    assert isinstance(error, CommandRefused)
-    return problem_response(error.status, error.slug, error.title, error.detail, place=error.place)
+    assert isinstance(error, Refused)
+    return refusal_response(error)
 
 
-async def _identity_refused(request: Request, error: Exception) -> Response:
-    assert isinstance(error, IdentityRefused)
-    headers = {} if error.retry_after is None else {"Retry-After": str(error.retry_after)}
-    if error.status == 401:
+def refusal_response(refused: Refused) -> Response:
+    """The answer to what is not done."""
+    headers: Mapping[str, str] | None = None
+    if isinstance(refused, ProblemFound):
+        headers = refused.headers
+    elif isinstance(refused, IdentityRefused):
+        headers = _identity_headers(refused)
+    return problem_response(
+        refused.status,
+        refused.slug,
+        refused.title,
+        refused.detail,
+        errors=refused.errors if isinstance(refused, ProblemFound) else (),
+        place=refused.place if isinstance(refused, CommandRefused) else None,
+        allowed=refused.allowed if isinstance(refused, OrderRefused) else (),
+        headers=headers,
+    )
+
+
+def _identity_headers(refused: IdentityRefused) -> dict[str, str]:
+    headers = {} if refused.retry_after is None else {"Retry-After": str(refused.retry_after)}
+    if refused.status == 401:
         headers["WWW-Authenticate"] = "Bearer"  # RFC 9110 wants a challenge; this one makes no browser ask by itself
-    return problem_response(error.status, error.slug, error.title, error.detail, headers=headers)
-
-
-async def _order_refused(request: Request, error: Exception) -> Response:
-    assert isinstance(error, OrderRefused)
-    return problem_response(error.status, error.slug, error.title, error.detail, allowed=error.allowed)
+    return headers
 
 
 async def _storage_unavailable(request: Request, error: Exception) -> Response:
     LOG.error("the database is not available", says=str(error))  # it names the place: not for who asks
-    detail = "The station's database does not answer, so nobody can be let in and nothing is recorded. Try again."
-    return problem_response(503, "storage-unavailable", "The database is not available", detail)
+    return refusal_response(ProblemFound(503, "storage-unavailable", message("refused.storage-unavailable.again")))
 
 
 class ErrorMiddleware:
@@ -225,10 +239,10 @@ class ErrorMiddleware:
             return
         started = False
 
-        async def watch(message: Message) -> None:
+        async def watch(event: Event) -> None:
             nonlocal started
-            started = started or message["type"] == "http.response.start"
-            await send(message)
+            started = started or event["type"] == "http.response.start"
+            await send(event)
 
         try:
             await self.app(scope, receive, watch)
@@ -236,6 +250,5 @@ class ErrorMiddleware:
             LOG.exception("a request failed", path=scope["path"])
             if started:
                 raise  # too late for another answer: the connection is cut
-            detail = "The server met an error of its own; it is written in the server's log."
-            response = problem_response(500, SLUGS[500], "Internal error", detail)
+            response = refusal_response(ProblemFound(500, SLUGS[500], message("refused.internal-error.log")))
             await response(scope, receive, send)

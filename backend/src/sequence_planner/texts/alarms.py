@@ -371,10 +371,5 @@ ALARMS: Final[dict[str, str]] = {
     "mode.hold": "hold",
     "mode.restart": "restart",
     # What holds them together.
-    "sentences": "{first} {second}",
-    "quoted": "“{title}”",
-    "list.more": "{count} more",
-    "list.and": "{most} and {last}",
-    "as-it-was": "{text}",  # of a record that has but its text
     "over": "{past}. This is over, but not all that followed",
 }

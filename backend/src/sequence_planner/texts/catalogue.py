@@ -1,6 +1,7 @@
 """All texts that people read of a running station, in English, by their ids.
 
-`make types` writes them for the page, whose Swedish ones are in `frontend/src/lib/text/sv/messages.json`.
+`make types` writes them for the page: those of `front`, which are read with every page, and the others. Its Swedish
+ones are in `front.json` and `messages.json` of `frontend/src/lib/text/sv`.
 """
 
 from __future__ import annotations
@@ -8,9 +9,11 @@ from __future__ import annotations
 from typing import Final
 
 from sequence_planner.texts.alarms import ALARMS
+from sequence_planner.texts.front import FRONT
+from sequence_planner.texts.refusals import REFUSALS
 from sequence_planner.texts.station import STATION
 
-TEXTS: Final = ALARMS | STATION
+TEXTS: Final = FRONT | ALARMS | STATION | REFUSALS
 
 
 if __name__ == "__main__":
@@ -18,4 +21,6 @@ if __name__ == "__main__":
     import sys
     from pathlib import Path
 
-    Path(sys.argv[1]).write_text(json.dumps(TEXTS, indent="\t", ensure_ascii=False) + "\n", encoding="utf-8")
+    for name, texts in (("front", FRONT), ("messages", ALARMS | STATION | REFUSALS)):
+        written = json.dumps(texts, indent="\t", ensure_ascii=False)
+        Path(sys.argv[1], f"{name}.json").write_text(f"{written}\n", encoding="utf-8")

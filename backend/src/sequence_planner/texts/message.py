@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -136,6 +136,14 @@ def listed(items: Collection[Item]) -> str:
     if len(every) > _NAMED + 1:
         every = [*every[:_NAMED], str(message("list.more", count=len(every) - _NAMED))]
     return str(message("list.and", most=", ".join(every[:-1]), last=every[-1])) if len(every) > 1 else "".join(every)
+
+
+def joined(items: Iterable[Item]) -> Item:
+    """All of them with semicolons between; of which there has to be one."""
+    first, *others = items
+    for each in others:
+        first = message("list.semicolon", first=first, second=each)
+    return first
 
 
 def quoted(titles: Collection[str]) -> list[Item]:

@@ -26,7 +26,9 @@ PHRASES = TEXTS.keys() - {f"{kind}.{what}" for kind in KINDS for what in OF_KIND
 
 def texts(language: str) -> Mapping[str, str]:
     """The texts of the page in a language."""
-    found: Mapping[str, str] = json.loads((PAGE / language / "messages.json").read_text(encoding="utf-8"))
+    found: dict[str, str] = {}
+    for name in ("front", "messages"):
+        found |= json.loads((PAGE / language / f"{name}.json").read_text(encoding="utf-8"))
     return found
 
 
@@ -43,16 +45,21 @@ def calls(name: str) -> Iterator[ast.Call]:
                 yield node
 
 
-def ids(node: ast.expr) -> set[str]:
-    """The texts that an expression can name."""
+def ids(node: ast.expr, given: set[str | None]) -> set[str]:
+    """The texts that an expression can name; where a part of the name is computed, those with the places that are
+    given.
+    """
     match node:
         case ast.Constant(value=str(text)):
             return {text}
         case ast.IfExp(body=body, orelse=orelse):
-            return ids(body) | ids(orelse)
+            return ids(body, given) | ids(orelse, given)
         case ast.JoinedStr(values=[ast.Constant(), *_] as parts):
-            known = (re.escape(str(part.value)) if isinstance(part, ast.Constant) else "[a-z]+" for part in parts)
-            return {name for name in PHRASES if re.fullmatch("".join(known), name)}
+            known = [re.escape(str(part.value)) if isinstance(part, ast.Constant) else "[A-Za-z-]+" for part in parts]
+            alike = {name for name in PHRASES if re.fullmatch("".join(known), name)}
+            fit = {name for name in alike if None in given or places(TEXTS[name]) == given}
+            assert fit, f"no text of {ast.unparse(node)} has the places {given}"
+            return fit
     return set()
 
 
@@ -73,11 +80,35 @@ def test_the_page_has_the_english_of_the_controller() -> None:
     assert texts("en") == TEXTS, "make types"
 
 
+def test_every_refusal_has_a_title() -> None:
+    slugs = set()
+    for name, place in {"CommandRefused": 0, "IdentityRefused": 0, "OrderRefused": 0, "ProblemFound": 1}.items():
+        for call in calls(name):
+            if all(keyword.arg != "title" for keyword in call.keywords) and isinstance(call.args[place], ast.Constant):
+                slugs.add(ast.unparse(call.args[place]).strip("'"))
+    assert len(slugs) > 100, "calls are found"
+    assert {f"refused.{slug}" for slug in slugs} <= TEXTS.keys()
+
+
+def test_no_refusal_is_left_over() -> None:
+    source = "".join(path.read_text(encoding="utf-8") for path in SOURCE.rglob("*.py") if path.parent.name != "texts")
+    known = set(re.findall(r"[\"`]([a-z]+(?:-[a-z]+)+|preparing|busy|disabled|demonstration)[\"`]", source))
+    unused = [
+        name
+        for name in TEXTS
+        if name.startswith("refused.")
+        and name not in source
+        and name.rpartition(".")[0] + ".{" not in source
+        and name.removeprefix("refused.") not in known
+    ]
+    assert not unused
+
+
 def test_messages_are_given_what_their_texts_name() -> None:
     seen = set()
     for call in calls("message"):
-        given = {keyword.arg for keyword in call.keywords}
-        for name in ids(call.args[0]):
+        given: set[str | None] = {keyword.arg for keyword in call.keywords}
+        for name in ids(call.args[0], given):
             seen.add(name)
             if None not in given:
                 assert given == places(TEXTS[name]), ast.unparse(call)

@@ -62,7 +62,7 @@ def carried_out(stopped: Stopped, offer: RecoveryProposal) -> None:
     inside = supervisor.safe.includes(state)
     if offer.kind is OfferKind.PHYSICAL:  # the tick that hears of it takes in at once what has finished
         inside = inside or supervisor.safe.includes(synchronise(automaton, finish(automaton, state).state))
-    if offer.errand is None:
+    if offer.operator_plan is None:
         assert offer.kind in (OfferKind.REPLAN, OfferKind.CORRECTION, OfferKind.PHYSICAL, OfferKind.COMBINED)
         assert (offer.goal, offer.unsupervised, offer.restart, offer.breaks) == (TRUE, False, False, ())
     else:
@@ -70,7 +70,7 @@ def carried_out(stopped: Stopped, offer: RecoveryProposal) -> None:
         goals = tuple(goal for goal in goals if goal.name != offer.operation)
         effects = {e.name: e for e in automaton.effects if not e.fault and e.resource not in circumstances.offline}
         unsupervised = False
-        for tick in offer.errand.ticks:
+        for tick in offer.operator_plan.ticks:
             published = state
             sensed = apply_effects(state, [effects[name] for name in tick.effects])
             assert sensed is not None

@@ -92,5 +92,5 @@ def _noted(automaton: Automaton, request: AdviceRequest, offer: RecoveryProposal
 
 
 def _place(offer: RecoveryProposal) -> tuple[bool, int]:
-    done = offer.errand or offer.physical or offer.online or offer.in_service
+    done = offer.operator_plan or offer.physical or offer.online or offer.in_service
     return offer.only_if_checked, 0 if not offer.corrections else 1 if done else 2

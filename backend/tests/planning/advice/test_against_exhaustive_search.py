@@ -139,7 +139,7 @@ def test_there_is_a_way_back_where_production_goes_on_after_the_shortest(given_:
     elif all(goal.local == TRUE for goal in given_.goals):  # else the way may fail a formula
         # One after which goals are given up is offered only where nothing reaches them all.
         assert offers or any(not offer.left_out for offer in advice.offers)
-        assert all(offer.errand is not None for offer in offers)
+        assert all(offer.operator_plan is not None for offer in offers)
 
 
 def test_a_station_with_nothing_to_do_goes_on() -> None:

@@ -24,7 +24,7 @@ from sequence_planner.planning.recovery.advisor import Advisor
 from sequence_planner.planning.recovery.consultation import Answer, Request
 from sequence_planner.planning.recovery.manual_plans import stalled_effects, stalling, stalls
 from sequence_planner.planning.recovery.proposals import Advice, OfferKind, RecoveryProposal, ValueChange
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest
 from sequence_planner.planning.recovery.worker import advising
 from sequence_planner.process.budget import Budget
 from sequence_planner.process.worker import Worker, WorkerLoop
@@ -91,8 +91,8 @@ def advised(station: Automaton, advisor: Advisor, request: AdviceRequest) -> dic
 
 
 def starts(offer: RecoveryProposal) -> list[str]:
-    assert offer.errand is not None
-    return [name for _, name in offer.errand.starts]
+    assert offer.operator_plan is not None
+    return [name for _, name in offer.operator_plan.starts]
 
 
 def test_a_robot_under_way_is_waited_for(station: Automaton, advisor: Advisor) -> None:
@@ -197,26 +197,26 @@ def test_an_operation_whose_formula_was_violated_is_reached_only_after_its_reset
             assert TIGHTEN in offer.left_out
 
 
-def test_errands_that_are_asked_for(station: Automaton, advisor: Advisor) -> None:
+def test_plans_that_are_asked_for(station: Automaton, advisor: Advisor) -> None:
     goals = goals_of(station, [TIGHTEN])
     assert station.rest is not None
-    to_rest = ErrandRequest(
+    to_rest = GoalPlanRequest(
         state_of(station, UNDER_WAY), goals, station.rest, circumstances=Circumstances(restart=True), deadline=60
     )
-    (offer,) = advisor.errand(to_rest).offers
+    (offer,) = advisor.goal_plan(to_rest).offers
     assert (offer.kind, offer.at_rest, offer.left_out) == (OfferKind.GOAL, True, ())
     assert offer.then is not None
-    again = ErrandRequest(
+    again = GoalPlanRequest(
         state_of(station, {"bolts[bolt_pair_1]": "empty"}), goals, station.operations[TIGHTEN].precondition, TIGHTEN
     )
-    (offer,) = advisor.errand(replace(again, deadline=60)).offers
+    (offer,) = advisor.goal_plan(replace(again, deadline=60)).offers
     assert (offer.kind, offer.operation, starts(offer)) == (
         OfferKind.RESET,
         TIGHTEN,
         ["operator.place_bolt_pair(bolt_pair_1)"],
     )
     never = replace(to_rest, target=predicate_of(station, "robot.pose == home and robot.pose == above_engine"))
-    assert advisor.errand(never).offers == ()
+    assert advisor.goal_plan(never).offers == ()
 
 
 class Asked:

@@ -34,8 +34,8 @@ def test_restart_abilities_may_still_be_under_way_where_the_goals_are_reached() 
     advice = Advisor(station, supervisor).advise(AdviceRequest(state, goals, deadline=60))
     for offer in advice.offers:
         carried_out(Stopped(station, supervisor, state, goals, AdviceRequest(state, goals).circumstances), offer)
-    jogged = [offer.errand for offer in advice.offers if offer.kind is OfferKind.RESTART]
-    assert [errand is not None and errand.starts for errand in jogged] == [((1, "jog"),)]
+    jogged = [offer.operator_plan for offer in advice.offers if offer.kind is OfferKind.RESTART]
+    assert [operator_plan is not None and operator_plan.starts for operator_plan in jogged] == [((1, "jog"),)]
 
 
 def test_a_torque_that_is_reached_and_not_told_is_told_first_although_only_the_next_tick_is_safe() -> None:

@@ -137,6 +137,7 @@ test('the table has all parts in the order of a run', () => {
 		timeouts: { react: null, finish: null, retries: 0, replan: false },
 		reactions: [reaction],
 		obstacle: null,
+		obstacle_message: null,
 		real_devices: [],
 		trial: null
 	};

@@ -1,5 +1,6 @@
 import fc from 'fast-check';
-import { describe, expect, test } from 'vitest';
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { choose } from '#lib/text/text.svelte.ts';
 import { refusalOf } from './refusal.ts';
 
 describe('a refusal', () => {
@@ -12,6 +13,26 @@ describe('a refusal', () => {
 			kind: 'task-gone',
 			retryAfter: null,
 			place: null
+		});
+	});
+
+	describe('to who reads Swedish', () => {
+		beforeEach(() => vi.stubGlobal('document', { documentElement: {} }));
+		afterEach(async () => {
+			await choose('en');
+			vi.unstubAllGlobals();
+		});
+
+		test('is told in Swedish where it is a kind of text, and as it was written where it is not', async () => {
+			await choose('sv');
+			const of = (detail: string, detail_message?: object) =>
+				refusalOf(403, JSON.stringify({ title: 'Wrong password', title_message: { id: 'refused.wrong-password' }, detail, detail_message }));
+			expect(of('The old one.', { id: 'refused.too-many-attempts.seconds', arguments: { seconds: 3 } })).toMatchObject({
+				title: 'Fel lösenord',
+				detail: 'Det har varit för många felaktiga försök. Försök igen om 3 s.'
+			});
+			expect(of('The old one.', { id: 'of-another-version' }).detail).toBe('The old one.');
+			expect(of('The old one.').detail).toBe('The old one.');
 		});
 	});
 

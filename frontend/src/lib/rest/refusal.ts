@@ -1,5 +1,6 @@
 /** Why the server did not do what was asked, in words for a person (RFC 9457). */
 import type { TextPlace, Problem } from '#lib/contract.ts';
+import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 
 export interface Refusal {
@@ -45,8 +46,8 @@ export function refusalOf(status: number, body: string, retryAfter: string | nul
 	} catch {
 		// Not a problem document: something between us and the station answered, and its status must do.
 	}
-	const title = typeof problem.title === 'string' ? problem.title : say().door.refusal.refused;
-	const detail = typeof problem.detail === 'string' ? problem.detail : say().door.refusal.status(status);
+	const title = typeof problem.title === 'string' ? told(problem.title_message, problem.title) : say().door.refusal.refused;
+	const detail = typeof problem.detail === 'string' ? told(problem.detail_message, problem.detail) : say().door.refusal.status(status);
 	const type = typeof problem.type === 'string' ? problem.type : '';
 	const kind = type.startsWith(PROBLEMS) ? type.slice(PROBLEMS.length) : null;
 	return { title, detail, status, kind, retryAfter: secondsOf(retryAfter), place: problem.place ?? null };

@@ -37,6 +37,7 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		only_if_checked: false,
 		effort: { cost: 1, corrections: 0, physical: 0, returns: 0, starts: 0, seconds: 1 },
 		obstacle: null,
+		obstacle_message: null,
 		...rest
 	};
 }

@@ -4,6 +4,7 @@
  */
 import { common } from './en/common.ts';
 import { door } from './en/door.ts';
+import messages from './en/front.json';
 import { pages } from './en/pages.ts';
 import { watch } from './en/watch.ts';
 
@@ -12,6 +13,7 @@ export const front = {
 	locale: 'en-GB',
 	common,
 	door,
+	messages,
 	pages,
 	watch
 };

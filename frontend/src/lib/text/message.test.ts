@@ -1,11 +1,11 @@
 import { describe, expect, test } from 'vitest';
-import english from '#lib/text/en/messages.json';
-import swedish from '#lib/text/sv/messages.json';
+import { en } from '#lib/text/en.ts';
+import { sv } from '#lib/text/sv.ts';
 import { alarm } from '#lib/testing/view.ts';
 import { tell, wordsOf } from './message.ts';
 
-const EN = { texts: english, language: 'en' };
-const SV = { texts: swedish, language: 'sv' };
+const EN = { texts: en.messages, language: 'en' };
+const SV = { texts: sv.messages, language: 'sv' };
 
 const waiting = (...titles: string[]) => ({
 	id: 'wait.standstill',

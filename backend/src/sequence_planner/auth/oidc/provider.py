@@ -23,47 +23,39 @@ from sequence_planner.auth.oidc.addresses import is_safe
 from sequence_planner.auth.oidc.flow import FLOW_LIFE, ProviderAnswer, SignInFlow
 from sequence_planner.auth.oidc.settings import ProviderSettings
 from sequence_planner.auth.roles import IdentityRefused
+from sequence_planner.texts.message import message
 
 # How it is said that a provider is away, or that what it says is not taken.
 
 
 def away(why: str) -> IdentityRefused:
     """The provider is not reached, or does not answer as one does; `why` is for the log as well."""
-    detail = f"The provider cannot be used now: {why}. Try again, or sign in with a password if you have one here."
-    return IdentityRefused("provider-unavailable", "The provider cannot be used", detail, 503)
+    return IdentityRefused("provider-unavailable", message("refused.provider-unavailable.why", why=why), 503)
 
 
 def unfit(why: str) -> IdentityRefused:
     """Return the refusal that says that what came from the provider is not taken."""
-    detail = f"What came from the provider does not hold: {why}. Begin to sign in again."
-    return IdentityRefused("provider-answer-invalid", "Not signed in", detail, 403)
+    return IdentityRefused("provider-answer-invalid", message("refused.provider-answer-invalid.why", why=why), 403)
 
 
 def not_begun() -> IdentityRefused:
     """An answer that nobody waits for here."""
-    detail = (
-        "This sign-in was not begun in this browser, was finished already, or took longer than ten minutes. "
-        "Begin to sign in again."
-    )
-    return IdentityRefused("sign-in-not-begun", "Not signed in", detail, 403)
+    return IdentityRefused("sign-in-not-begun", message("refused.sign-in-not-begun.again"), 403)
 
 
 def denied(error: str) -> IdentityRefused:
     """The provider let nobody in; `error` is its code (RFC 6749, 4.1.2.1)."""
-    detail = f"The provider has signed nobody in ({error}). Begin again, or ask who looks after it."
-    return IdentityRefused("provider-refused", "Not signed in", detail, 403)
+    return IdentityRefused("provider-refused", message("refused.provider-refused.code", code=error), 403)
 
 
 def no_role() -> IdentityRefused:
     """Somebody whom the station has no role for."""
-    detail = "You are known to the provider, but in none of the groups that may use this station. Ask an administrator."
-    return IdentityRefused("no-role", "No role here", detail, 403)
+    return IdentityRefused("no-role", message("refused.no-role.ask"), 403)
 
 
 def disabled() -> IdentityRefused:
     """Somebody whom an administrator of the station keeps out."""
-    detail = "An administrator of this station has disabled your account. Ask there."
-    return IdentityRefused("disabled", "Disabled here", detail, 403)
+    return IdentityRefused("disabled", message("refused.disabled.ask"), 403)
 
 
 # Asking a provider over HTTP: in bounded time, for answers of bounded length, and never on to another address.

@@ -195,10 +195,10 @@ class AlarmRegistry:
         """A person has seen the alarm that came then."""
         life = self._find(key)
         if life.aside is not None:
-            detail = f"It is {life.state}, so nobody has to acknowledge it."
-            raise _refused("alarm-set-aside", "The alarm is put aside", detail)
+            state = message(f"alarm-state.{life.state}")
+            raise CommandRefused("alarm-set-aside", message("refused.alarm-set-aside.state", state=state))
         if life.since != since:
-            raise _refused("alarm-recurred", "The alarm has come again", "Look at it, then acknowledge this one.")
+            raise CommandRefused("alarm-recurred", message("refused.alarm-recurred.look"))
         if not life.acknowledged:
             life.acknowledge(by)
             self._tell(key, life, "acknowledged")
@@ -208,9 +208,7 @@ class AlarmRegistry:
         """A person does not want to be told of it until then."""
         life = self._find(key)
         if life.aside is not None and life.aside.until is None:
-            raise _refused(
-                "alarm-set-aside", "The alarm is put aside", "It is out of service: an engineer can restore it."
-            )
+            raise CommandRefused("alarm-set-aside", message("refused.alarm-set-aside.out-of-service"))
         self._put_aside(key, life, Suppression(by, why, until), "shelved")
 
     def suppress(self, key: str, by: str, why: str) -> None:
@@ -221,30 +219,27 @@ class AlarmRegistry:
         """It is told again."""
         life = self._find(key)
         if life.aside is None or life.aside.until is None:
-            raise _refused(
-                "alarm-not-shelved", "The alarm is not shelved", f"It is {life.state}: nothing has to be done."
-            )
+            state = message(f"alarm-state.{life.state}")
+            raise CommandRefused("alarm-not-shelved", message("refused.alarm-not-shelved.state", state=state))
         self._take_back(key, life, "unshelved")
 
     def put_back(self, key: str) -> None:
         """Tell again what is out of service."""
         life = self._find(key)
         if life.aside is None or life.aside.until is not None:
-            raise _refused(
-                "alarm-in-service", "The alarm is in service", f"It is {life.state}: nothing has to be done."
-            )
+            state = message(f"alarm-state.{life.state}")
+            raise CommandRefused("alarm-in-service", message("refused.alarm-in-service.state", state=state))
         self._take_back(key, life, "put back in service")
 
     def _find(self, key: str) -> Alarm:
         life = self._lives.get(key)
         if life is None or not life.shown:
-            raise _refused("alarm-gone", "The alarm is gone", "Look at the alarms that there are now.")
+            raise CommandRefused("alarm-gone", message("refused.alarm-gone.look"))
         return life
 
     def _put_aside(self, key: str, life: Alarm, aside: Suppression, event: str) -> None:
         if life.cause.priority is Priority.HIGH:
-            detail = "One of high priority can be acknowledged, but is told as long as its cause lasts."
-            raise _refused("alarm-too-urgent", "The alarm is too urgent to be put aside", detail)
+            raise CommandRefused("alarm-too-urgent", message("refused.alarm-too-urgent.high"))
         life.aside, life.worst = aside, life.cause.priority
         self._tell(key, life, event)
 
@@ -306,7 +301,3 @@ class AlarmRegistry:
 
     def _tell(self, key: str, life: Alarm, event: str) -> None:
         self._told(key, life, event)
-
-
-def _refused(slug: str, title: str, detail: str) -> CommandRefused:
-    return CommandRefused(slug, title, detail)

@@ -20,6 +20,7 @@ from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import LONGEST_SUBJECT, Entry, Outcome
+from sequence_planner.texts.message import message
 
 # Commands and what became of them, recorded before and after their effect.
 #
@@ -68,8 +69,7 @@ class CommandAudit:
             return self.record_late(_end(entry, None, Outcome.DONE), time.time())
         number = await self._record(entry)
         if number is None:
-            detail = "What cannot be recorded is not done. See the alarms for the cause; pausing is possible."
-            raise CommandRefused("not-recorded", "The command cannot be recorded", detail, 503)
+            raise CommandRefused("not-recorded", message("refused.not-recorded.journal"), 503)
         try:
             if command.overtaken_by_pause and self._pauses != pauses:
                 raise _overtaken()
@@ -154,8 +154,7 @@ def _end(entry: Entry, number: int | None, outcome: Outcome, because: str | None
 
 
 def _overtaken() -> CommandRefused:
-    detail = "Somebody paused the station before this could be carried out. Look at the station, then try again."
-    return CommandRefused("command-overtaken", "The station was paused meanwhile", detail)
+    return CommandRefused("command-overtaken", message("refused.command-overtaken.paused"))
 
 
 def _why(error: Exception) -> str:

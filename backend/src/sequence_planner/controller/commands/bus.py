@@ -10,6 +10,7 @@ from sequence_planner.controller.commands.command import HANDLES, Command, Comma
 from sequence_planner.controller.views.part import View
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.texts.message import joined, message
 
 Handler = Callable[..., Any]
 
@@ -66,8 +67,9 @@ class CommandBus:
         """Do what is asked for, if its actor may. Raises `CommandRefused`; nothing has changed then."""
         actor = command.actor
         if actor.kind is ActorKind.DEMONSTRATION and not command.harmless and (there := list(self._real_devices())):
-            detail = f"{'; '.join(there)}. A demonstration may command emulated devices only."
-            raise CommandRefused("real-devices", "There are real devices", detail, 403)
+            raise CommandRefused(
+                "real-devices", message("refused.real-devices.demonstration", devices=joined(there)), 403
+            )
         if command.needs_control and actor.kind is not ActorKind.SYSTEM:
             self._in_control.require(actor)
         self._require_one(command.for_two)

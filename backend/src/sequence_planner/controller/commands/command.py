@@ -18,6 +18,7 @@ from sequence_planner.core.actor import Actor
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.journal.entry import LONGEST_REASON
+from sequence_planner.texts.refused import Refused
 
 LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
 
@@ -126,19 +127,19 @@ class TextPlace(BaseModel):
     message: str
 
 
-class CommandRefused(Exception):
-    """The controller does not carry out a command.
+class CommandRefused(Refused):
+    """The controller does not carry out a command. `place` is where a text cannot be read."""
 
-    `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
-    `status` is the HTTP status that says the same. `place` is where a text cannot be read.
-    """
-
-    def __init__(self, slug: str, title: str, detail: str, status: int = 409, place: TextPlace | None = None) -> None:
-        super().__init__(detail)
-        self.slug = slug
-        self.title = title
-        self.detail = detail
-        self.status = status
+    def __init__(
+        self,
+        slug: str,
+        detail: str,
+        status: int = 409,
+        *,
+        title: str | None = None,
+        place: TextPlace | None = None,
+    ) -> None:
+        super().__init__(slug, detail, status, title=title)
         self.place = place
 
 

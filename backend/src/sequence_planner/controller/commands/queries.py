@@ -18,7 +18,7 @@ from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
 
 TOLD_WITHIN = 1.0  # seconds: who watches over the station asks again soon
-ADVISED_WITHIN = 15.0  # seconds: the adviser answers one after the other
+ADVISED_WITHIN = 15.0  # seconds: the advisor answers one after the other
 LONGEST_PREDICATE = 4000  # characters
 
 Name = Annotated[str, Field(max_length=400)]

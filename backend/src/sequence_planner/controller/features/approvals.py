@@ -24,6 +24,7 @@ from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.execution.executor import Executor
+from sequence_planner.texts.message import message
 
 PATIENCE = 120.0  # seconds in which a second person has to answer
 SHOWN = 60.0  # seconds for which a request is shown that is over
@@ -69,8 +70,7 @@ class Approvals:
     def require_one(self, names: Iterable[str]) -> None:
         """Raises `CommandRefused` when a second person has to approve what is done to one of these variables."""
         if dual := self._dual(names):
-            detail = f"A second person has to approve what is done to {' and '.join(dual)}: ask for that."
-            raise CommandRefused("approval-needed", "A second person is needed", detail)
+            raise CommandRefused("approval-needed", message("refused.approval-needed.ask", variables=dual))
 
     @handles(RequestApproval)
     def ask(self, command: RequestApproval, moment: Timestamp) -> None:
@@ -78,8 +78,7 @@ class Approvals:
         self._check(command.act.command(command.actor, command.reason, command.revision))
         _require_person(command.actor)
         if not self._dual(command.act.names):
-            detail = "None of these variables asks for a second person: it can be done at once."
-            raise CommandRefused("no-approval-needed", "Nobody has to approve it", detail)
+            raise CommandRefused("no-approval-needed", message("refused.no-approval-needed.free"))
         if command.revision != self._execution.revision:
             raise _moved()
         for id_, request in self._waiting(moment).items():
@@ -96,8 +95,7 @@ class Approvals:
         _require_person(command.actor)
         request = self._answerable(command, moment)
         if request.actor.id == command.actor.id:
-            detail = "You have asked for it yourself: somebody else has to approve it."
-            raise CommandRefused("same-person", "A second person is needed", detail, 403)
+            raise CommandRefused("same-person", message("refused.same-person.yourself"), 403)
         if command.revision != request.revision:
             raise _moved()
         both = f"{request.actor.name} + {command.actor.name}"[:LONGEST_NAME]
@@ -136,11 +134,9 @@ class Approvals:
     def _answerable(self, command: ApproveRequest | DeclineRequest, moment: Timestamp) -> _Request:
         request = self._waiting(moment).get(command.request)
         if request is None:
-            detail = "Nobody waits for this any more: it was answered, took too long, or the state has moved. Ask anew."
-            raise CommandRefused("request-gone", "The request is gone", detail)
+            raise CommandRefused("request-gone", message("refused.request-gone.gone"))
         if command.act.model_dump_json() != request.act.model_dump_json():
-            detail = "What was answered is not what the request asks for. Look at it again, then answer that."
-            raise CommandRefused("not-confirmed", "Something else was confirmed", detail)
+            raise CommandRefused("not-confirmed", message("refused.not-confirmed.request"))
         return request
 
     def _waiting(self, moment: Timestamp) -> dict[str, _Request]:
@@ -177,10 +173,8 @@ class Approvals:
 
 def _require_person(actor: Actor) -> None:
     if actor.kind is not ActorKind.PERSON:
-        detail = "It takes two people who have signed in, each by their own name; a demonstration is nobody."
-        raise CommandRefused("not-a-person", "Two people are needed", detail, 403)
+        raise CommandRefused("not-a-person", message("refused.not-a-person.demonstration"), 403)
 
 
 def _moved() -> CommandRefused:
-    detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
-    return CommandRefused("stale-revision", "The state has moved", detail)
+    return CommandRefused("stale-revision", message("refused.stale-revision.looked"))

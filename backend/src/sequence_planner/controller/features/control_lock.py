@@ -11,6 +11,7 @@ from sequence_planner.controller.commands.execution import ReleaseControl, TakeC
 from sequence_planner.controller.views.part import ControlView
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.texts.message import message
 
 
 class ControlLock:
@@ -28,14 +29,12 @@ class ControlLock:
         """Let the session of the actor be in control, unless another is by now than the one from which it is taken."""
         actor = command.actor
         if actor.session is None:
-            detail = "Only a person who is signed in can take control; a key or a watch cannot."
-            raise CommandRefused("no-session", "Control is for people", detail, 403)
+            raise CommandRefused("no-session", message("refused.no-session.person"), 403)
         holder = self.holder
         if holder is not None and holder.session == actor.session:
             return
         if holder is not None and holder.session != command.over:
-            detail = f"{holder.name} has control by now. Speak to them, then take it over from them."
-            raise CommandRefused("control-changed", "Somebody else is in control", detail)
+            raise CommandRefused("control-changed", message("refused.control-changed.holder", holder=holder.name))
         self.holder = ControlView(
             session=actor.session,
             person=actor.id,
@@ -60,8 +59,6 @@ class ControlLock:
         """Raises `CommandRefused` unless the session of `actor` is in control."""
         holder = self.holder
         if holder is None:
-            detail = "Nobody is in control. Take control, then try again."
-            raise CommandRefused("control-needed", "Control is needed", detail)
+            raise CommandRefused("control-needed", message("refused.control-needed.nobody"))
         if holder.session != actor.session:
-            detail = f"{holder.name} is in control. Only who is in control can do this; take it over if you must."
-            raise CommandRefused("control-needed", "Control is needed", detail)
+            raise CommandRefused("control-needed", message("refused.control-needed.holder", holder=holder.name))

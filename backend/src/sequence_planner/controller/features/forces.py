@@ -12,11 +12,11 @@ from sequence_planner.controller.alarms.kinds import FORCED, Cause
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.views.execution import force_views
+from sequence_planner.controller.views.wording import hint_of
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.printer import print_value
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import contains
 from sequence_planner.planning.recovery_path import violated
 from sequence_planner.texts.message import message
@@ -56,13 +56,21 @@ class Forces:
         self._require_known(command.name)
         variable = self._execution.automaton.variables[command.name]
         if variable.kind not in _FORCED:
-            detail = f"`{variable.name}` is {variable.kind}, and only measured variables and outputs can be forced."
-            if variable.kind is Kind.ESTIMATED:
-                detail = f"{detail} If it is not true, correct it instead."
-            raise CommandRefused("not-forceable", "It cannot be forced", detail, 422)
+            is_estimated = variable.kind is Kind.ESTIMATED
+            id_ = "refused.not-forceable.correct" if is_estimated else "refused.not-forceable.kind"
+            detail = message(id_, name=variable.name, kind=message(f"kind.{variable.kind}"))
+            raise CommandRefused("not-forceable", detail, 422)
         if not contains(variable.type, command.value):
-            detail = f"`{variable.name}` is one of {variable.type}, and {print_value(command.value)} is none of these."
-            raise CommandRefused("not-in-domain", "No such value", detail, 422)
+            raise CommandRefused(
+                "not-in-domain",
+                message(
+                    "refused.not-in-domain.none",
+                    name=variable.name,
+                    domain=str(variable.type),
+                    value=print_value(command.value),
+                ),
+                422,
+            )
         self._require_safety(command)
 
     @handles(ForceVariable)
@@ -82,8 +90,9 @@ class Forces:
     def _require_known(self, name: str) -> None:
         known = self._execution.automaton.variables
         if name not in known:
-            detail = f"The station has no variable `{name}`{suggestion(name, known) or '.'}"
-            raise CommandRefused("unknown-variable", "There is no such variable", detail, 404)
+            raise CommandRefused(
+                "unknown-variable", message("refused.unknown-variable.name", name=name, hint=hint_of(name, known)), 404
+            )
 
     def _require_safety(self, command: ForceVariable) -> None:
         """Raises `CommandRefused` when the force would lead out of the safe states, or farther where it is outside.
@@ -96,14 +105,14 @@ class Forces:
         if not broken and not self._leaves(before, after, moving=command.name in execution.automaton.outputs):
             return
         specifications = execution.automaton.specifications
-        named = " and ".join(f"“{specifications[name].title}” ({name})" for name in broken)
         if broken:
-            why = f"It would violate {named}."
+            named = [message("unsafe.specification", title=specifications[name].title, name=name) for name in broken]
+            why = message("refused.force-unsafe.violates", specifications=named)
         elif self._certainly_outside(before):
-            why = "The station is outside its safe states, and would be so with it too."
+            why = message("refused.force-unsafe.outside")
         else:
-            why = "From there a device could bring about what is forbidden, or rest could no longer be reached."
-        raise CommandRefused("force-unsafe", "That is not safe", f"{why} Nothing was forced.")
+            why = message("refused.force-unsafe.forbidden")
+        raise CommandRefused("force-unsafe", why)
 
     def _leaves(self, before: State, after: State, *, moving: bool) -> bool:
         safe = self._execution.supervisor.safe

@@ -16,12 +16,12 @@ from sequence_planner.controller.recovery.explain import waits_for as start_wait
 from sequence_planner.controller.views.automaton_diagram import work_masters_view
 from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.controller.views.jobs import Around, job_views, waits_for
+from sequence_planner.controller.views.wording import hint_of
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.jobs import Job, JobAct, Jobs, Step, Waits
 from sequence_planner.execution.vocabulary import JobState
-from sequence_planner.language.resolver import suggestion
-from sequence_planner.texts.message import Message
+from sequence_planner.texts.message import Message, message
 
 # Jobs, as they are ordered: what is asked for is done if the station allows it now, or refused with the reason.
 
@@ -49,19 +49,27 @@ class JobHandler:
         masters = self._automaton.work_masters
         master = masters.get(command.work_master)
         if master is None:
-            hint = suggestion(command.work_master, masters) or "."
-            detail = f"The station has no work master `{command.work_master}`{hint}"
-            raise CommandRefused("unknown-work-master", "There is no such work master", detail, 404)
+            raise CommandRefused(
+                "unknown-work-master",
+                message(
+                    "refused.unknown-work-master.name",
+                    name=command.work_master,
+                    hint=hint_of(command.work_master, masters),
+                ),
+                404,
+            )
         if known is not None:
-            detail = f"Job {known.id} is one of the work master {known.work_master}. Give the new one another id."
-            raise CommandRefused("job-conflict", "There is another job of that id", detail)
+            raise CommandRefused(
+                "job-conflict", message("refused.job-conflict.id", job=known.id, master=known.work_master)
+            )
         if not self._jobs.by_order:
-            detail = "Its operations become active whenever they can. A person has to let it work by order first."
-            raise CommandRefused("not-in-job-mode", "The station works freely", detail)
+            raise CommandRefused("not-in-job-mode", message("refused.not-in-job-mode.by-order"))
         for other in self._jobs.under_way:
             if common := _in_common(master, masters[other.work_master]):
-                detail = f"Job {other.id} ({other.title}) is under way and has {_listed(common)} too. Wait for its end."
-                raise CommandRefused("job-conflict", "Another job is in the way", detail)
+                raise CommandRefused(
+                    "job-conflict",
+                    message("refused.job-conflict.common", job=other.id, title=other.title, operations=common),
+                )
         by = command.actor.name
         self._execution.accept_job(command.job, command.title, command.work_master, by, moment)
 
@@ -93,8 +101,7 @@ class JobHandler:
             TopologicalSorter({step: before | waits.get(step, frozenset()) for step, before in known.items()}).prepare()
         except CycleError as error:
             circle = " → ".join(f"{job}/{name}" for job, name in reversed(error.args[1]))
-            detail = f"Each of these would have to be completed before the next: {circle}."
-            raise CommandRefused("cyclic-order", "The order leads into a circle", detail, 422) from None
+            raise CommandRefused("cyclic-order", message("refused.cyclic-order.circle", circle=circle), 422) from None
 
     @handles(CommandJob)
     def command(self, command: CommandJob, moment: Timestamp) -> None:
@@ -102,8 +109,8 @@ class JobHandler:
         job, act, execution = self._known(command.job), JobAct(command.what), self._execution
         if not job.under_way:
             if act is JobAct.ABORT or act is JobAct.STOP:
-                raise _ended(job, "There is nothing left of it to end.")
-            raise _ended(job, "Order another one.")
+                raise _ended(job, "nothing-left")
+            raise _ended(job, "order-another")
         if self._jobs.after_act(job.id, act, execution.active, self._automaton, moment) != self._jobs:
             execution.command_job(job.id, act, command.actor.name, command.reason or "", moment)
 
@@ -114,8 +121,12 @@ class JobHandler:
         if job is None:
             return
         if job.under_way:
-            detail = f"Job {job.id} ({job.title}) is {job.state}. Abort it, or wait for its end."
-            raise CommandRefused("job-under-way", "The job has not ended", detail)
+            raise CommandRefused(
+                "job-under-way",
+                message(
+                    "refused.job-under-way.state", job=job.id, title=job.title, state=message(f"job-state.{job.state}")
+                ),
+            )
         self._execution.forget_job(job.id, command.actor.name, moment)
 
     @handles(SetByOrder)
@@ -125,8 +136,7 @@ class JobHandler:
             return
         if not command.on and (under_way := self._jobs.under_way):
             named = ", ".join(job.id for job in under_way)
-            detail = f"Jobs are under way: {named}. Wait for their end, or stop or abort them."
-            raise CommandRefused("jobs-under-way", "Jobs are under way", detail)
+            raise CommandRefused("jobs-under-way", message("refused.jobs-under-way.named", jobs=named))
         self._execution.set_by_order(command.on, command.actor.name, command.reason, moment)
 
     @answers(AboutWorkMasters)
@@ -137,26 +147,21 @@ class JobHandler:
     def _known(self, name: str) -> Job:
         job = self._jobs.get(name)
         if job is None:
-            detail = f"The station has no job `{name}`. Look at what it has."
-            raise CommandRefused("unknown-job", "There is no such job", detail, 404)
+            raise CommandRefused("unknown-job", message("refused.unknown-job.name", name=name), 404)
         return job
 
 
 def _ended(job: Job, what_to_do: str) -> CommandRefused:
-    detail = f"Job {job.id} ({job.title}) is {job.state}. {what_to_do}"
-    return CommandRefused("job-ended", "The job has ended", detail)
+    state = message(f"job-state.{job.state}")
+    return CommandRefused(
+        "job-ended", message(f"refused.job-ended.{what_to_do}", job=job.id, title=job.title, state=state)
+    )
 
 
 def _in_common(one: WorkMaster, other: WorkMaster) -> list[str]:
     """The operations that both have, and the variables that the products of both bring."""
     brought = set(map(target, one.brings)) & set(map(target, other.brings))
     return sorted((one.operations.keys() & other.operations.keys()) | brought)
-
-
-def _listed(names: list[str]) -> str:
-    """As many of them as can be read."""
-    some = ", ".join(f"`{name}`" for name in names[:3])
-    return some if len(names) <= 3 else f"{some} and {len(names) - 3} more"
 
 
 # What is shown of jobs, as far as they are durable, and what they wait for.

@@ -27,7 +27,7 @@ from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
-from sequence_planner.texts.message import Message
+from sequence_planner.texts.message import Message, joined, message
 
 
 class Modes:
@@ -109,11 +109,11 @@ class Modes:
         """Go out of restart mode, where nothing is carried out in it."""
         execution = self._execution
         if execution.mode is not Mode.RESTART:
-            detail = f"The mode is {execution.mode}: there is nothing to leave."
-            raise CommandRefused("not-in-restart", "The station is not in restart mode", detail)
+            raise CommandRefused(
+                "not-in-restart", message("refused.not-in-restart.leave", mode=message(f"mode.{execution.mode}"))
+            )
         if execution.operator_plan is not None:
-            detail = f"{execution.operator_plan.title} is being carried out. Wait for its end, or stop it."
-            raise CommandRefused("plan-running", "Something else is being carried out", detail)
+            raise plan_running(execution.operator_plan.title)
         execution.change_mode(Mode.PAUSED, command.actor.name, moment)
 
     @handles(SetStepping)
@@ -125,8 +125,7 @@ class Modes:
     def take_step(self, command: TakeStep, moment: Timestamp) -> None:
         """Let one start be taken, where starts wait for steps."""
         if not self._execution.conduct.stepping:
-            detail = "Starts do not wait for steps. Switch stepping on first."
-            raise CommandRefused("not-stepping", "The station is not stepping", detail)
+            raise CommandRefused("not-stepping", message("refused.not-stepping.starts"))
         self._execution.take_step()
 
     @handles(SetService)
@@ -141,15 +140,15 @@ class Modes:
     def start_production(self, command: StartProduction, moment: Timestamp) -> None:
         """Start it, where nobody else commands the devices and none would move at once."""
         if self._execution.production is Production.STARTED:
-            raise CommandRefused("production-started", "Production is started", "Production has been started already.")
+            raise CommandRefused("production-started", message("refused.production-started.already"))
         self._devices.see_network()
         if rivals := self._devices.network.rivals:
-            detail = f"{'; '.join(rivals.values())}. Stop the other one."
-            raise CommandRefused("other-controller", "Somebody else commands the devices", detail)
+            raise CommandRefused(
+                "other-controller", message("refused.other-controller.rivals", rivals=joined(rivals.values()))
+            )
         if undecided := self._doubting.undecided:
             named = ", ".join(undecided)
-            detail = f"Devices would move as soon as it is published what {named} said before. Decide on each first."
-            raise CommandRefused("outputs-unconfirmed", "It is not decided what devices shall do", detail)
+            raise CommandRefused("outputs-unconfirmed", message("refused.outputs-unconfirmed.named", names=named))
         self._execution.start_production()
 
     @handles(Deploy)
@@ -159,20 +158,20 @@ class Modes:
         if execution.operator_plan is not None:
             raise plan_running(execution.operator_plan.title)
         if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
-            detail = "Operations are executed automatically. Pause the station first."
-            raise CommandRefused("in-automatic", "The station is at work", detail)
+            raise CommandRefused("in-automatic", message("refused.in-automatic.pause"))
 
     def _require_readiness(self) -> None:
         """Raises `CommandRefused` unless operations can be executed from here."""
         execution, situation = self._execution, self._outside.situation
         if execution.mode is Mode.RESTART:
-            detail = "Leave restart mode first; to go on is another decision."
-            raise CommandRefused("in-restart", "The station is in restart mode", detail)
+            raise CommandRefused("in-restart", message("refused.in-restart.leave"))
         if execution.operator_plan is not None:
             raise plan_running(execution.operator_plan.title)
         if situation is not None and situation.certain:
-            detail = f"{self._outside.describe(situation)} Enter restart mode and see which ways lead back."
-            raise CommandRefused("outside-safe-states", "The station is outside its safe states", detail)
+            raise CommandRefused(
+                "outside-safe-states",
+                message("refused.outside-safe-states.ways", situation=self._outside.describe(situation)),
+            )
 
     def _require_known(self, of: ServiceKind, name: str) -> None:
         automaton = self._execution.automaton
@@ -182,5 +181,4 @@ class Modes:
             ServiceKind.OPERATION: automaton.operations,
         }[of]
         if name not in known:
-            detail = f"The station has no {of} `{name}`. Look at what it has."
-            raise CommandRefused("unknown-name", "There is no such thing", detail, 404)
+            raise CommandRefused("unknown-name", message(f"refused.unknown-name.{of}", name=name), 404)

@@ -91,16 +91,11 @@ class TaskHandler:
         id_, revision = command.task, command.revision
         task = self.open.get(id_)
         if task is None:
-            raise CommandRefused(
-                "task-gone",
-                "This task is gone",
-                f"Task {id_} is not open: it was done or withdrawn. Look at what is asked for now.",
-            )
+            raise CommandRefused("task-gone", message("refused.task-gone.id", task=id_))
         if task.revision != revision:
             raise CommandRefused(
                 "task-changed",
-                "This task has changed",
-                f"Task {id_} is at revision {task.revision}, and revision {revision} was seen. Read it again.",
+                message("refused.task-changed.revision", task=id_, revision=task.revision, seen=revision),
             )
         return task
 

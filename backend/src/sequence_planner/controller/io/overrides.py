@@ -11,12 +11,13 @@ from sequence_planner.controller.io.clients import Clients
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.io.outputs import Outputs
 from sequence_planner.controller.views.station import OverrideFieldView, OverrideView
+from sequence_planner.controller.views.wording import hint_of
 from sequence_planner.core.clock import Timestamp
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.stages.base import Override, Overriding
 from sequence_planner.model.stages.timing import Bounds, OverrideStage
 from sequence_planner.pipelines.graph import Chain, IncomingPipeline, StationPipelines
 from sequence_planner.pipelines.runtime import RunningPipelines
+from sequence_planner.texts.message import message
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,9 @@ class Overrides:
         try:
             change(known.pipeline, known.stage.name, command.fields, moment.monotonic, command.actor.name)
         except ValueError as error:
-            detail = f"{command.name}: {error}."
-            raise CommandRefused("out-of-bounds", "The value is not allowed", detail, 422) from error
+            raise CommandRefused(
+                "out-of-bounds", message("refused.out-of-bounds.why", name=command.name, why=str(error)), 422
+            ) from error
 
     @handles(ClearOverride)
     def clear(self, command: ClearOverride, moment: Timestamp) -> None:
@@ -100,8 +102,13 @@ class Overrides:
 
     def _find(self, name: str) -> _Known:
         if name not in self._known:
-            near = suggestion(name, self._known) or "; the model has none of this name"
-            raise CommandRefused("no-override", "There is no such override", f"There is no `{name}`{near}.", 404)
+            raise CommandRefused(
+                "no-override",
+                message(
+                    "refused.no-override.name", name=name, hint=hint_of(name, self._known, message("hint.none-such"))
+                ),
+                404,
+            )
         return self._known[name]
 
 

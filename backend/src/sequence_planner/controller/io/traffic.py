@@ -10,6 +10,7 @@ from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView, RecordView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.pipelines.graph import StationPipelines
+from sequence_planner.texts.message import message
 
 
 class PipelineTraffic:
@@ -35,13 +36,13 @@ class PipelineTraffic:
         pipeline = query.pipeline
         found = self._devices.traffic({pipeline}).get(pipeline)
         if found is None:
-            raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
+            raise CommandRefused("no-pipeline", message("refused.no-pipeline.name", name=pipeline), 404)
         try:
             record = record_view(found, Timestamp.now())
         except ValueError as error:
-            detail = f"The last record of `{pipeline}` is too large to be told: {error}."
-            raise CommandRefused("record-too-large", "The record is too large", detail, 422) from None
+            raise CommandRefused(
+                "record-too-large", message("refused.record-too-large.why", pipeline=pipeline, why=str(error)), 422
+            ) from None
         if record is None:
-            detail = f"Nothing has passed `{pipeline}` since the controller began. Try again when something has."
-            raise CommandRefused("no-record", "There is no record", detail, 409)
+            raise CommandRefused("no-record", message("refused.no-record.pipeline", pipeline=pipeline), 409)
         return record

@@ -23,7 +23,7 @@ from sequence_planner.synthesis.guards import SupervisorGuard
 
 def build_recovery(
     execution: Executor,
-    adviser: AdvisorClient,
+    advisor: AdvisorClient,
     beliefs: TellsBelief,
     consistency: ConsistencyMonitor,
     still: StallDetector,
@@ -48,7 +48,7 @@ def build_recovery(
             corrections.check(command)
 
     approvals = Approvals(execution, in_control, require_feasible, perform)
-    corrections = Corrections(execution, adviser.answer, beliefs, consistency, approvals.require_one)
-    offers = Offers(execution, adviser, corrections.correct, consistency.impossible, still)
-    others = (corrections, offers, Trials(execution, around, real_devices), WhyNot(execution, around, adviser))
+    corrections = Corrections(execution, advisor.answer, beliefs, consistency, approvals.require_one)
+    offers = Offers(execution, advisor, corrections.correct, consistency.impossible, still)
+    others = (corrections, offers, Trials(execution, around, real_devices), WhyNot(execution, around, advisor))
     return around, forces, approvals, others

@@ -20,14 +20,13 @@ from sequence_planner.controller.recovery.explain import TellsBelief
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.details import CorrectedView, CorrectionPreview
 from sequence_planner.controller.views.station import LastCorrectionView, SpecificationView
-from sequence_planner.controller.views.wording import correcting_refused, plan_preview, value_text
+from sequence_planner.controller.views.wording import correcting_refused, hint_of, plan_preview, value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import Heard
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.printer import print_value
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Value, contains
 from sequence_planner.planning.problem import Contract, Goal, PlanAnswer, PlanRequest, Verdict, goal_of
 from sequence_planner.planning.recovery_path import violated
@@ -36,7 +35,7 @@ from sequence_planner.texts.message import Message, message
 # What follows from a correction, found out without making it.
 
 PLANNED_WITHIN = 1.5  # seconds
-WAITING = 2.0  # seconds beyond that: the adviser may be at something else
+WAITING = 2.0  # seconds beyond that: the advisor may be at something else
 MOST_RELATED = 12
 
 _WHY_NONE = {
@@ -122,6 +121,7 @@ class Corrections:
             reason="",
             reason_message=None,
             obstacle=None if refusal is None else refusal.detail,
+            obstacle_message=None if refusal is None else refusal.detail,
         )
         goals = self._goals(active)
         if not goals:
@@ -216,18 +216,12 @@ class Corrections:
         last = self._last
         self._require_one(() if last is None else last.values)
         if last is None:
-            raise CommandRefused(
-                "nothing-to-undo",
-                "There is nothing to undo",
-                "There is no correction that could be taken back: correct what is not true once more.",
-            )
+            raise CommandRefused("nothing-to-undo", message("refused.nothing-to-undo.none"))
         self._require_allowed()
         if command.revision != last.revision:
-            detail = f"The last correction is another one by now, made by {last.by}. Look at it, then decide."
-            raise CommandRefused("stale-revision", "The state has moved", detail)
+            raise CommandRefused("stale-revision", message("refused.stale-revision.other", by=last.by))
         if not self._stayed:
-            detail = "Something that was corrected has got another value since. Look at the state and correct that."
-            raise CommandRefused("stale-revision", "The state has moved", detail)
+            raise CommandRefused("stale-revision", message("refused.stale-revision.value"))
         # Who takes it back has seen nothing: what counts is what was said before, unless work has gone on since.
         said = self._answered_before & self._execution.conduct.answers.keys()
         taken_back = frozenset(last.before) - said
@@ -252,16 +246,11 @@ class Corrections:
         execution = self._execution
         values = self._checked(command.values, Kind.OUTPUT)
         if execution.production is Production.STARTED:
-            detail = "Production has been started, so outputs are what abilities write. An engineer can force one."
-            raise CommandRefused("production-started", "Production is started", detail)
+            raise CommandRefused("production-started", message("refused.production-started.outputs"))
         if decided := sorted(values.keys() - execution.conduct.returned):
-            detail = f"Nobody has to decide on {' and '.join(decided)}."
-            raise CommandRefused("nothing-to-confirm", "There is nothing to decide", detail)
+            raise CommandRefused("nothing-to-confirm", message("refused.nothing-to-confirm.names", names=decided))
         if leaves(execution.supervisor.safe, execution.state, execution.corrected(values)):
-            detail = (
-                "With these values the station would be outside its safe states. Choose others, or several at once."
-            )
-            raise CommandRefused("output-unsafe", "That is not safe", detail)
+            raise CommandRefused("output-unsafe", message("refused.output-unsafe.outside"))
         return values
 
     def _hear(self, heard: Heard) -> None:
@@ -285,26 +274,36 @@ class Corrections:
         for name, value in values.items():
             variable = known.get(name)
             if variable is None:
-                detail = f"The station has no variable `{name}`{suggestion(name, known) or '.'}"
-                raise CommandRefused("unknown-variable", "There is no such variable", detail, 404)
+                raise CommandRefused(
+                    "unknown-variable",
+                    message("refused.unknown-variable.name", name=name, hint=hint_of(name, known)),
+                    404,
+                )
             if variable.kind is not kind:
                 raise _other_kind(name, variable.kind, kind)
             if not contains(variable.type, value):
-                detail = f"`{name}` is one of {variable.type}, and {print_value(value)} is none of these."
-                raise CommandRefused("not-in-domain", "No such value", detail, 422)
+                raise CommandRefused(
+                    "not-in-domain",
+                    message(
+                        "refused.not-in-domain.none", name=name, domain=str(variable.type), value=print_value(value)
+                    ),
+                    422,
+                )
         return dict(values)
 
 
 def _other_kind(name: str, is_: Kind, wanted: Kind) -> CommandRefused:
     if wanted is Kind.ESTIMATED:
-        detail = f"`{name}` is {is_}; only what is estimated can be corrected, as nothing else says what it is."
-        return CommandRefused("not-estimated", "It is not estimated", detail, 422)
-    return CommandRefused("not-an-output", "It is no output", f"`{name}` is {is_}, and no output.", 422)
+        return CommandRefused(
+            "not-estimated", message("refused.not-estimated.kind", name=name, kind=message(f"kind.{is_}")), 422
+        )
+    return CommandRefused(
+        "not-an-output", message("refused.not-an-output.kind", name=name, kind=message(f"kind.{is_}")), 422
+    )
 
 
 def _moved() -> CommandRefused:
-    detail = "Something has changed at the station since this was looked at. Look at it again, then decide."
-    return CommandRefused("stale-revision", "The state has moved", detail)
+    return CommandRefused("stale-revision", message("refused.stale-revision.looked"))
 
 
 def _why(reason: Message) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Plans that people may take: asked of the adviser, shown with all that they contain, and kept until the state moves.
+"""Plans that people may take: asked of the advisor, shown with all that they contain, and kept until the state moves.
 
 An offer belongs to the state it was made for. Whoever takes it repeats what it contains, as a second confirmation; as
 soon as anything has changed at the station it is refused, and has to be asked for again.
@@ -39,7 +39,8 @@ from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.problem import goals_of
 from sequence_planner.planning.recovery.manual_plans import stalled_effects
 from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest, Pairing
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest, Pairing
+from sequence_planner.texts.message import joined, message
 
 LONGER = 5.0  # seconds for advice where in less nothing was found but what a person would have to know
 MOST_KEPT = 64  # offers; older ones are gone
@@ -67,13 +68,13 @@ class Offers:
     def __init__(
         self,
         execution: Executor,
-        adviser: AdvisorClient,
+        advisor: AdvisorClient,
         correct: Callable[[CorrectEstimates, Timestamp], None],
         impossible: Callable[[], frozenset[Pairing]],
         still: StallDetector,
     ) -> None:
         self._execution = execution
-        self._adviser = adviser
+        self._advisor = advisor
         self._correct = correct
         self._impossible = impossible
         self._last_known = LastKnown(execution)
@@ -117,7 +118,7 @@ class Offers:
                 return view
         until = Timestamp.now().monotonic + deadline
         asked = replace(request, deadline=deadline, until=until)
-        advice = await self._adviser.answer(asked, deadline + WAITING)
+        advice = await self._advisor.answer(asked, deadline + WAITING)
         kept = self._keep(advice.offers, revision)
         view = AdviceView(
             revision=revision,
@@ -135,8 +136,7 @@ class Offers:
         """A plan to whatever an engineer wants to hold. Raises `CommandRefused`."""
         target = read_predicate(self._execution.automaton, query.predicate)
         if holds(target, self._execution.state):
-            detail = "It holds already: nothing has to be done for it."
-            raise CommandRefused("goal-holds", "The goal holds already", detail)
+            raise CommandRefused("goal-holds", message("refused.goal-holds.nothing"))
         return await self._offered(target, None)
 
     @answers(AskReset)
@@ -144,14 +144,15 @@ class Offers:
         """A plan to the precondition of an operation. Raises `CommandRefused`."""
         found = self._execution.automaton.operations.get(query.operation)
         if found is None:
-            detail = f"The station has no operation `{query.operation}`. Look at those it has."
-            raise CommandRefused("unknown-operation", "There is no such operation", detail, 404)
+            raise CommandRefused(
+                "unknown-operation", message("refused.unknown-operation.those", name=query.operation), 404
+            )
         return await self._offered(found.precondition, query.operation)
 
     async def _offered(self, target: Expression, operation: str | None) -> OfferView:
         self._require_no_operator_plan()
         execution, revision = self._execution, self._execution.revision
-        request = ErrandRequest(
+        request = GoalPlanRequest(
             state=execution.state,
             goals=hopeful_goals(execution),
             violated=violated_goals(execution),
@@ -161,7 +162,7 @@ class Offers:
             stalled=self._stalled(),
             deadline=AIMED_WITHIN,
         )
-        aimed = await aim(self._adviser, request)
+        aimed = await aim(self._advisor, request)
         if aimed.offer is None:
             raise _no_plan(aimed, self._unused)
         (view,) = self._keep((aimed.offer,), revision)
@@ -172,11 +173,10 @@ class Offers:
         """Make the corrections of an offer and have its plan carried out."""
         kept = self._kept.get(command.offer)
         if kept is None:
-            raise CommandRefused("proposal-gone", "The offer is gone", "Ask again what there is to do now.")
+            raise CommandRefused("proposal-gone", message("refused.proposal-gone.ask"))
         offer, execution = kept.offer, self._execution
         if execution.revision != kept.revision:
-            detail = "Something has changed at the station since this was offered. Ask again what there is to do now."
-            raise CommandRefused("stale-revision", "The state has moved", detail)
+            raise CommandRefused("stale-revision", message("refused.stale-revision.offered"))
         if (refusal := refusal_of(offer, execution)) is not None:
             raise refusal
         _require_confirmation(offer, command)
@@ -186,16 +186,16 @@ class Offers:
                 actor=command.actor, reason=command.reason, values=values, revision=kept.revision
             )
             self._correct(correcting, moment)
-        if offer.errand is not None:
+        if offer.operator_plan is not None:
             execution.start_operator_plan(self._operator_plan(offer, command, moment), moment)
 
     def _operator_plan(self, offer: RecoveryProposal, command: ExecuteOperatorPlan, moment: Timestamp) -> OperatorPlan:
-        assert offer.errand is not None
+        assert offer.operator_plan is not None
         kind = {OfferKind.RESET: OperatorPlanKind.RESET, OfferKind.GOAL: OperatorPlanKind.GOAL}
         return OperatorPlan(
             kind=kind.get(offer.kind, OperatorPlanKind.WAY_BACK),
             title=offer_title(self._execution.automaton, offer),
-            plan=offer.errand,
+            plan=offer.operator_plan,
             goal=offer.goal,
             restart=offer.restart or offer.unsupervised,
             unsupervised=offer.unsupervised,
@@ -261,24 +261,18 @@ def violated_goals(execution: Executor) -> Goals:
 
 def _no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
     """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
-    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
-    because = "; ".join(member for member in members if member != f"the goal {GOAL}")
-    if because:
-        detail = f"There is no plan as long as all of this is so: {because}."
-    elif aimed.proven:
-        detail = "There is no plan at all from the present state: that is proven."
-    else:
-        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
-    return CommandRefused("no-plan", "There is no plan", detail)
+    members = () if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).member_messages
+    if because := [member for member in members if member != message("member.goal", name=GOAL)]:
+        return CommandRefused("no-plan", message("refused.no-plan.because", because=joined(because)))
+    return CommandRefused("no-plan", message("refused.no-plan.proven" if aimed.proven else "refused.no-plan.not-found"))
 
 
 def _require_confirmation(offer: RecoveryProposal, command: ExecuteOperatorPlan) -> None:
     """Raises `CommandRefused` unless the command repeats what the offer contains."""
-    starts = [] if offer.errand is None else [name for _, name in offer.errand.starts]
+    starts = [] if offer.operator_plan is None else [name for _, name in offer.operator_plan.starts]
     corrections = {change.name: change.new for change in offer.corrections}
     if command.starts != starts or not _same(command.corrections, corrections):
-        detail = "What was confirmed is not what the offer contains. Look at the offer again, then confirm that."
-        raise CommandRefused("not-confirmed", "Something else was confirmed", detail)
+        raise CommandRefused("not-confirmed", message("refused.not-confirmed.offer"))
 
 
 def _same(one: Mapping[str, object], other: Mapping[str, object]) -> bool:

@@ -20,7 +20,7 @@ from sequence_planner.execution.events import Heard, OperatorPlanStarted, Ticked
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import LastOperatorPlan, OperatorPlan
 from sequence_planner.execution.vocabulary import Mode, Production
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import Message, joined, message
 
 # What has come of the last trial of an ability: its run from the start to the end, and the reactions of its device.
 
@@ -132,8 +132,7 @@ class Trials:
         if (refusal := self.refusal(ability)) is not None:
             raise refusal
         if not command.real_devices and (there := self.real_devices()):
-            detail = f"{'; '.join(there)}. Confirm that real devices may move."
-            raise CommandRefused("real-devices", "There are real devices", detail)
+            raise CommandRefused("real-devices", message("refused.real-devices.confirm", devices=joined(there)))
         title = message("offer.try", ability=ability.title)
         trial = OperatorPlan.trial(ability, title, command.actor.name, command.reason or "", moment)
         self._execution.start_operator_plan(trial, moment)
@@ -148,6 +147,7 @@ class Trials:
             **dict(drawing.of(ability)),
             revision=execution.revision,
             obstacle=None if refusal is None else refusal.detail,
+            obstacle_message=None if refusal is None else refusal.detail,
             real_devices=list(self.real_devices()),
             trial=None if trial is None or trial.ability is not ability else _trial(trial),
         )
@@ -155,8 +155,7 @@ class Trials:
     def _find(self, name: str) -> Ability:
         ability = self._execution.automaton.abilities.get(name)
         if ability is None:
-            detail = f"The station has no ability `{name}`. Look at those it has."
-            raise CommandRefused("unknown-ability", "There is no such ability", detail, 404)
+            raise CommandRefused("unknown-ability", message("refused.unknown-ability.those", name=name), 404)
         return ability
 
     def refusal(self, ability: Ability) -> CommandRefused | None:
@@ -165,14 +164,16 @@ class Trials:
         if execution.operator_plan is not None:
             return plan_running(execution.operator_plan.title)
         if execution.production is not Production.STARTED:
-            detail = "No command is sent before production is started. Pause, then start production, then try it."
-            return CommandRefused("production-not-started", "Production waits", detail)
+            return CommandRefused("production-not-started", message("refused.production-not-started.try"))
         if execution.mode is not Mode.PAUSED:
-            detail = f"The mode is {execution.mode}: an ability is tried while the station is paused. Pause it first."
-            return CommandRefused("wrong-mode", "The mode is another one", detail)
+            return CommandRefused(
+                "wrong-mode", message("refused.wrong-mode.try", mode=message(f"mode.{execution.mode}"))
+            )
         if lacking := list(dict.fromkeys(self._lacking(ability))):
-            detail = f"{ability.title} waits for {'; '.join(lacking)}."
-            return CommandRefused("not-startable", "It may not start now", detail)
+            return CommandRefused(
+                "not-startable",
+                message("refused.not-startable.waits", ability=ability.title, conditions=joined(lacking)),
+            )
         return None
 
     def _lacking(self, ability: Ability) -> Iterator[Message]:

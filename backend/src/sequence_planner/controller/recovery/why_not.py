@@ -30,17 +30,17 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import Expression, Not, conjunction
-from sequence_planner.planning.recovery.request import ErrandRequest
+from sequence_planner.planning.recovery.request import GoalPlanRequest
 from sequence_planner.texts.message import Message, message, quoted
 
 
 class WhyNot:
     """Answers about `execution`. Used from one event loop."""
 
-    def __init__(self, execution: Executor, surroundings: ConditionContext, adviser: AdvisorClient) -> None:
+    def __init__(self, execution: Executor, surroundings: ConditionContext, advisor: AdvisorClient) -> None:
         self._execution = execution
         self._around = surroundings
-        self._adviser = adviser
+        self._advisor = advisor
         self._involving = Involving(execution, surroundings)
 
     @answers(AskAbilityBlockers)
@@ -164,7 +164,7 @@ class WhyNot:
         if not found:
             return self._view("goal", text, title, message("blocked.holds"), [])
         view = self._view("goal", text, title, _summary(found), found)
-        request = ErrandRequest(
+        request = GoalPlanRequest(
             state=execution.state,
             goals=(),
             target=goal,
@@ -172,11 +172,11 @@ class WhyNot:
             deadline=AIMED_WITHIN,
         )
         try:
-            aimed = await aim(self._adviser, request)
+            aimed = await aim(self._advisor, request)
         except CommandRefused as refused:
             return _more(view, message("blocked.unknown", why=refused.detail))
-        if aimed.offer is not None and aimed.offer.errand is not None:
-            plan = plan_preview(execution.automaton, aimed.offer.errand)
+        if aimed.offer is not None and aimed.offer.operator_plan is not None:
+            plan = plan_preview(execution.automaton, aimed.offer.operator_plan)
             return _more(view, message("blocked.reached", starts=len(plan.steps)), plan=plan)
         if aimed.proven:
             answers = execution.conduct.answers
@@ -221,5 +221,4 @@ def _more(view: WhyNotView, text: Message, **found: object) -> WhyNotView:
 
 
 def _unknown(kind: str, name: str) -> CommandRefused:
-    detail = f"The station has no {kind} `{name}`. Look at what it has."
-    return CommandRefused(f"unknown-{kind}", f"There is no such {kind}", detail, 404)
+    return CommandRefused(f"unknown-{kind}", message(f"refused.unknown-{kind}.those", name=name), 404)

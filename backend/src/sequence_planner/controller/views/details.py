@@ -49,6 +49,7 @@ class CorrectionPreview(View):
     reason: str
     reason_message: Message | None
     obstacle: str | None
+    obstacle_message: Message | None
 
 
 # How an ability is defined, and what of that holds in a state, most often that of the live station.
@@ -196,6 +197,7 @@ class AbilityDefinitionView(AutomatonView):
 
     revision: int
     obstacle: str | None
+    obstacle_message: Message | None
     real_devices: list[str]
     trial: TrialView | None
 

@@ -83,19 +83,19 @@ def standing(execution: Executor, outside: bool, silent: Collection[str]) -> Sta
 
 def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
     """Return what is carried out now."""
-    errand = execution.operator_plan
-    if errand is None:
+    plan = execution.operator_plan
+    if plan is None:
         return None
     return OperatorPlanView(
-        kind=errand.kind,
-        title=errand.title,
-        title_message=title_text(errand.title),
-        by=errand.by,
-        why=errand.why,
-        since=errand.taken.epoch,
-        ends=end_text(errand.goal, errand.into_safe),
-        into_safe=errand.into_safe,
-        ability=errand.ability,
+        kind=plan.kind,
+        title=plan.title,
+        title_message=title_text(plan.title),
+        by=plan.by,
+        why=plan.why,
+        since=plan.taken.epoch,
+        ends=end_text(plan.goal, plan.into_safe),
+        into_safe=plan.into_safe,
+        ability=plan.ability,
     )
 
 

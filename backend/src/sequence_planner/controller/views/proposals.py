@@ -93,6 +93,7 @@ class OfferView(View):
     only_if_checked: bool
     effort: EffortView
     obstacle: str | None
+    obstacle_message: Message | None
 
 
 class AdviceView(View):

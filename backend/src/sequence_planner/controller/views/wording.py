@@ -19,19 +19,19 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.resolver import NameScope, resolve_predicate, suggestion
 from sequence_planner.language.syntax import TRUE, Comparison, Constant, Expression, ExpressionError, Not, Variable
 from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
 from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal, ValueChange
-from sequence_planner.texts.message import Message, as_it_was, message
+from sequence_planner.texts.message import Argument, Message, as_it_was, message
 
 # Offers in the words of the people they are shown to.
 
 
 def offer_view(
-    automaton: Automaton, offer: RecoveryProposal, id_: str, revision: int, obstacle: str | None
+    automaton: Automaton, offer: RecoveryProposal, id_: str, revision: int, obstacle: Message | None
 ) -> OfferView:
     """An offer as it is shown."""
     return OfferView(
@@ -45,8 +45,8 @@ def offer_view(
         in_service=list(offer.in_service),
         assumed=_changes(offer.assumed),
         corrections=_changes(offer.corrections),
-        errand=None if offer.errand is None else plan_preview(automaton, offer.errand),
-        ends=None if offer.errand is None else end_text(offer.goal, offer.into_safe),
+        errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan),
+        ends=None if offer.operator_plan is None else end_text(offer.goal, offer.into_safe),
         into_safe=offer.into_safe,
         operation=offer.operation,
         needs_restart=needs_restart(offer),
@@ -68,6 +68,7 @@ def offer_view(
             seconds=offer.effort.seconds,
         ),
         obstacle=obstacle,
+        obstacle_message=obstacle,
     )
 
 
@@ -79,7 +80,12 @@ def end_text(goal: Expression, into_safe: bool) -> str | None:
 def needs_restart(offer: RecoveryProposal) -> bool:
     """Return whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
     ordinary = offer.kind in (OfferKind.GOAL, OfferKind.RESET)
-    return offer.restart or offer.unsupervised or bool(offer.corrections) or (offer.errand is not None and not ordinary)
+    return (
+        offer.restart
+        or offer.unsupervised
+        or bool(offer.corrections)
+        or (offer.operator_plan is not None and not ordinary)
+    )
 
 
 def offer_title(automaton: Automaton, offer: RecoveryProposal) -> Message:
@@ -128,9 +134,9 @@ def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
         yield message("offer.reset", operation=automaton.operations[offer.operation].title)
     elif offer.kind is OfferKind.GOAL:
         yield message("offer.goal", goal=print_expression(offer.goal))
-    elif offer.errand is not None and offer.errand.starts:
-        yield message("offer.start", titles=[automaton.abilities[name].title for _, name in offer.errand.starts])
-    elif offer.errand is not None:
+    elif offer.operator_plan is not None and offer.operator_plan.starts:
+        yield message("offer.start", titles=[automaton.abilities[name].title for _, name in offer.operator_plan.starts])
+    elif offer.operator_plan is not None:
         safe = [message("offer.safe")] if offer.into_safe else []
         condition = end_text(offer.goal, offer.into_safe)
         yield message("offer.wait", conditions=[*safe, *([condition] if condition else [])])
@@ -209,16 +215,13 @@ def refusal_of(offer: RecoveryProposal, execution: Executor) -> CommandRefused |
     if execution.operator_plan is not None:
         return plan_running(execution.operator_plan.title)
     if offer.physical or offer.online or offer.in_service:
-        detail = "Something has to be done at the station first. Do that, then ask again."
-        return CommandRefused("manual-step-required", "Something has to be done first", detail)
-    if offer.errand is None:
+        return CommandRefused("manual-step-required", message("refused.manual-step-required.station"))
+    if offer.operator_plan is None:
         if offer.corrections:
             return correcting_refused(execution)
-        detail = "Nothing has to be carried out. Leave restart mode if the station is in it, and go on."
-        return CommandRefused("nothing-to-execute", "There is nothing to take", detail)
+        return CommandRefused("nothing-to-execute", message("refused.nothing-to-execute.restart"))
     if execution.production is not Production.STARTED:
-        detail = "Production has not been started, so nothing can be. Start production, then ask again."
-        return CommandRefused("production-not-started", "Production waits", detail)
+        return CommandRefused("production-not-started", message("refused.production-not-started.offer"))
     return _wrong_mode(offer, execution.mode)
 
 
@@ -227,25 +230,20 @@ def correcting_refused(execution: Executor) -> CommandRefused | None:
     if execution.operator_plan is not None:
         return plan_running(execution.operator_plan.title)
     if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
-        detail = "Corrections are made in restart mode, or before production is started. Enter restart mode first."
-        return CommandRefused("not-in-restart", "The mode is another one", detail)
+        return CommandRefused("not-in-restart", message("refused.not-in-restart.correct"))
     return None
 
 
 def _wrong_mode(offer: RecoveryProposal, mode: Mode) -> CommandRefused | None:
     if mode is Mode.RESTART or (mode is Mode.PAUSED and not needs_restart(offer)):
         return None
-    if needs_restart(offer):
-        detail = f"The mode is {mode}, and this takes restart mode. Enter it, then ask again."
-    else:
-        detail = f"The mode is {mode}, and this takes the paused mode, or restart. Pause, then ask again."
-    return CommandRefused("wrong-mode", "The mode is another one", detail)
+    id_ = "refused.wrong-mode.restart" if needs_restart(offer) else "refused.wrong-mode.paused"
+    return CommandRefused("wrong-mode", message(id_, mode=message(f"mode.{mode}")))
 
 
 def plan_running(title: str) -> CommandRefused:
     """Nothing is offered beside an operator plan: the state moves with it."""
-    detail = f"{title} is being carried out. Wait for its end, or stop it."
-    return CommandRefused("plan-running", "Something else is being carried out", detail)
+    return CommandRefused("plan-running", message("refused.plan-running.title", title=title_text(title)))
 
 
 # Predicates that come with a request, in the model's language.
@@ -257,10 +255,13 @@ def read_predicate(automaton: Automaton, text: str) -> Expression:
         return resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary))
     except ExpressionError as error:
         start, end = error.span
-        words = f"character {start + 1}" + (f", `{text[start:end]}`" if text[start:end].strip() else "")
-        detail = f"{words}: {error.message}"
         place = TextPlace(start=start, end=end, message=error.message)
-        raise CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422, place) from None
+        said: dict[str, Argument] = {"character": start + 1, "why": as_it_was(error.message)}
+        if text[start:end].strip():
+            detail = message("refused.bad-predicate.text", text=text[start:end], **said)
+        else:
+            detail = message("refused.bad-predicate.at", **said)
+        raise CommandRefused("bad-predicate", detail, 422, place=place) from None
 
 
 # That a variable has a value, in the model's language.
@@ -272,3 +273,8 @@ def value_text(automaton: Automaton, name: str, value: Value) -> str:
     if isinstance(value, bool):
         return print_expression(variable if value else Not(variable))
     return print_expression(Comparison("==", variable, Constant(value)))
+
+
+def hint_of(word: str, known: Iterable[str], otherwise: str = ".") -> Message:
+    """Return how a sentence ends that says that there is no such name: with the nearest that is known."""
+    return as_it_was(suggestion(word, known) or otherwise, "hint.")

@@ -66,7 +66,11 @@ def transfer(
     ways: list[list[str]] = []
     if not safe:
         advice = Advisor(automaton, supervisor).advise(AdviceRequest(state, (), deadline=ADVISING))
-        ways = [[name for _, name in offer.errand.starts] for offer in advice.offers if offer.errand is not None]
+        ways = [
+            [name for _, name in offer.operator_plan.starts]
+            for offer in advice.offers
+            if offer.operator_plan is not None
+        ]
     return TransferView(
         legal=safe and not under_way,
         changes=changes,

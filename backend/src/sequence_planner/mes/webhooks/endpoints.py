@@ -25,6 +25,7 @@ from sequence_planner.mes import events
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.order import OrderRefused
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
+from sequence_planner.texts.message import message
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.ciphers.aead import AESGCM
@@ -181,8 +182,7 @@ def make(
     `IdentityRefused` (`invalid-name`, 422).
     """
     if (connection.execute(select(func.count()).select_from(WEBHOOKS)).scalar_one()) >= MOST_WEBHOOKS:
-        detail = f"There are {MOST_WEBHOOKS} webhooks. Delete one that is not needed."
-        raise OrderRefused("too-many-webhooks", "There are too many webhooks", detail)
+        raise OrderRefused("too-many-webhooks", message("refused.too-many-webhooks.most", most=MOST_WEBHOOKS))
     if after is not None:
         events.require_kept(connection, after)
     id, secret, last = new_id(), new_secret(), events.last(connection)
@@ -209,9 +209,7 @@ def get(connection: Connection, id: str) -> Webhook:
     """The webhook with this id. Raises `OrderRefused` (`no-webhook`, 404)."""
     row = connection.execute(select(WEBHOOKS).where(WEBHOOKS.c.id == id)).mappings().first() if is_id(id) else None
     if row is None:
-        raise OrderRefused(
-            "no-webhook", "No such webhook", "There is no webhook with this id. Look at those that there are.", 404
-        )
+        raise OrderRefused("no-webhook", message("refused.no-webhook.id"), 404)
     return _webhook(row, _counts(connection))
 
 

@@ -17,7 +17,7 @@ from sequence_planner.planning.recovery.consultation import RecoverySearch, Warm
 from sequence_planner.planning.recovery.manual_plans import Stall, only_written, stalling, stalls, written_by
 from sequence_planner.planning.recovery.proposals import Advice, Changes, OfferKind, Options, RecoveryProposal
 from sequence_planner.planning.recovery.prover import Prover
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest, RecoverySituation
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest, RecoverySituation
 from sequence_planner.planning.recovery.search import MOST_OFFERS, FewestActs, beginnings
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.planning.validation.replay import missing
@@ -82,7 +82,7 @@ class Advisor:
             fewest = FewestActs(consultation, self._changes, request.impossible, self._most)
             yield from fewest.likely(acts)
             yield from consultation.without_some()
-            yield from consultation.by_errands()
+            yield from consultation.by_manual_plans()
             yield from consultation.by_resets()
             yield from fewest.offers(acts)
             if not consultation.helped:
@@ -91,8 +91,8 @@ class Advisor:
         offers = self._gathered(consultation, search())
         return self._advice(consultation, offers, here, budget, began)
 
-    def errand(self, request: ErrandRequest, budget: Budget | None = None) -> Advice:
-        """The errand that is asked for, if there is one, with a plan from its end where that was found."""
+    def goal_plan(self, request: GoalPlanRequest, budget: Budget | None = None) -> Advice:
+        """The manual plan that is asked for, if there is one, with a plan from its end where that was found."""
         began = time.monotonic()
         budget = budget or Budget.seconds(request.deadline)
         here = self._situation(request)
@@ -101,15 +101,15 @@ class Advisor:
         kind = OfferKind.GOAL if request.operation is None else OfferKind.RESET
 
         def search() -> Iterator[RecoveryProposal]:
-            for errand in consultation.asked(request.target, request.operation, request.circumstances.restart):
+            for manual in consultation.asked(request.target, request.operation, request.circumstances.restart):
                 then = None
                 try:
-                    then = consultation.find(errand.end.production()).plan
+                    then = consultation.find(manual.end.production()).plan
                 except SpentError:
                     consultation.undecided = True
-                left_out = errand.end.goals if then is None else ()
+                left_out = manual.end.goals if then is None else ()
                 yield consultation.making.offer(
-                    kind, errand.end, then, errand=errand, operation=request.operation, left_out=left_out
+                    kind, manual.end, then, manual=manual, operation=request.operation, left_out=left_out
                 )
 
         offers = self._gathered(consultation, search())
@@ -138,7 +138,7 @@ class Advisor:
         ranked = tuple(sorted(offers, key=lambda offer: offer.rank))
         return Advice(ranked, reasons, not consultation.undecided, time.monotonic() - began)
 
-    def _situation(self, request: AdviceRequest | ErrandRequest) -> RecoverySituation:
+    def _situation(self, request: AdviceRequest | GoalPlanRequest) -> RecoverySituation:
         state = synchronise(self._automaton, request.state)
         circumstances = replace(request.circumstances, restart=False)
         return RecoverySituation(state, missing(request.goals, state), circumstances, request.longest)

@@ -11,7 +11,7 @@ from sequence_planner.planning.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.portfolio.engine import PlanningTask
 from sequence_planner.planning.problem import Goal, Plan, PlanAnswer, PlanRequest
-from sequence_planner.planning.recovery.manual_plans import Errands, ManualPlan
+from sequence_planner.planning.recovery.manual_plans import ManualPlan, ManualPlanner
 from sequence_planner.planning.recovery.proposal_builder import Making
 from sequence_planner.planning.recovery.proposals import (
     Acts,
@@ -22,7 +22,7 @@ from sequence_planner.planning.recovery.proposals import (
     RecoveryProposal,
 )
 from sequence_planner.planning.recovery.prover import ProofFinding, Prover
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest, RecoverySituation
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest, RecoverySituation
 from sequence_planner.planning.recovery_path import WaysBack
 from sequence_planner.planning.sat.search import SearchTimeoutError
 from sequence_planner.planning.validation.replay import missing
@@ -47,12 +47,12 @@ class WarmStation(Immutable):
 
 
 class _DeadEnd(Immutable):
-    """An errand from whose end there is no plan for all goals."""
+    """A manual plan from whose end there is no plan for all goals."""
 
     kind: OfferKind
     end: RecoverySituation
     acts: Acts
-    errand: ManualPlan
+    manual: ManualPlan
     operation: str | None
 
 
@@ -82,7 +82,7 @@ class RecoverySearch:
         self._violated = violated
         self.budget = budget
         self._ways = station.ways
-        self._errands = Errands(station.prover, station.ways, self.find, lambda: self.budget)
+        self._manual_planner = ManualPlanner(station.prover, station.ways, self.find, lambda: self.budget)
         self._dead_ends: list[_DeadEnd] = []
         self._operations = station.prover.automaton.operations
 
@@ -127,14 +127,14 @@ class RecoverySearch:
             if some is not None and some[2].goals:
                 yield self.making.offer(OfferKind.REPLAN, self.here, some[0], left_out=some[1])
 
-    def by_errands(self) -> Iterator[RecoveryProposal]:
-        """Errands without changes: back into the safe states, to rest, or by restart abilities."""
+    def by_manual_plans(self) -> Iterator[RecoveryProposal]:
+        """Manual plans without changes: back into the safe states, to rest, or by restart abilities."""
         kind = OfferKind.RESTART if self.prover.is_safe(self.here.state) else OfferKind.WAY_BACK
-        yield from self.concluded(kind, self._errands_from(self.here), ())
+        yield from self.concluded(kind, self._manual_plans_from(self.here), ())
 
-    def by_errands_after(self, acts: Acts, after: RecoverySituation) -> Iterator[RecoveryProposal]:
+    def by_manual_plans_after(self, acts: Acts, after: RecoverySituation) -> Iterator[RecoveryProposal]:
         """The same after what a person has changed."""
-        yield from self.concluded(OfferKind.COMBINED, self._errands_from(after), acts)
+        yield from self.concluded(OfferKind.COMBINED, self._manual_plans_from(after), acts)
 
     def by_resets(self) -> Iterator[RecoveryProposal]:
         """Operations begin anew: their preconditions are brought about again."""
@@ -142,11 +142,11 @@ class RecoverySearch:
             if (operation := self._operations.get(goal.name)) is not None:
                 again = not holds(operation.precondition, self.here.state)
                 if again or goal in self._violated or (goal.local != TRUE and goal.at != 0):
-                    errands = self.asked(operation.precondition, goal.name)
-                    yield from self.concluded(OfferKind.RESET, errands, (), goal.name)
+                    manual_plans = self.asked(operation.precondition, goal.name)
+                    yield from self.concluded(OfferKind.RESET, manual_plans, (), goal.name)
 
     def asked(self, target: Expression, operation: str | None, restart: bool = True) -> Iterator[ManualPlan]:
-        """The errand to `target`, from outside the safe states after the way into them.
+        """The manual plan to `target`, from outside the safe states after the way into them.
 
         While an operation is reset nothing is asked of it, and then its formula begins anew.
         """
@@ -156,39 +156,39 @@ class RecoverySearch:
         way = None if self.prover.is_safe(other.state) else self._way(other)
         if way is None and not self.prover.is_safe(other.state):
             return
-        errand = self._errands.to(other if way is None else way.end, target, restart)
-        if errand is not None and way is not None:
-            errand = self._errands.joined(other, way, errand)
-        if errand is not None:
-            end = errand.end
+        manual = self._manual_planner.to(other if way is None else way.end, target, restart)
+        if manual is not None and way is not None:
+            manual = self._manual_planner.joined(other, way, manual)
+        if manual is not None:
+            end = manual.end
             goals = missing((*end.goals, *begun), end.state)
             ordered = [goal.name for goal in all_goals]
             yield replace(
-                errand, end=replace(end, goals=tuple(sorted(goals, key=lambda goal: ordered.index(goal.name))))
+                manual, end=replace(end, goals=tuple(sorted(goals, key=lambda goal: ordered.index(goal.name))))
             )
 
     def concluded(
-        self, kind: OfferKind, errands: Iterator[ManualPlan], acts: Acts, operation: str | None = None
+        self, kind: OfferKind, manual_plans: Iterator[ManualPlan], acts: Acts, operation: str | None = None
     ) -> Iterator[RecoveryProposal]:
-        """Offers of those errands from whose end there is a plan for all goals."""
+        """Offers of those manual plans from whose end there is a plan for all goals."""
         seen: set[object] = set()
-        for errand in errands:
-            if errand.ticks not in seen:
-                seen.add(errand.ticks)
-                then = self._then(errand)
+        for manual in manual_plans:
+            if manual.ticks not in seen:
+                seen.add(manual.ticks)
+                then = self._then(manual)
                 if then is None:
-                    self._dead_ends.append(_DeadEnd(kind, errand.end, acts, errand, operation))
+                    self._dead_ends.append(_DeadEnd(kind, manual.end, acts, manual, operation))
                 else:
                     self.has_helped()
-                    yield self.making.offer(kind, errand.end, then, acts, errand, operation)
+                    yield self.making.offer(kind, manual.end, then, acts, manual, operation)
 
     def without_goals(self) -> Iterator[RecoveryProposal]:
-        """Yield, for where nothing else helps, errands after which some goals are given up."""
+        """Yield, for where nothing else helps, manual plans after which some goals are given up."""
         for dead in self._dead_ends:
             some = self.some(dead.end)
-            if some is not None and (some[2].goals or dead.errand.walk.unsupervised or self._was_outside):
+            if some is not None and (some[2].goals or dead.manual.walk.unsupervised or self._was_outside):
                 then, left_out, _ = some
-                yield self.making.offer(dead.kind, dead.end, then, dead.acts, dead.errand, dead.operation, left_out)
+                yield self.making.offer(dead.kind, dead.end, then, dead.acts, dead.manual, dead.operation, left_out)
 
     @property
     def _was_outside(self) -> bool:
@@ -205,34 +205,34 @@ class RecoverySearch:
                 return plan, tuple(left_out), here
         return None
 
-    def _then(self, errand: ManualPlan) -> Plan | None:
-        task = errand.end.production()
-        if errand.rest is not None and task.goals and self.prover.accepts(task, errand.rest):
-            return errand.rest
+    def _then(self, manual: ManualPlan) -> Plan | None:
+        task = manual.end.production()
+        if manual.rest is not None and task.goals and self.prover.accepts(task, manual.rest):
+            return manual.rest
         return self.find(task).plan
 
-    def _errands_from(self, here: RecoverySituation) -> Iterator[ManualPlan]:
+    def _manual_plans_from(self, here: RecoverySituation) -> Iterator[ManualPlan]:
         if self.prover.is_safe(here.state):
-            for errand in self._errands.startable(here):
-                if not self.goes_on or self.making.restarts(errand.ticks):
-                    yield errand
+            for manual in self._manual_planner.startable(here):
+                if not self.goes_on or self.making.restarts(manual.ticks):
+                    yield manual
             if not self.goes_on:
-                rest = self._errands.to_rest(here)
+                rest = self._manual_planner.to_rest(here)
                 if rest is not None:
                     yield rest
-                yield from self._errands.onwards(here)
+                yield from self._manual_planner.onwards(here)
         elif (way := self._way(here)) is not None:
             dead = len(self._dead_ends)
             yield way
             if len(self._dead_ends) > dead:
-                for further in self._errands_from(way.end):
-                    if (both := self._errands.joined(here, way, further)) is not None:
+                for further in self._manual_plans_from(way.end):
+                    if (both := self._manual_planner.joined(here, way, further)) is not None:
                         yield both
 
     def _way(self, here: RecoverySituation) -> ManualPlan | None:
         self.budget.require()
         try:
-            return self._errands.into_safe(here, _WAY)
+            return self._manual_planner.into_safe(here, _WAY)
         except (SearchTimeoutError, SpentError):
             self.undecided = True
             return None
@@ -240,5 +240,5 @@ class RecoverySearch:
 
 # All that the advisor's process can be asked, and what it answers.
 
-Request = AdviceRequest | ErrandRequest | PlanRequest | DiagnosisRequest
+Request = AdviceRequest | GoalPlanRequest | PlanRequest | DiagnosisRequest
 Answer = Advice | PlanAnswer | Diagnosis

@@ -95,7 +95,7 @@ def _stall(automaton: Automaton, state: State, effect: Effect) -> Stall:
     return Stall(effect.name, tuple((name, value) for name in sorted(local) if (value := state[name]) is not None))
 
 
-# Errands held against the reference tick, step by step and by everything that is demanded of them.
+# Manual plans held against the reference tick, step by step and by everything that is demanded of them.
 
 _UNSUPERVISED = Supervisor(StateSet((), ()), {})
 
@@ -108,7 +108,7 @@ class Stop(Immutable):
 
 
 class Walk(Immutable):
-    """The stops of an errand, one for each tick, and the specifications that it violates though they were not before.
+    """The stops of a manual plan, one for each tick, and the specifications that it alone violates.
 
     `unsupervised` says that it starts something outside the safe states.
     """
@@ -178,11 +178,11 @@ def _barred(begin: RecoverySituation, ability: Ability) -> bool:
     return ability.resource in begin.circumstances.offline or ability.name in begin.circumstances.barred
 
 
-# Errands in restart mode: to where production can go on, to rest, to a precondition, and into the safe states.
+# Manual plans in restart mode: to where production can go on, to rest, to a precondition, and into the safe states.
 
 _TIGHTENING = 0.1  # of the time that is left
 
-GOAL = "errand"  # the name of an errand's goal
+GOAL = "errand"  # the name of a manual plan's goal
 
 Find = Callable[[PlanningTask], ProofFinding]
 
@@ -202,8 +202,8 @@ class ManualPlan(Immutable):
     into_safe: bool = False
 
 
-class Errands:
-    """Makes errands by plans that `find` finds, and ways into the safe states, within what `budget` is by then."""
+class ManualPlanner:
+    """Makes manual plans by plans that `find` finds, and ways into the safe states, within what `budget` is by then."""
 
     def __init__(self, prover: Prover, ways: WaysBack, find: Find, budget: Callable[[], Budget]) -> None:
         self._prover = prover
@@ -217,8 +217,8 @@ class Errands:
         for ability in self._automaton.abilities.values():
             if ability.restart and not _absent(here, ability) and start_guard_holds(ability, here.state):
                 written = writes(ability.start_actions, here.state)
-                if written is not None and (errand := self.to(here, self._done((ability,), written))) is not None:
-                    yield errand
+                if written is not None and (manual := self.to(here, self._done((ability,), written))) is not None:
+                    yield manual
 
     def onwards(self, here: RecoverySituation) -> Iterator[ManualPlan]:
         """To where a plan for all goals that has restart abilities needs them no more."""
@@ -235,16 +235,16 @@ class Errands:
         outputs = {target(action) for ability in abilities for action in ability.start_actions}
         written = {name: value for name in sorted(outputs) if (value := state[name]) is not None}
         done = self._done(abilities, written)
-        errand = self.to(here, done)
-        if errand is not None:
-            yield errand
+        manual = self.to(here, done)
+        if manual is not None:
+            yield manual
         # What is done for that alone may end elsewhere; the beginning of the plan itself does not. Some of it may still
         # be under way where the goals are reached.
         ticks = (*plan.ticks[:cut], replace(plan.ticks[cut], starts=()))
         rest = (replace(plan.ticks[cut], effects=()), *plan.ticks[cut + 1 :])
         finished = [ability for ability in abilities if not state[ability.flag("executing")]]
-        whole = self._errand(here, ticks, self._done(finished, written))
-        if whole is not None and (errand is None or whole.ticks != errand.ticks):
+        whole = self._manual_plan(here, ticks, self._done(finished, written))
+        if whole is not None and (manual is None or whole.ticks != manual.ticks):
             yield replace(whole, rest=replace(plan, ticks=rest))
 
     def to_rest(self, here: RecoverySituation) -> ManualPlan | None:
@@ -258,28 +258,28 @@ class Errands:
         if not restart:
             task = replace(task, circumstances=here.circumstances)
         plan = self._find(task).plan
-        return None if plan is None else self._errand(here, self._early(task, plan).ticks, goal)
+        return None if plan is None else self._manual_plan(here, self._early(task, plan).ticks, goal)
 
     def into_safe(self, here: RecoverySituation, share: float) -> ManualPlan | None:
         """The shortest way into the safe states, by written guards. Raises `SearchTimeoutError`."""
         way = self._ways.way(here.state, here.circumstances, min(here.longest, DEPTH), self._budget().part(share))
         if way is None:
             return None
-        # The goal of an errand is looked at after step 3.
+        # The goal of a manual plan is looked at after step 3.
         ticks = (*way.ticks, PlanTick((), ())) if way.ticks[-1].starts else way.ticks
-        errand = self._errand(here, ticks, TRUE)
-        return None if errand is None else replace(errand, into_safe=True)
+        manual = self._manual_plan(here, ticks, TRUE)
+        return None if manual is None else replace(manual, into_safe=True)
 
     def joined(self, here: RecoverySituation, first: ManualPlan, second: ManualPlan) -> ManualPlan | None:
-        """One errand that does one after the other."""
-        both = self._errand(here, (*first.ticks, *second.ticks), second.goal)
+        """One manual plan that does one after the other."""
+        both = self._manual_plan(here, (*first.ticks, *second.ticks), second.goal)
         return None if both is None else replace(both, rest=second.rest, into_safe=first.into_safe)
 
     def _early(self, task: PlanningTask, plan: Plan) -> Plan:
-        """Somebody watches an errand, and waits for it."""
+        """Somebody watches a manual plan, and waits for it."""
         return self._prover.tightened(task, plan, self._budget().part(_TIGHTENING)) if plan.starts else plan
 
-    def _errand(self, here: RecoverySituation, ticks: tuple[PlanTick, ...], goal: Expression) -> ManualPlan | None:
+    def _manual_plan(self, here: RecoverySituation, ticks: tuple[PlanTick, ...], goal: Expression) -> ManualPlan | None:
         if not ticks:
             return ManualPlan((), goal, Walk((), (), unsupervised=False), here)
         walk = self._walk(here, ticks)

@@ -46,21 +46,21 @@ class Making:
         end: RecoverySituation,
         then: Plan | None,
         acts: tuple[Act, ...] = (),
-        errand: ManualPlan | None = None,
+        manual: ManualPlan | None = None,
         operation: str | None = None,
         left_out: tuple[Goal, ...] = (),
         begun: tuple[Goal, ...] | None = None,
     ) -> RecoveryProposal:
-        """The offer of `acts`, then of `errand`, which end in `end`, and of the plan from there, for the goals of the
-        situation or for those that are only `begun` by it.
+        """The offer of `acts`, then of the `manual` plan, which end in `end`, and of the plan from there, for the goals
+        of the situation or for those that are only `begun` by it.
         """
         returning = [name for act in acts if act.kind is ActKind.RETURN for name, _ in act.values]
         changed: State = {**self._here.state, **{name: value for act in acts for name, value in act.values}}
         measured = changes_between(self._automaton, self._here.state, changed, Kind.MEASURED)
         corrections = changes_between(self._automaton, self._here.state, changed, Kind.ESTIMATED)
-        plan = None if errand is None else Plan(errand.ticks, minimal_ticks=False, minimal_starts=False)
-        breaks = () if errand is None else errand.walk.breaks
-        unsupervised = errand is not None and errand.walk.unsupervised
+        plan = None if manual is None else Plan(manual.ticks, minimal_ticks=False, minimal_starts=False)
+        breaks = () if manual is None else manual.walk.breaks
+        unsupervised = manual is not None and manual.walk.unsupervised
         ticks = (*(() if plan is None else plan.ticks), *(() if then is None else then.ticks))
         given_up = [*_of(left_out), *(name for name in self._violated if name != operation)]
         reached = [
@@ -87,8 +87,8 @@ class Making:
             online=tuple(act.name for act in acts if act.kind is ActKind.RETURN),
             in_service=tuple(act.name for act in acts if act.kind is ActKind.SERVICE),
             assumed=tuple(change for change in measured if change.name in returning),
-            errand=plan,
-            goal=RecoveryProposal.goal if errand is None else errand.goal,
+            operator_plan=plan,
+            goal=RecoveryProposal.goal if manual is None else manual.goal,
             operation=operation,
             restart=plan is not None and self.restarts(plan.ticks),
             unsupervised=unsupervised,
@@ -99,7 +99,7 @@ class Making:
             left_out=tuple(given_up),
             claims=self.claims(corrections),
             records=self.records(changed),
-            into_safe=errand is not None and errand.into_safe,
+            into_safe=manual is not None and manual.into_safe,
         )
 
     def _helps(self, act: Act) -> bool:

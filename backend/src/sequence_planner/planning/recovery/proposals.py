@@ -90,13 +90,13 @@ class OfferKind(StrEnum):
     """The things an offer asks for, besides what production does then."""
 
     REPLAN = "replan"  # nothing: production goes on as it is
-    RESTART = "restart"  # an errand in restart mode
-    RESET = "reset"  # an errand to the precondition of an operation
+    RESTART = "restart"  # a manual plan in restart mode
+    RESET = "reset"  # a manual plan to the precondition of an operation
     CORRECTION = "correction"  # other values of estimates
     PHYSICAL = "physical"  # what only a person can do: at a device, or a resource or an ability back in service
-    COMBINED = "combined"  # changes of both kinds, or changes and then an errand
-    WAY_BACK = "way-back"  # an errand that begins outside the safe states
-    GOAL = "goal"  # an errand that was asked for
+    COMBINED = "combined"  # changes of both kinds, or changes and then a manual plan
+    WAY_BACK = "way-back"  # a manual plan that begins outside the safe states
+    GOAL = "goal"  # a manual plan that was asked for
 
 
 class ValueChange(Immutable):
@@ -108,13 +108,13 @@ class ValueChange(Immutable):
 
 
 class ProposalEffort(Immutable):
-    """The cost of an offer. `seconds` is how long its errand and then its plan are estimated to take."""
+    """The cost of an offer. `seconds` is how long its manual plan and then its plan are estimated to take."""
 
     changes: int = 0
     physical: int = 0  # what a person does at devices; one such act can change several measured variables
     elsewhere: int = 0  # of these acts, where another device is to be helped, or to come back
     returns: int = 0
-    starts: int = 0  # of the errand
+    starts: int = 0  # of the manual plan
     seconds: float = 0.0
     left_out: int = 0
     breaks: int = 0
@@ -131,14 +131,14 @@ class RecoveryProposal(Immutable):
 
     First a person makes the `corrections` of estimates, brings the `physical` changes of measured variables about, and
     brings resources `online` and abilities `in_service`; of those resources it is `assumed` that they say what they
-    last said. Then `errand` is carried out in restart mode, by written guards alone as long as the state is outside the
-    safe states if it is `unsupervised`, until its `goal` holds; `end` is the state then. From there `then` is a plan
-    without restart abilities for `goals`; it is None only where that was not proven for an errand that was asked for.
-    `breaks` are specifications that the errand violates on its way although they were not violated before; `at_rest`
-    says that it ends in one of the station's safe rest states, with devices that are where they were told to be. The
-    corrections alone would have the goals that it `claims` reached, or nearer: that is for somebody to say who has
-    checked it. What is done at devices can be what abilities wait for; what these note then it `records`. One
-    `into_safe` begins outside the safe states, and is not at its end before it is inside.
+    last said. Then `operator_plan` is carried out in restart mode, by written guards alone as long as the state is
+    outside the safe states if it is `unsupervised`, until its `goal` holds; `end` is the state then. From there `then`
+    is a plan without restart abilities for `goals`; it is None only where that was not proven for a manual plan that
+    was asked for. `breaks` are specifications that the manual plan violates on its way although they were not violated
+    before; `at_rest` says that it ends in one of the station's safe rest states, with devices that are where they were
+    told to be. The corrections alone would have the goals that it `claims` reached, or nearer: that is for somebody to
+    say who has checked it. What is done at devices can be what abilities wait for; what these note then it `records`.
+    One `into_safe` begins outside the safe states, and is not at its end before it is inside.
     """
 
     kind: OfferKind
@@ -149,7 +149,7 @@ class RecoveryProposal(Immutable):
     online: tuple[str, ...] = ()
     in_service: tuple[str, ...] = ()
     assumed: tuple[ValueChange, ...] = ()
-    errand: Plan | None = None
+    operator_plan: Plan | None = None
     goal: Expression = TRUE
     operation: str | None = None
     restart: bool = False
@@ -175,7 +175,7 @@ class RecoveryProposal(Immutable):
 
         What says that work is done comes last, whatever it takes.
         """
-        acts = bool(self.errand or self.physical or self.online or self.in_service)
+        acts = bool(self.operator_plan or self.physical or self.online or self.in_service)
         said = 0 if not self.corrections else 1 if acts else 2
         return self.only_if_checked, said, self.effort.elsewhere > 0, self.effort.cost
 

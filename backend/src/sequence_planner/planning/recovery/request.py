@@ -47,8 +47,8 @@ class AdviceRequest(Immutable):
     longest: int = LONGEST
 
 
-class ErrandRequest(Immutable):
-    """An errand to `target`, which is the precondition of `operation` where that is to be reset.
+class GoalPlanRequest(Immutable):
+    """A manual plan to `target`, which is the precondition of `operation` where that is to be reset.
 
     `circumstances` say whether restart abilities may start; the rest is as in `AdviceRequest`.
     """

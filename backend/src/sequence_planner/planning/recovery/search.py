@@ -231,12 +231,12 @@ class FewestActs:
         return any({(act.kind, act.name, dict(act.values).get(act.name)) for act in f} <= about for f in self._found)
 
     def _combined(self, dead: list[_Changed]) -> Iterator[RecoveryProposal]:
-        """Yield, where nothing has helped so far, an errand after the acts."""
+        """Yield, where nothing has helped so far, a manual plan after the acts."""
         number = 0
         for each in dead:
             if self._consultation.helped and number in (0, _MOST_COMBINED):
                 return
-            for offer in self._consultation.by_errands_after(each.acts, each.after):
+            for offer in self._consultation.by_manual_plans_after(each.acts, each.after):
                 number += 1
                 yield offer
                 break

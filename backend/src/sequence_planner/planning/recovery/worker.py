@@ -12,7 +12,7 @@ from sequence_planner.planning.planner import Planner, PlannerError
 from sequence_planner.planning.problem import PlanRequest
 from sequence_planner.planning.recovery.advisor import Advisor
 from sequence_planner.planning.recovery.consultation import Answer, Request
-from sequence_planner.planning.recovery.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.recovery.request import AdviceRequest, GoalPlanRequest
 from sequence_planner.process.budget import Budget
 from sequence_planner.process.worker import Worker
 from sequence_planner.synthesis.supervisor import FewerSpecifications
@@ -35,8 +35,8 @@ def advising(model: DiagnosisModel) -> Callable[[Request, Budget], Answer]:
         match request:
             case AdviceRequest():
                 return advisor.advise(request, budget)
-            case ErrandRequest():
-                return advisor.errand(request, budget)
+            case GoalPlanRequest():
+                return advisor.goal_plan(request, budget)
             case PlanRequest():
                 return planner.answer(request, budget)
             case DiagnosisRequest(task=task):

@@ -28,6 +28,7 @@ from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Control
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.http.middleware import CARRIED_OUT, carried_out
 from sequence_planner.server.interface import interface
+from sequence_planner.texts.message import message
 
 _NOT_GIVEN = ("actor", "kind")
 Declaring = type[Command] | type[Query[Any]]
@@ -136,12 +137,13 @@ async def _check_own(watch: Watch | None, command: TaskCommand, client: Controll
         return
     found = (await live_view(client)).tasks.get(command.task)
     if found is None:
-        raise ProblemFound(409, "task-gone", "The task is gone", "Look at what is asked for now.")
+        raise ProblemFound(409, "task-gone", message("refused.task-gone.look"))
     if found.resource != watch.resource:
-        detail = f"{watch.name} is for the tasks of {watch.resource}, and this is none of them."
-        raise ProblemFound(403, "not-your-task", "The task is somebody else's", detail)
+        raise ProblemFound(
+            403, "not-your-task", message("refused.not-your-task.watch", watch=watch.name, resource=watch.resource)
+        )
     if found.revision != command.revision:
-        raise ProblemFound(409, "task-changed", "The task has changed", "Look at what is asked for now.")
+        raise ProblemFound(409, "task-changed", message("refused.task-changed.look"))
 
 
 _BODIES: dict[str, tuple[dict[str, Any], type[Body]]] = {}  # by their names, with their fields

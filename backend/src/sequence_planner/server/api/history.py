@@ -43,6 +43,7 @@ from sequence_planner.server.dependencies import JSON_ONLY, AnswerModel, Body, I
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService
+from sequence_planner.texts.message import message
 
 # Reading the record of who did what. Nobody can change it over this interface or any other.
 
@@ -115,11 +116,7 @@ async def read_events(
 
     found, last = await identity.read(chosen)
     if after is not None and last < after:
-        detail = (
-            f"There is no event {after}, the newest is {last}: the station was restored from a backup. Read the orders "
-            f"anew, and the events after {last}."
-        )
-        raise ProblemFound(409, "event-not-known", "There is no such event yet", detail)
+        raise ProblemFound(409, "event-not-known", message("refused.event-not-known.newest", number=after, last=last))
     return EventsAnswer(events=found, next=last)
 
 
@@ -140,19 +137,19 @@ KINDS = "^[a-z-]{1,40}(,[a-z-]{1,40}){0,19}$"
 OPERATOR = allowed(Role.OPERATOR, scope=Scope.AUDIT)
 history_router = interface("/history", tags=["history"])
 
-_REFUSALS = {
-    "no-record": (404, "There is no such record"),
-    "history-gone": (404, "That was cut off"),
-    "model-changed": (409, "The model is another one"),
-    "other-version": (409, "Another version of the program has written it"),
-    "history-differs": (409, "The run cannot be replayed"),
-    "history-unreadable": (409, "The run cannot be replayed"),
-    "archive-unreadable": (409, "The archive cannot be read"),
-    "not-estimated": (422, "This is no estimated variable"),
-    "not-in-domain": (422, "This is no value of the variable"),
-    "history-timeout": (504, "There was no answer in time"),
-    "history-failed": (503, "The past cannot be looked at"),
-    "storage-unavailable": (503, "The database does not answer"),
+_STATUSES = {
+    "no-record": 404,
+    "history-gone": 404,
+    "model-changed": 409,
+    "other-version": 409,
+    "history-differs": 409,
+    "history-unreadable": 409,
+    "archive-unreadable": 409,
+    "not-estimated": 422,
+    "not-in-domain": 422,
+    "history-timeout": 504,
+    "history-failed": 503,
+    "storage-unavailable": 503,
 }
 
 Text = Annotated[str, Field(min_length=1, max_length=200)]
@@ -253,8 +250,7 @@ async def checkpoint(identity: Identity) -> Checkpoint:
     """The newest signed checkpoint: kept elsewhere, it shows whether the journal was made anew since."""
     newest = await identity.read(checkpoints.newest)
     if newest is None:
-        detail = "The station makes one every hour that it runs, and `sequence-planner journal checkpoint` at once."
-        raise ProblemFound(404, "no-checkpoint", "There is no checkpoint yet", detail)
+        raise ProblemFound(404, "no-checkpoint", message("refused.no-checkpoint.hourly"))
     return newest
 
 
@@ -293,24 +289,23 @@ async def _read(identity: IdentityService, archive: Archive, work: Callable[[Who
 
 
 def _unreadable(why: str) -> ProblemFound:
-    return ProblemFound(409, "archive-unreadable", "The archive cannot be read", f"{why[0].upper()}{why[1:]}.")
+    return ProblemFound(409, "archive-unreadable", f"{why[0].upper()}{why[1:]}.")
 
 
 def _empty() -> ProblemFound:
-    return ProblemFound(404, "no-record", "There is no such record", "Nothing has happened yet: the journal is empty.")
+    return ProblemFound(404, "no-record", message("refused.no-record.empty"))
 
 
 async def _asked(request: Request, question: Question, patience: float) -> Answer:
     process: HistoryProcess | None = request.app.state.history
     if process is None:
-        detail = "The server was started without the model of the station: start the station with `run`."
-        raise ProblemFound(503, "history-failed", "The past cannot be looked at", detail)
+        raise ProblemFound(503, "history-failed", message("refused.history-failed.no-model"))
     try:
         return await process.ask(question, patience)
     except HistoryError as error:
-        status, title = _REFUSALS[error.slug]
         detail = error.detail[0].upper() + error.detail[1:]
-        raise ProblemFound(status, error.slug, title, detail if detail.endswith(".") else f"{detail}.") from None
+        status = _STATUSES[error.slug]
+        raise ProblemFound(status, error.slug, detail if detail.endswith(".") else f"{detail}.") from None
 
 
 async def _lines(identity: IdentityService, archive: Archive, number: int, to: int) -> AsyncIterator[bytes]:

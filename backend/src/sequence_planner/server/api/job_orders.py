@@ -54,6 +54,7 @@ from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.orders import OrderService
+from sequence_planner.texts.message import message
 
 # A job order as it is answered over REST.
 
@@ -292,8 +293,7 @@ async def change_job_order(
     another revision; 409 `job-order-started`.
     """
     if if_match is None:
-        detail = "Name the revision that you saw in the header If-Match, in double quotes."
-        raise ProblemFound(428, "revision-needed", "Which revision was seen is not said", detail)
+        raise ProblemFound(428, "revision-needed", message("refused.revision-needed.header"))
     desk, now = desk_of(request), identity.now()
     revision = None if if_match == "*" else int(if_match.strip('"'))
     unknown = await desk.unknown_work_master(body.work_master)
@@ -383,8 +383,7 @@ async def capabilities(request: Request, identity: Identity, view: LiveView) -> 
     """A work master: a product that may be ordered, and the operations that make it."""
     masters = await desk_of(request).work_masters()
     if masters is None:
-        detail = "The station is being prepared, so it is not known yet what it can do. Try again in a moment."
-        raise ProblemFound(503, "preparing", "The station is being prepared", detail)
+        raise ProblemFound(503, "preparing", message("refused.preparing.abilities"))
     out = {(each.of, each.name) for each in view.out_of_service}
     human = {each.resource for each in view.abilities.values() if each.human}
     able: dict[str, list[str]] = {name: [] for name in view.resources}
@@ -517,8 +516,7 @@ async def read_job_response(id: OrderId, identity: Identity) -> ResponseAnswer:
 
     found = await identity.read(chosen)
     if found is None:
-        detail = "There is no job order with this id that is over: a response is written when it is."
-        raise ProblemFound(404, "no-job-response", "There is no such response", detail)
+        raise ProblemFound(404, "no-job-response", message("refused.no-job-response.id"))
     return _answered(found)
 
 

@@ -71,6 +71,7 @@ from sequence_planner.server.interface import interface
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.stream.endpoints import serve
+from sequence_planner.texts.message import message
 
 # The model while it is edited: the draft that all engineers of the station share, and what is found in it.
 #
@@ -94,12 +95,10 @@ async def workshop(connection: HTTPConnection) -> Workshop:
     """
     client: ControllerClient = connection.app.state.controller
     if client.stands_by:
-        detail = "The model is edited at the station that commands. Open its page."
-        raise ProblemFound(503, "on-standby", "This station stands by", detail)
+        raise ProblemFound(503, "on-standby", message("refused.on-standby.model"))
     shop: Workshop | None = connection.app.state.workshop
     if shop is None:
-        detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
-        raise ProblemFound(409, "no-model", "The model is not known", detail)
+        raise ProblemFound(409, "no-model", message("refused.no-model.start"))
     return shop
 
 
@@ -144,7 +143,7 @@ async def finding_run(
     try:
         return await shop.played(finding, ability, number)
     except EditError as error:
-        raise ProblemFound(404, "no-run", "There is no such run", _sentence(error)) from error
+        raise ProblemFound(404, "no-run", _sentence(error)) from error
 
 
 @model_router.post(
@@ -230,9 +229,8 @@ def refusal(error: EditError) -> ProblemFound:
     """The problem that says why an edit is not made."""
     text = _sentence(error)
     if isinstance(error, PartChangedError):
-        detail = f"{text} Nothing was changed: look at what it is now, and repeat yours if it is still wanted."
-        return ProblemFound(409, "part-changed", "It was changed meanwhile", detail)
-    return ProblemFound(422, "edit-refused", "It cannot be changed so", text)
+        return ProblemFound(409, "part-changed", message("refused.part-changed.why", why=text))
+    return ProblemFound(422, "edit-refused", text)
 
 
 def _sentence(error: Exception) -> str:
@@ -335,7 +333,7 @@ async def _record(identity: IdentityService, entry: Entry, *, by: Acting | None 
 def _told(answer: dict[str, Any], number: int | None) -> AttachmentAnswer:
     if "refused" in answer:
         slug, detail = answer["refused"]["slug"], answer["refused"]["detail"]
-        raise ProblemFound(STATUS.get(slug, 422), slug, "The topic cannot be attached", detail)
+        raise ProblemFound(STATUS.get(slug, 422), slug, detail, title=message("refused.attach-refused"))
     return AttachmentAnswer.model_validate({**answer, "number": number})
 
 
@@ -353,8 +351,9 @@ async def _run(arguments: list[str]) -> dict[str, Any]:
         async with asyncio.timeout(LONGEST):
             out, err = await process.communicate()
     except TimeoutError:
-        detail = f"It took more than {LONGEST:g} s and was given up. Look at the model before trying again."
-        raise ProblemFound(504, "attach-timeout", "The topic was not attached in time", detail) from None
+        raise ProblemFound(
+            504, "attach-timeout", message("refused.attach-timeout.given-up", seconds=f"{LONGEST:g}")
+        ) from None
     finally:
         if process.returncode is None:
             process.kill()

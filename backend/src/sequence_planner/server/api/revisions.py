@@ -41,6 +41,7 @@ from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.http.middleware import while_waited_for
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.editor import Workshop
+from sequence_planner.texts.message import Message, joined, message
 
 DRAFT, RUNNING = "draft", "running"
 SIMULATING = 40.0  # seconds of work
@@ -164,19 +165,16 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
     draft = await _at(shop, body.number)
     known = await _known(shop, body.revision)
     if not known.draft:
-        detail = "What is deployed is the draft, once it was saved: take the revision back into the draft first."
-        raise ProblemFound(409, "not-the-draft", "The draft is not this revision", detail)
+        raise ProblemFound(409, "not-the-draft", message("refused.not-the-draft.take-back"))
     if (hindrance := (await shop.checked()).hindrance(draft.number)) is not None:
-        raise ProblemFound(409, hindrance.slug, hindrance.title, f"{hindrance.why}.")
+        raise ProblemFound(409, hindrance.slug, f"{hindrance.why}.", title=hindrance.title)
     fits = await worked("fitted", *await _to_fit(shop, view, body.simulation))
     assert isinstance(fits, TransferView)
     if not fits.legal:
-        detail = _why_not(fits)
-        raise ProblemFound(409, "not-legal", "The station cannot take it now", detail)
+        raise ProblemFound(409, "not-legal", _why_not(fits))
     reset = body.simulation is Simulation.RESET
     if reset and not view.station.emulated:
-        detail = "Only emulated devices can begin anew as the model says. Deploy without resetting the simulation."
-        raise ProblemFound(409, "not-emulated", "There are real devices", detail)
+        raise ProblemFound(409, "not-emulated", message("refused.not-emulated.reset"))
     shop.note_deployment(draft)
     staged = client.path.parent / f"deploy-{secrets.token_hex(8)}"
     await run_in_threadpool(_stage, draft.files, staged)
@@ -191,15 +189,14 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
 async def _at(shop: Workshop, number: int) -> Draft:
     draft = await shop.open()
     if draft.number != number:
-        detail = "Somebody has changed the draft since you looked at it. Look at it again, then repeat this."
-        raise ProblemFound(409, "stale-draft", "The draft has changed", detail)
+        raise ProblemFound(409, "stale-draft", message("refused.stale-draft.look"))
     return draft
 
 
 async def _known(shop: Workshop, id: str) -> RevisionView:
     found = next((each for each in (await shop.revised()).revisions if each.id == id), None)
     if found is None:
-        raise ProblemFound(404, "no-revision", "There is no such revision", "Look at the revisions that there are.")
+        raise ProblemFound(404, "no-revision", message("refused.no-revision.look"))
     return found
 
 
@@ -237,14 +234,14 @@ async def _found(name: str, *arguments: object) -> Response:
     return found(text)
 
 
-def _why_not(fits: TransferView) -> str:
+def _why_not(fits: TransferView) -> Message:
     if fits.obstacle is not None:
-        return f"{fits.obstacle}."
+        return message("refused.not-legal.obstacle", why=fits.obstacle)
     if fits.under_way:
-        named = ", ".join(fits.under_way)
-        return f"{named}: this still runs, and is another one in the new model. Wait until it has finished."
-    why = f"It would violate: {'; '.join(fits.violated)}" if fits.violated else "From there nothing could come to rest"
-    return f"In its present state the station would be outside the safe states of this model. {why}."
+        return message("refused.not-legal.under-way", abilities=", ".join(fits.under_way))
+    if fits.violated:
+        return message("refused.not-legal.violates", specifications=joined(fits.violated))
+    return message("refused.not-legal.no-rest")
 
 
 def _stage(files: Files, folder: Folder) -> None:

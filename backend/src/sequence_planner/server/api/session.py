@@ -46,6 +46,7 @@ from sequence_planner.server.http.credentials import (
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService, withdraw_control
 from sequence_planner.server.settings import Settings
+from sequence_planner.texts.message import message
 from sequence_planner.version import VERSION
 
 if TYPE_CHECKING:
@@ -248,8 +249,7 @@ async def finish_sign_in(
 
 def _provider(office: IdentityService) -> ProviderSignIn:
     if office.provider is None:
-        detail = "This station has no provider: sign in with a name and a password."
-        raise ProblemFound(404, "no-provider", "There is no provider", detail)
+        raise ProblemFound(404, "no-provider", message("refused.no-provider.password"))
     return office.provider
 
 
@@ -330,8 +330,7 @@ async def open_demonstration(
 ) -> SessionAnswer:
     """Open a demonstration, at the machine itself and with emulated devices alone; else 403 `no-demonstration`."""
     if not may_open_demonstration(request, request.app.state.settings, client):
-        detail = "A demonstration can be opened at the machine itself, while all devices are emulated. Sign in instead."
-        raise ProblemFound(403, "no-demonstration", "No demonstration here", detail)
+        raise ProblemFound(403, "no-demonstration", message("refused.no-demonstration.emulated"))
     before, now = credentials(request).session, identity.now()
 
     def write(connection: Connection) -> tuple[str, SignedIn]:

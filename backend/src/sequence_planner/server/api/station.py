@@ -46,6 +46,7 @@ from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
 from sequence_planner.server.stream.broadcast import FlowsFeed, NetworkFeed
 from sequence_planner.server.stream.endpoints import serve
+from sequence_planner.texts.message import message
 
 router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
@@ -223,8 +224,7 @@ async def ros_graph(view: LiveView, client: Controller) -> NetworkView:
     503 until the station is prepared and has joined the network.
     """
     if client.network is None:
-        detail = "The station is being prepared and has not joined the network. Try again in a moment."
-        raise ProblemFound(503, "preparing", "The station is being prepared", detail)
+        raise ProblemFound(503, "preparing", message("refused.preparing.network"))
     return client.network
 
 

@@ -39,6 +39,7 @@ from sequence_planner.server.services.backups import (
     OtherBusyError,
 )
 from sequence_planner.server.services.retention import RetentionService, RetentionState
+from sequence_planner.texts.message import message
 
 # What the server answers about backups, from what the folder holds and the journal tells.
 
@@ -221,10 +222,8 @@ async def _backup_desk(request: Request) -> BackupService:
     found: BackupService | None = request.app.state.backups
     if found is None:
         if request.app.state.settings.demonstration:
-            detail = "What a demonstration keeps is forgotten at its end, so there is nothing to back up."
-            raise ProblemFound(409, "demonstration", "A demonstration has no backups", detail)
-        detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
-        raise ProblemFound(409, "no-model", "The model is not known", detail)
+            raise ProblemFound(409, "demonstration", message("refused.demonstration.backups"))
+        raise ProblemFound(409, "no-model", message("refused.no-model.start"))
     return found
 
 
@@ -248,7 +247,7 @@ async def create_backup(body: NothingBody, desk: Backups, actor: Actor) -> Backu
         return busy_answer(await desk.make(actor))
     except CannotBeginError as error:
         slug, why = f"backup-{trouble_in(error.trouble)}", str(error)
-        raise ProblemFound(409, slug, "A backup cannot be made", f"{why[:1].upper()}{why[1:]}.") from None
+        raise ProblemFound(409, slug, f"{why[:1].upper()}{why[1:]}.", title=message("refused.backup-refused")) from None
     except OtherBusyError as other:
         raise _other(other.busy) from None
     except FolderSilentError as error:
@@ -265,21 +264,18 @@ async def check_backup(file: Identifier, body: NothingBody, desk: Backups, actor
     except FolderSilentError as error:
         raise _silent(error) from None
     if busy is None:
-        detail = f"There is no backup of this name in {desk.shelf.folder}. Look at the list again."
-        raise ProblemFound(404, "no-backup", "The backup is not there", detail)
+        raise ProblemFound(404, "no-backup", message("refused.no-backup.folder", folder=str(desk.shelf.folder)))
     return busy_answer(busy)
 
 
 def _other(busy: Busy) -> ProblemFound:
-    detail = (
-        f"{busy.file} is being worked on for {busy.by.name}, and one backup is made or checked at a time. Try again."
-    )
-    return ProblemFound(409, "backup-busy", "Another backup is worked on", detail)
+    return ProblemFound(409, "backup-busy", message("refused.backup-busy.by", file=busy.file, by=busy.by.name))
 
 
 def _silent(error: FolderSilentError) -> ProblemFound:
-    detail = f"{error} does not answer. If it is on another machine, see whether that can be reached; then try again."
-    return ProblemFound(503, "backup-folder-silent", "The folder of the backups does not answer", detail)
+    return ProblemFound(
+        503, "backup-folder-silent", message("refused.backup-folder-silent.elsewhere", folder=str(error))
+    )
 
 
 # What the server answers about what is kept.
@@ -528,10 +524,8 @@ async def _retention_desk(request: Request) -> RetentionService:
     found: RetentionService | None = request.app.state.retention
     if found is None:
         if request.app.state.settings.demonstration:
-            detail = "What a demonstration keeps is forgotten at its end, so nothing is archived."
-            raise ProblemFound(409, "demonstration", "A demonstration keeps nothing", detail)
-        detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
-        raise ProblemFound(409, "no-model", "The model is not known", detail)
+            raise ProblemFound(409, "demonstration", message("refused.demonstration.archive"))
+        raise ProblemFound(409, "no-model", message("refused.no-model.start"))
     return found
 
 

@@ -26,6 +26,7 @@ from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import JSON_ONLY, Actor, AnswerModel, Body, Identifier, Identity, Name
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
+from sequence_planner.texts.message import message
 
 # Keys, with which other systems read the station. A secret is answered once, when it is made.
 
@@ -238,8 +239,7 @@ async def change_user(
     `role-from-provider` where that is not for here.
     """
     if if_match is None:
-        detail = "Name the revision that you saw in the header If-Match, in double quotes."
-        raise ProblemFound(428, "revision-needed", "Which revision was seen is not said", detail)
+        raise ProblemFound(428, "revision-needed", message("refused.revision-needed.header"))
     revision, now = None if if_match == "*" else int(if_match.strip('"')), identity.now()
 
     def write(connection: Connection) -> PersonAnswer:

@@ -33,6 +33,7 @@ from sequence_planner.server.http.credentials import keep_watch
 from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
 from sequence_planner.server.stream.messages import Silence, StreamError, StreamPart
+from sequence_planner.texts.message import message
 
 # What is said of watches over REST, and on the WebSocket `/api/v1/wearables/stream`.
 #
@@ -167,8 +168,7 @@ async def list_wearables(identity: Identity, client: Controller) -> WatchesAnswe
 async def offer_pairing(body: OfferBody, identity: Identity, actor: Actor, view: LiveView) -> NewOfferAnswer:
     """Offer a pairing. Its code is answered this once and can be redeemed once, within two minutes."""
     if body.resource not in {each.name for each in _resources(view)}:
-        detail = f'"{body.resource}" has no tasks for people. Choose one of the resources that GET /wearables lists.'
-        raise ProblemFound(422, "no-such-resource", "A watch cannot serve this resource", detail)
+        raise ProblemFound(422, "no-such-resource", message("refused.no-such-resource.choose", resource=body.resource))
     now = identity.now()
     code, made = await identity.write(
         lambda connection: pairing.offer(connection, body.name, body.resource, actor, now), by=actor

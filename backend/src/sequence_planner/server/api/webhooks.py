@@ -21,6 +21,7 @@ from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import JSON_ONLY, Actor, AnswerModel, Body, Identifier, Identity, Name
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
+from sequence_planner.texts.message import message
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR, scope=Scope.WEBHOOKS)
 bodiless = interface("/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR])
@@ -127,8 +128,9 @@ async def create_webhook(
     try:
         await resolved(targets, targets.target(body.url))
     except TargetRefused as why:
-        detail = f"Nothing is sent to this URL: {why}."
-        raise ProblemFound(422, "webhook-target-refused", "The URL is not sent to", detail) from None
+        raise ProblemFound(
+            422, "webhook-target-refused", message("refused.webhook-target-refused.why", why=str(why))
+        ) from None
     seal, now = Seal(key_file(identity.database.place)), identity.now()
     secret, webhook = await identity.write(
         lambda connection: webhooks.make(connection, seal, body.title, body.url, body.kinds, body.after, actor, now),

@@ -27,8 +27,9 @@ from starlette.routing import BaseRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.core.distribution import Distribution
-from sequence_planner.server.errors import FieldError, ProblemFound, problem_response
+from sequence_planner.server.errors import FieldError, ProblemFound, refusal_response
 from sequence_planner.server.settings import LOOPBACK_NAMES, Endpoint, SettingsError, address_of, split_name
+from sequence_planner.texts.message import message
 
 # The answer to what stops a station: it was carried out, and whether the journal has it.
 
@@ -191,25 +192,17 @@ class RequestGuard:
         if refused is None:
             await self.app(scope, _bounded(receive, largest), send)
             return
-        response = problem_response(
-            refused.status_code,
-            refused.slug,
-            refused.title,
-            refused.detail,
-            headers=refused.headers,
-            errors=refused.errors,
-        )
+        response = refusal_response(refused)
         # Starlette turns the answer to a handshake into the messages of the "websocket.http.response" extension.
         await response(scope, receive, send)
 
     def _host(self, scope: Scope, headers: Headers) -> ProblemFound | None:
         hosts = headers.getlist("host")
         if len(hosts) != 1:
-            return ProblemFound(400, "no-host", "No single Host header", "Send one Host header.")
+            return ProblemFound(400, "no-host", message("refused.no-host.one"))
         if hosts[0].lower() in self.hosts or is_own_health_check(scope):
             return None
-        detail = f"This server answers to {', '.join(sorted(self.hosts))} only."
-        return ProblemFound(421, "wrong-host", "Another host was meant", detail)
+        return ProblemFound(421, "wrong-host", message("refused.wrong-host.hosts", hosts=", ".join(sorted(self.hosts))))
 
     def _origin(self, scope: Scope, headers: Headers) -> ProblemFound | None:
         if scope["type"] == "http" and scope["method"] in READING:
@@ -217,8 +210,7 @@ class RequestGuard:
         origins = headers.getlist("origin")
         foreign = any(origin.lower() not in self.origins for origin in origins)
         if foreign or "cross-site" in headers.getlist("sec-fetch-site"):
-            detail = "The request comes from a page of another site; open this server's own page."
-            return ProblemFound(403, "foreign-origin", "Sent by a foreign page", detail)
+            return ProblemFound(403, "foreign-origin", message("refused.foreign-origin.open"))
         return None
 
 
@@ -229,24 +221,19 @@ def _framing(headers: Headers) -> ProblemFound | None:
     """
     if "content-length" not in headers or "transfer-encoding" not in headers:
         return None
-    detail = "Send either Content-Length or Transfer-Encoding, not both."
-    return ProblemFound(400, "conflicting-lengths", "The length is said twice", detail, {"Connection": "close"})
+    return ProblemFound(
+        400, "conflicting-lengths", message("refused.conflicting-lengths.either"), {"Connection": "close"}
+    )
 
 
 def _address(scope: Scope) -> ProblemFound | None:
     """Refuse what nothing is called: control characters, and what is no UTF-8. Not every database can keep these."""
     if _NO_NAME.search(scope["path"]):
-        return ProblemFound(
-            404,
-            "not-found",
-            "Not Found",
-            "Nothing has a control character, or no UTF-8, in its address. Leave that out.",
-        )
+        return ProblemFound(404, "not-found", message("refused.not-found.character"))
     question = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
     if odd := [name for name, value in question if "\x00" in name + value]:
         errors = [FieldError(field=f"query.{name}", expected="a text without the character 0") for name in odd]
-        title, detail = "The request is not as expected", "No text has the character 0."
-        return ProblemFound(422, "invalid-request", title, detail, errors=errors)
+        return ProblemFound(422, "invalid-request", message("refused.invalid-request.character"), errors=errors)
     return None
 
 
@@ -256,8 +243,7 @@ def _length(headers: Headers, largest: int) -> ProblemFound | None:
 
 
 def _too_large(largest: int) -> ProblemFound:
-    detail = f"A body may have {largest} bytes at most: send less."
-    return ProblemFound(413, "body-too-large", "The body is too large", detail)
+    return ProblemFound(413, "body-too-large", message("refused.body-too-large.most", largest=largest))
 
 
 def is_own_health_check(scope: Scope) -> bool:
@@ -287,15 +273,16 @@ def _bounded(receive: Receive, largest: int) -> Receive:
         nonlocal size, complete
         try:
             async with asyncio.timeout_at(None if complete else due):
-                message = await receive()
+                event = await receive()
         except TimeoutError:
-            detail = f"A body must be there within {BODY_SECONDS:g} s. Send it again, all at once."
-            raise ProblemFound(408, "body-too-slow", "The body did not come in time", detail) from None
-        complete = not message.get("more_body", False)
-        size += len(message.get("body", b""))
+            raise ProblemFound(
+                408, "body-too-slow", message("refused.body-too-slow.seconds", seconds=BODY_SECONDS)
+            ) from None
+        complete = not event.get("more_body", False)
+        size += len(event.get("body", b""))
         if size > largest:
             raise _too_large(largest)
-        return message
+        return event
 
     return bounded
 
@@ -324,7 +311,7 @@ class Forwarded:
         try:
             client = self._client(scope)
         except ProblemFound as refused:
-            response = problem_response(refused.status_code, refused.slug, refused.title, refused.detail)
+            response = refusal_response(refused)
             await response(scope, receive, send)
             return
         belongs_to(scope, group_of_address(client))
@@ -335,18 +322,15 @@ class Forwarded:
         """The address that the proxy was asked from. Raises `ProblemFound` when there is no knowing."""
         client = scope.get("client")
         if client is None or address_of(client[0]) not in self.proxies:
-            detail = "This server is reached through its proxy only; open its public address."
-            raise ProblemFound(403, "not-the-proxy", "Not sent by the proxy", detail)
+            raise ProblemFound(403, "not-the-proxy", message("refused.not-the-proxy.open"))
         headers = Headers(scope=scope)
         if headers.getlist("x-forwarded-proto") not in (["https"], ["wss"]):
-            detail = "Open it by https. (The proxy must say so with one header, X-Forwarded-Proto: https.)"
-            raise ProblemFound(403, "not-encrypted", "Not sent over HTTPS", detail)
+            raise ProblemFound(403, "not-encrypted", message("refused.not-encrypted.https"))
         last = ",".join(headers.getlist("x-forwarded-for")).rpartition(",")[2].strip()
         try:
             return str(ip_address(last))
         except ValueError:
-            detail = "The proxy must append its client's address to the header X-Forwarded-For."
-            raise ProblemFound(400, "no-client-address", "The proxy does not say who asks", detail) from None
+            raise ProblemFound(400, "no-client-address", message("refused.no-client-address.header")) from None
 
 
 # Work for somebody who may leave before it is done.

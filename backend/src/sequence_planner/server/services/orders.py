@@ -25,6 +25,7 @@ from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState, Wish
 from sequence_planner.mes.queue import OrderOfWork, Queue, order_of_work, queue
 from sequence_planner.mes.tracker import OrderTracker
 from sequence_planner.server.services.identity import IdentityService
+from sequence_planner.texts.message import message
 
 # What is said to the controller of orders that the station works on or may have been given.
 #
@@ -252,9 +253,9 @@ class OrderService:
         masters = await self.work_masters()
         if masters is None or name in masters.work_masters:
             return None
-        known = ", ".join(sorted(masters.work_masters)) or "none"
-        detail = f"The station has no work master `{name}`. It has: {known}."[:1000]
-        return OrderRefused("unknown-work-master", "There is no such work master", detail, 422)
+        known = ", ".join(sorted(masters.work_masters))[:1000]
+        id_ = "refused.unknown-work-master.known" if known else "refused.unknown-work-master.none"
+        return OrderRefused("unknown-work-master", message(id_, name=name, known=known), 422)
 
     def waits_for(self, asked: Sequence[JobOrder]) -> dict[str, list[str]]:
         """In words why nothing is done for each of these orders now; empty where something is, or nothing is to be.
@@ -280,8 +281,7 @@ class OrderService:
         """Raises `CommandRefused` where a person lets something go on without being in control; a key never is."""
         control = None if self._view is None else self._view.control
         if actor.session is not None and (control is None or control.session != actor.session):
-            detail = "Only who is in control lets devices go on. Take control, then try again."
-            raise CommandRefused("control-needed", "Control is needed", detail)
+            raise CommandRefused("control-needed", message("refused.control-needed.goes-on"))
 
     @property
     def _view(self) -> StationView | None:

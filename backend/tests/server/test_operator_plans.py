@@ -107,12 +107,12 @@ def test_an_offer_is_taken_with_all_that_was_confirmed(engineer: httpx.Client, c
 
 
 def test_refusals_come_in_the_controllers_words(engineer: httpx.Client, controller: Asked) -> None:
-    controller.refusal = CommandRefused("advisor-timeout", "The adviser was too slow", "Try again.", 504)
+    controller.refusal = CommandRefused("advisor-timeout", "Try again.", 504)
     late = problem(engineer.get("recovery/proposals"), 504, "advisor-timeout")
     assert (late["detail"], late["place"]) == ("Try again.", None)
     detail = "character 1, `up`: unknown name `up`"
     place = TextPlace(start=0, end=2, message="unknown name `up`")
-    controller.refusal = CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422, place)
+    controller.refusal = CommandRefused("bad-predicate", detail, 422, place=place)
     for path in ("operator-plans/goal-preview", "goals/blockers"):
         found = problem(engineer.post(path, json={"predicate": "up"}), 422, "bad-predicate")
         assert (found["detail"], found["place"]) == (detail, place.model_dump())
