@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.types import Value
 from sequence_planner.model.source import ModelError
 from sequence_planner.pipelines.chain_runtime import RunningOutgoing
 from sequence_planner.station import ReadyStation, prepare_station
@@ -78,7 +79,7 @@ def ready(tmp_path_factory: pytest.TempPathFactory) -> ReadyStation:
     return prepare_station(tank(tmp_path_factory.mktemp("tables")))
 
 
-def sent(ready: ReadyStation, values: Mapping[str, object]) -> Mapping[str, object]:
+def sent(ready: ReadyStation, values: Mapping[str, Value | None]) -> Mapping[str, object]:
     """What a command says for these values of the variables."""
     state = {**ready.automaton.initial_valuation, **{f"tank.{name}": value for name, value in values.items()}}
     message = RunningOutgoing(ready.pipelines.outgoing["/tank/command"]).take(state, 0.0)

@@ -125,6 +125,7 @@ CONDITION = ConditionView(
     kind="written",
     text="a message on /robot/state",
     text_message=as_it_was("a message on /robot/state"),
+    expanded=None,
     involved=[POSE],
 )
 

@@ -209,9 +209,12 @@ class Declarations:
 
     def _short_names(self) -> Iterator[tuple[str, SourceText]]:
         """All relations, maps and predicates: the full name of each, and that as it is written."""
-        for resource, document in ((None, self._station.station), *self._station.resources.items()):
+        station = self._station.station
+        for name in (*station.relations, *station.maps, *station.predicates):
+            yield str(name), name
+        for resource, document in self._station.resources.items():
             for name in (*document.relations, *document.maps, *document.predicates):
-                yield (str(name) if resource is None else f"{resource}.{name}"), name
+                yield f"{resource}.{name}", name
 
     def _declare_short(self, full: str, name: SourceText) -> None:
         self.check_name(name)

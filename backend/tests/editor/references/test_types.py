@@ -54,9 +54,10 @@ def test_usages_are_where_they_are_written() -> None:
 def test_a_parameter_is_renamed_in_the_type_and_in_the_arguments(name: str, new: str, tmp_path: Path) -> None:
     changed = renamed(FILES, parse_part(f"parameter:type:robot.{name}"), new, MESSAGES)
     assert changed.keys() == {TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml"}
-    write({file: text for file, text in {**FILES, **changed}.items() if text is not None}, tmp_path)
+    now = {**FILES, **{file: text for file, text in changed.items() if text is not None}}
+    write(now, tmp_path)
     assert load_station(tmp_path).resources == load_station(ROBOTS).resources
-    back = renamed({**FILES, **changed}, parse_part(f"parameter:type:robot.{new}"), name, MESSAGES)
+    back = renamed(now, parse_part(f"parameter:type:robot.{new}"), name, MESSAGES)
     assert back == {file: FILES[file] for file in changed}
 
 

@@ -160,10 +160,10 @@ class WhyNot:
         """Return what is in the way of a predicate. Raises `CommandRefused` for one that cannot be read."""
         execution, text = self._execution, query.predicate
         goal = read_predicate(execution.automaton, text)
-        found, title = list(self._lacking(goal)), wording_of(execution.automaton).in_words(goal)
-        if not found:
+        blocking, title = list(self._lacking(goal)), wording_of(execution.automaton).in_words(goal)
+        if not blocking:
             return self._view("goal", text, title, message("blocked.holds"), [])
-        view = self._view("goal", text, title, _summary(found), found)
+        view = self._view("goal", text, title, _summary(blocking), blocking)
         request = GoalPlanRequest(
             state=execution.state,
             goals=(),

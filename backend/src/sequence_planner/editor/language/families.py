@@ -153,7 +153,7 @@ def definition_of(station: Station, family: Family, arguments: tuple[str, ...]) 
     if not isinstance(condition, SourceText):
         return print_value(condition)
     given = {
-        str(parameter): GivenArgument("value", condition, None, word)
+        str(parameter): GivenArgument("value", condition, None, word, None)
         for parameter, word in zip(parameters, arguments, strict=False)
     }
     plain = SourceText(" ".join(condition.split()), condition.place, str(condition))

@@ -96,7 +96,7 @@ def _named(written: WrittenInstance) -> Iterator[tuple[str, ParameterDocument]]:
 
 def _any_argument(parameter: ParameterDocument) -> GivenArgument:
     """Something in the place of a parameter: only where it stands is looked at."""
-    return GivenArgument(parameter.kind, _NOTHING, None, "_")
+    return GivenArgument(parameter.kind, _NOTHING, None, "_", None)
 
 
 def _texts(content: object, path: EntryPath) -> Iterator[tuple[EntryPath, SourceText, bool]]:

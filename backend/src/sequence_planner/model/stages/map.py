@@ -53,7 +53,7 @@ from sequence_planner.model.stages.support import (
 
 # `map`: each value becomes another.
 
-ValueTable = Mapping[SourceText, Scalar]
+ValueTable = Mapping[SourceText, Scalar | str]
 
 
 def is_same(one: object, other: object) -> bool:
@@ -87,11 +87,14 @@ class MapDocument(StageDeclaration):
             return None
         path, source_type = found
         rest = [] if self.otherwise is None else [self.otherwise]
-        table = self.values
-        if isinstance(table, SourceText):
-            table = table_of_map(table, source, source_type, target, context)
+        written_table = self.values
+        table: ValueTable | None
+        if isinstance(written_table, SourceText):
+            table = table_of_map(written_table, source, source_type, target, context)
             if table is None:
                 return None
+        else:
+            table = written_table
         target_type = type_for(context, target, [*(table or {}).values(), *rest])
         if target_type is None:
             return None
