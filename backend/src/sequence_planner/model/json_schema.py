@@ -22,6 +22,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from sequence_planner.model.documents import (
+    AbilityDocument,
     OperationDocument,
     ResourceDocument,
     SpecificationDocument,
@@ -86,6 +87,9 @@ class _Generator(GenerateJsonSchema):
         if issubclass(schema["cls"], SequencePart):
             instead = ["operations"] if schema["cls"] is WorkMasterDocument else []
             made["anyOf" if instead else "oneOf"] = [{"required": [key]} for key in (*KINDS, *instead)]
+        if schema["cls"] is AbilityDocument:
+            made["if"] = {"not": {"required": ["until"]}}
+            made["then"] = {"properties": {"finish": {"required": ["when"]}}}
         if schema["cls"] is SpecificationDocument:
             kinds = [key for key in made["properties"] if key not in ("title", "parameters", "while")]
             made["oneOf"] = [{"required": [key]} for key in kinds]
@@ -118,7 +122,8 @@ def _partial(schema: Any, of: dict[str, Any], done: set[str]) -> Any:  # noqa: A
     if (reference := schema.get("$ref", "").rpartition("/")[2]) and reference not in done | {"ParameterDocument"}:
         done.add(reference)
         _partial(of[reference], of, done)
-    schema.pop("required", None)
+    for key in ("required", "if", "then"):
+        schema.pop(key, None)
     within = schema.get("additionalProperties")
     for each in (*schema.get("properties", {}).values(), *schema.get("anyOf", ()), *([within] if within else ())):
         _partial(each, of, done)
