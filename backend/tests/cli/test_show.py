@@ -7,11 +7,12 @@ from shutil import copytree
 
 import pytest
 
+from editor.shorthand import SHORTHAND
 from sequence_planner.analysis.store import key, read
 from sequence_planner.cli.analysing import Found
 from sequence_planner.cli.loading import load_model
 from support.commands import as_json, command, plain
-from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
+from support.places import BOLT_TIGHTENING, CELL, MODELS, WORKED_EXAMPLE
 
 
 def test_one_ability_and_its_effects() -> None:
@@ -133,3 +134,74 @@ def test_pipelines_are_shown_with_the_types_on_their_edges() -> None:
     assert found["pipelines"]["/arm/command"]["sources"] == {"goto": "arm.goto"}
     code, _, err = command("show", CELL, "--pipelines", "/arm/stat")
     assert (code, "did you mean `/arm/state`?" in err) == (2, True)
+
+
+NAMES = """\
+values free: home, out
+
+values part: p1, p2, p3, in this order
+
+relation fits
+  big with placed, tight
+
+map grip_for
+  p1 to small
+  p2 to big
+  p3 to small
+
+predicate all_tight
+  when        all p in part: bolts[p] == tight
+  that is     bolts[p1] == tight and bolts[p2] == tight and bolts[p3] == tight
+
+predicate arm.is_at(q)
+  for         q: home, left, right, out
+  when        at == q and target == q
+
+sequence both: Fasten and go
+  sequence
+    parallel for p in ends
+      fasten(p)
+    go
+"""
+
+
+@pytest.fixture
+def press(tmp_path: Path) -> Path:
+    """A station that says much for short, and has a sequence."""
+    operations = """\
+fasten: {parameters: {p: part}, precondition: not is_done(p), goal: is_done(p)}
+go: {precondition: all_tight, goal: arm.is_at(out)}
+both: {title: Fasten and go, sequence: [{for: {p: ends}, parallel: fasten(p)}, go]}
+"""
+    for file, text in {**SHORTHAND, "operations.yaml": operations}.items():
+        (tmp_path / file).parent.mkdir(exist_ok=True)
+        (tmp_path / file).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def test_names_for_what_is_said_more_than_once(press: Path) -> None:
+    code, out, _ = command("show", press, "part", "free", "fits", "grip_for", "all_tight", "arm.is_at", "both")
+    assert (code, sorted(out.split("\n\n"))) == (0, sorted(NAMES.split("\n\n")))
+
+
+def test_names_for_programs(press: Path) -> None:
+    _, shown = as_json("show", press, "all_tight", "free", "both", "is_heavy")
+    assert shown["predicates"] == {
+        "all_tight": {
+            "parameters": {},
+            "when": "all p in part: bolts[p] == tight",
+            "means": "bolts[p1] == tight and bolts[p2] == tight and bolts[p3] == tight",
+        }
+    }
+    assert shown["values"] == {"free": {"values": ["home", "out"], "ordered": False}}
+    assert shown["maps"] == {"is_heavy": {"bare": False, "big": True, "small": False}}
+    assert shown["sequences"]["both"]["sequence"][0] == {"for": {"p": "ends"}, "parallel": "fasten(p)"}
+    assert (shown["relations"], shown["types"]) == ({}, {})
+
+
+def test_a_type_with_its_instances() -> None:
+    _, out, _ = command("show", MODELS / "robots_with_buffer", "robot")
+    assert out == (
+        "type robot\n  namespace: text\n  stops: enumeration\n  conveyor: value of stops\n"
+        "  instances   robot_1, robot_2\n"
+    )

@@ -1,10 +1,10 @@
-"""`show`: the ground automaton of a model, for people and as JSON."""
+"""`show`: the ground automaton of a model and the names that its texts use, for people and as JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import typer
 
@@ -24,8 +24,16 @@ from sequence_planner.cli.model.synthesize import described_automaton, guard_lin
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.language.printer import print_assignment, print_expression, print_value
-from sequence_planner.language.resolver import suggestion
-from sequence_planner.language.syntax import FALSE, TRUE, Assignment, Expression
+from sequence_planner.language.resolver import NameScope, expand, suggestion
+from sequence_planner.language.syntax import (
+    FALSE,
+    NOWHERE,
+    TRUE,
+    Assignment,
+    Expression,
+    ExpressionError,
+)
+from sequence_planner.model.sequences import SequencePart
 
 Lines = Iterator[str]
 Guards = Mapping[str, GuardDocument]  # by ability
@@ -37,14 +45,17 @@ def show(
     model: AnyModel,
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]...", help="Show these only: a resource, variable, ability, operation, ..."),
+        typer.Argument(
+            metavar="[NAME]...", help="Show these only: a resource, variable, ability, operation, predicate, type, ..."
+        ),
     ] = None,
     pipelines: Annotated[bool, typer.Option("--pipelines", help="Show the pipelines of topics and flows.")] = False,
     deadline: Deadline = LONGEST,
     memory: Memory = USUAL_MEMORY,
     json: AsJson = False,
 ) -> None:
-    """Show what a model means: its variables, ground abilities with their effects, operations and specifications.
+    """Show what a model means: its variables, ground abilities with their effects, operations and specifications, and
+    the names that it gives to what is said more than once.
 
     A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
     The guard that the supervisor adds to a start stands apart from those that are written, with where it comes from.
@@ -59,15 +70,25 @@ def show(
         _show_pipelines(model, usable_model(model), wanted, json)
         return
     automaton = usable_automaton(model)
-    known = _names(automaton)
+    declared = list(_declared(automaton))
+    known = [*_names(automaton), *(each.name for each in declared)]
+    if not wanted or not all(any(_bears(each, name) for each in known) for name in wanted):
+        written = list(_written(model))
+        declared += written
+        known += [each.name for each in written]
+    declared = [each for each in declared if _chosen(each.name, wanted)]
     for name in wanted:
         if not any(_bears(each, name) for each in known):
             refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
     guards, unfinished = _guards(automaton, wanted, limits)
     if json:
-        print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
+        described = described_automaton(automaton, guards, lambda name: _chosen(name, wanted))
+        names = {
+            section: {each.name: each.content for each in declared if each.section == section} for section in _SECTIONS
+        }
+        print_json({**described, **names})
     else:
-        typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
+        typer.echo("\n".join(_lines(automaton, guards, wanted, declared)).strip("\n"))
     if unfinished:
         raise typer.Exit(FINDINGS)
 
@@ -123,7 +144,7 @@ def _chosen(name: str, wanted: list[str]) -> bool:
     return not wanted or any(_bears(name, each) for each in wanted)
 
 
-def _lines(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
+def _lines(automaton: Automaton, guards: Guards, wanted: list[str], declared: Iterable[_DeclaredName]) -> Lines:
     if not wanted:
         yield f"{automaton.title} ({automaton.name})"
     for resource, title in (*automaton.resources.items(), (None, "The station")):
@@ -155,8 +176,90 @@ def _lines(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
             after = f", for {alarm.delay:g} s" if alarm.delay else ""
             yield from ("", f"alarm {alarm.name}: {title} ({alarm.priority})")
             yield f"  when        {print_expression(alarm.when)}{after}"
+    for each in declared:
+        yield from ("", *each.lines)
     if not wanted and automaton.rest is not None:
         yield from ("", f"rest  {print_expression(automaton.rest)}")
+
+
+# Names for what is said more than once: they are in no automaton.
+
+_SECTIONS = ("values", "relations", "maps", "predicates", "sequences", "types")
+
+
+class _DeclaredName(NamedTuple):
+    section: str
+    name: str
+    lines: tuple[str, ...]
+    content: dict[str, object]
+
+
+def _declared(automaton: Automaton) -> Iterator[_DeclaredName]:
+    """The enumerations and sets, relations, maps and predicates."""
+    vocabulary = automaton.vocabulary
+    for name, values in vocabulary.domains.items():
+        is_ordered = values in vocabulary.ordered
+        line = f"values {name}: {', '.join(values.values)}{', in this order' if is_ordered else ''}"
+        yield _DeclaredName("values", name, (line,), {"values": list(values.values), "ordered": is_ordered})
+    for name, relation in vocabulary.relations.items():
+        first, second = relation.types
+        partners = {one: [other for other in second.values if (one, other) in relation.pairs] for one in first.values}
+        lines = [f"  {one} with {', '.join(others)}" for one, others in partners.items() if others]
+        yield _DeclaredName("relations", name, (f"relation {name}", *lines), dict(partners))
+    for name, table in vocabulary.maps.items():
+        images = {one: table.table[one] for one in table.source.values if one in table.table}
+        lines = [f"  {one} to {print_value(value)}" for one, value in images.items()]
+        yield _DeclaredName("maps", name, (f"map {name}", *lines), dict(images))
+    for name, predicate in vocabulary.predicates.items():
+        parameters = [f"{each}: {', '.join(values.values)}" for each, values in predicate.parameters.items()]
+        when, means = print_expression(predicate.body), _meaning(automaton, name)
+        shown = f"{name}({', '.join(predicate.parameters)})" if parameters else name
+        lines = [*(f"  {'for':10}  {each}" for each in parameters), f"  {'when':10}  {when}"]
+        lines += [] if means is None or means == when else [f"  {'that is':10}  {means}"]
+        content = {
+            "parameters": {each: list(values.values) for each, values in predicate.parameters.items()},
+            "when": when,
+            "means": means,
+        }
+        yield _DeclaredName("predicates", name, (f"predicate {shown}", *lines), content)
+
+
+def _meaning(automaton: Automaton, name: str) -> str | None:
+    """What a predicate stands for; None of one with parameters."""
+    predicate = automaton.vocabulary.predicates[name]
+    if predicate.parameters:
+        return None
+    scope = NameScope(automaton.types, vocabulary=automaton.vocabulary)
+    try:
+        return print_expression(expand(predicate, (), scope, NOWHERE))
+    except ExpressionError:  # it reads the activity of an operation, which nothing else does
+        return None
+
+
+def _written(path: Path) -> Iterator[_DeclaredName]:
+    """The sequences of a station, and its types with their instances, as they are written."""
+    from sequence_planner.model.loader import load_station  # noqa: PLC0415 (few want them)
+    from sequence_planner.model.types.layers import written_types  # noqa: PLC0415
+
+    if not path.is_dir():
+        return  # a plain automaton has neither
+    for name, document in load_station(path).sequences.items():
+        title = f": {document.title}" if document.title else ""
+        content = document.model_dump(mode="json", by_alias=True, exclude_none=True, exclude_defaults=True)
+        lines = tuple(_sequence(document, "  "))
+        yield _DeclaredName("sequences", str(name), (f"sequence {name}{title}", *lines), content)
+    for name, (parameters, instances) in written_types(path).items():
+        lines = tuple(f"  {each}: {what}" for each, what in parameters.items())
+        of = (f"  instances   {', '.join(instances)}",) if instances else ()
+        content = {"parameters": dict(parameters), "instances": instances}
+        yield _DeclaredName("types", name, (f"type {name}", *lines, *of), content)
+
+
+def _sequence(part: SequencePart, margin: str) -> Lines:
+    over = ", ".join(f"{each} in {values}" for each, values in part.each.items())
+    yield f"{margin}{part.kind}{f' for {over}' if over else ''}"
+    for branch in part.branches:
+        yield from _sequence(branch, f"{margin}  ") if isinstance(branch, SequencePart) else (f"{margin}  {branch}",)
 
 
 def _of_resource(automaton: Automaton, resource: str | None) -> tuple[list[Ability], list[Effect]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from pydantic import ValidationError
@@ -16,7 +17,7 @@ from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.model.types.documents import InstanceHead, ParameterDocument, TypeHead
 from sequence_planner.model.types.expansion import Expansion, GivenArgument, given_argument, resource_shape
 from sequence_planner.model.validation import findings_of, shown
-from sequence_planner.model.yaml.reader import MadePlaces, YamlDocument
+from sequence_planner.model.yaml.reader import MadePlaces, YamlDocument, read_yaml
 
 SECTIONS = ("measured", "output", "estimated")
 OF_INSTANCES = frozenset(InstanceHead.model_fields)  # keys that no other resource has
@@ -218,6 +219,30 @@ def document_of(instance: str, layers: list[Layer]) -> YamlDocument:
     places = MadePlaces({}, {})
     content = content_of(instance, layers, [], places)
     return YamlDocument(layers[0].written.document.file, content, places.names, places.values)
+
+
+def written_types(folder: Path) -> dict[str, tuple[dict[str, str], list[str]]]:
+    """The types of a station, each with its parameters and what they are, and its instances.
+
+    Raises `ModelError` for files that cannot be read.
+    """
+    found: dict[str, tuple[dict[str, str], list[str]]] = {}
+    for path in sorted([*folder.glob("types/*.yaml"), *folder.glob("packages/*/types/*.yaml")]):
+        file = path.relative_to(folder).as_posix()
+        written, _ = read_type(read_yaml(path, file), "")
+        if isinstance(written, WrittenInstance) and (name := type_of(file)) is not None:
+            found[name] = {str(each): _in_words(parameter) for each, parameter in written.parameters.items()}, []
+    for path in sorted(folder.glob("resources/*.yaml")):
+        content = read_yaml(path, path.name).content
+        if isinstance(content, dict) and (kind := str(content.get("type"))) in found:
+            found[kind][1].append(path.stem)
+    return found
+
+
+def _in_words(parameter: ParameterDocument) -> str:
+    of = "" if parameter.of is None else f" of {parameter.of}"
+    default = "" if parameter.default is None else f", {parameter.default} where it is not given"
+    return f"{parameter.kind}{of}{default}"
 
 
 class WrittenOut:
