@@ -33,7 +33,10 @@ SCOPE = NameScope(
     },
     ("robot.",),
 )
-TEMPORAL = "is a temporal operator here: temporal operators stand only in `local` formulas of operations and in goals"
+TEMPORAL = (
+    "is a temporal operator here: temporal operators stand only in `local` formulas of operations and in goals of "
+    "plain automata"
+)
 NO_CHAIN = "comparisons do not chain: join two with and"
 
 

@@ -37,7 +37,10 @@ SCOPE = NameScope(
 )
 
 INSIDE = "is a temporal operator here: a temporal formula is no part of a comparison, a sum or `in {...}`"
-TEMPORAL = "is a temporal operator here: temporal operators stand only in `local` formulas of operations and in goals"
+TEMPORAL = (
+    "is a temporal operator here: temporal operators stand only in `local` formulas of operations and in goals of "
+    "plain automata"
+)
 
 
 @given(written_formulas)

@@ -344,6 +344,7 @@ def test_it_means_what_it_says_in_each_state(text: str) -> None:
         assert evaluate(simple, state) is said
 
 
+BEFORE = "`where` stands before the colon, as in all p in poses where p != home: …"
 NEVER = "so this never holds: write a smaller number"
 CANNOT_POSE = "cannot compare one of {unknown, home, a, b} with one of {none, big, small}"
 NO_ORDER = "`{}` is one of {}, which has no order: declare its enumeration with `ordered: true`"
@@ -380,6 +381,12 @@ def _action(text: str) -> object:
             "`q` stands for something else here already: take another word",
         ),
         (_condition, "all q in {p1, ‹p7›}: true", "`p7` is no value; did you mean `p3`?"),
+        (
+            _condition,
+            "any q in pair: bolts[q] == tight ‹where› q < p3",
+            f"expected an operator or the end, found `where`; {BEFORE}",
+        ),
+        (_condition, "any q in pair: where ‹q› < p3: n == 1", f"expected an operator or the end, found `q`; {BEFORE}"),
         (_condition, "any q in pair ‹bolts›[q] == tight", "expected `:` or `where`, found `bolts`"),
         (
             _condition,

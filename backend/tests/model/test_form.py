@@ -65,7 +65,12 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
         (STATION, "{for: {", "{‹each: {", "`each` is not known here"),
         (ARM, "except: [", "‹ignored: [", "`ignored` is not known here"),
         (OPERATIONS, "fetch:\n", "‹fetch:\n  {goal: true}\nother:\n", "`precondition` is missing here"),
-        (ARM, "      leaves:\n        kind: starting\n", "      ‹leaves:\n", "`kind` is missing here"),
+        (
+            ARM,
+            "      leaves:\n        kind: starting\n        when: goto != pose and pose != unknown\n        do: [pose := unknown, moving := true]\n",
+            "      ‹leaves:\n        kind: starting\n        when: goto != pose and pose != unknown\n",
+            "`do` is missing here",
+        ),
         (STATION, "name: cell\n", "‹", "`name` is missing here"),
         (
             ARM,
@@ -153,11 +158,14 @@ def test_form(tmp_path: Path, file: str, old: str, new: str, message: str) -> No
 def test_a_misspelt_key_that_is_needed_is_also_missing(tmp_path: Path) -> None:
     station = copy_of_cell(tmp_path)
     needed, misspelt = replace(
-        station, ARM, "    finish:\n      when: executing", "    ‹finish:\n      ‹wen: executing"
+        station,
+        ARM,
+        "      arrives:\n        kind: executing\n        when: goto != pose and pose == unknown\n        do:",
+        "      ‹arrives:\n        kind: executing\n        when: goto != pose and pose == unknown\n        ‹doo:",
     )
     assert findings(station) == [
-        f"{needed}: `when` is missing here",
-        f"{misspelt}: `wen` is not known here; did you mean `when`?",
+        f"{needed}: `do` is missing here",
+        f"{misspelt}: `doo` is not known here; did you mean `do`?",
     ]
 
 

@@ -13,6 +13,7 @@ from editor.shorthand import SHORTHAND
 from .breaking import findings, replace, write
 
 STATION, ARM = "station.yaml", "resources/arm.yaml"
+PAIR = "a pair is a list of two, such as `[home, left]`: a set or a list stands for each of its values"
 PLACES = "{home, left, right, out}"
 
 
@@ -88,6 +89,15 @@ def press(tmp_path: Path) -> Path:
             "  grip_for: {from: part, to: grip, values: {p2: big, ends",
             "  ‹grip_for: {from: part, to: grip, values: {ends",
             "`grip_for` says nothing for `p2`: add it, or `otherwise`",
+        ),
+        (STATION, "[[home, work], [left", "[‹home, [left", PAIR),
+        (STATION, "[[home, work], [left", "[‹[home], [left", PAIR),
+        (STATION, "[[home, work], [left", "[‹[home, work, out], [left", PAIR),
+        (
+            STATION,
+            "between: [spot, spot]",
+            "between: ‹[spot]",
+            "a relation is between two enumerations or sets: write a list of two, such as `[pose, pose]`",
         ),
         # predicates
         (

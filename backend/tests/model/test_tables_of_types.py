@@ -93,7 +93,7 @@ def test_its_pipelines_have_them(ready: ReadyStation) -> None:
         ("code_of[stop]", "beside(stop)", 22, "`beside` has 2 arguments, found 1"),
         ("values: code_of}", "values: code_for}", 11, "there is no map `code_for`: `maps` of station.yaml or of the "
          "resource declares them; did you mean `code_of`?"),
-        (", otherwise: 7}", "}", 16, "`code_of` says nothing for `oven`: add them, or `otherwise`"),
+        (", otherwise: 7}", "}", 16, "`code_of` says nothing for `oven`: add it, or `otherwise`"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_in_the_type(tmp_path: Path, old: str, new: str, line: int, message: str) -> None:

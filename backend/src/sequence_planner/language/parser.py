@@ -173,7 +173,7 @@ def _misplaced_temporal(text: str, rule: Callable[[_Parser], T]) -> ExpressionEr
 
 def temporal_refused(operator: str, span: Span) -> ExpressionError:
     """The complaint about a temporal operator in an ordinary predicate or an action."""
-    where = "temporal operators stand only in `local` formulas of operations and in goals"
+    where = "temporal operators stand only in `local` formulas of operations and in goals of plain automata"
     return ExpressionError(f"`{operator}` is a temporal operator here: {where}", span)
 
 
@@ -247,7 +247,9 @@ class _Parser:
             meant = _FOREIGN_QUANTIFIERS[last.text.lower()]
             raise ExpressionError(f"`{last.text}` has no meaning here; write {meant}", last.span)
         hint = ""
-        if last.text in QUANTIFIERS and token.kind == "name":
+        if "where" in (token.text, last.text):
+            hint = "; `where` stands before the colon, as in all p in poses where p != home: …"
+        elif last.text in QUANTIFIERS and token.kind == "name":
             hint = f"; a quantifier is written {last.text} word in set: …"
         elif token.kind in _RELATIONS or token.kind == "in":
             hint = "; comparisons do not chain: join two with and"

@@ -10,14 +10,14 @@ there is a case for each of its values. What has no value, as what comes before 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
 from typing import TypeVar
 
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.language.evaluator import RELATIONS
-from sequence_planner.language.lexer import KEYWORDS, PREFIX_LETTERS
+from sequence_planner.language.lexer import PREFIX_LETTERS
 from sequence_planner.language.parser import temporal_refused
 from sequence_planner.language.shorthand.cases import (
     BY_CASES,
@@ -34,11 +34,11 @@ from sequence_planner.language.shorthand.cases import (
     require_few,
     truth_of,
 )
-from sequence_planner.language.shorthand.misuse import decided_by_number, not_among, other_form
+from sequence_planner.language.shorthand.misuse import decided_by_number, not_among, other_form, what_was_meant
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, NamedPredicate, Vocabulary
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import placed_at
-from sequence_planner.language.suggestions import beginning_with, meant, nearest, nearest_of
+from sequence_planner.language.suggestions import beginning_with, meant, nearest
 from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
@@ -683,34 +683,7 @@ def _unknown(name: Name, scope: NameScope, values: Iterable[str]) -> ExpressionE
     if (said := other_form(name, scope.vocabulary, scope.prefixes)) is not None:
         return ExpressionError(said, name.span)
     what = "variable or value" if values else "variable"
-    return ExpressionError(f"unknown {what} `{name}`{_meant(name, scope, values)}", name.span)
-
-
-def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
-    """Say what to write in place of an unknown name, as far as that can be guessed."""
-    word = str(name)
-    if word.lower() in KEYWORDS:
-        return f"; write {word.lower()}"
-    if (last := name.path[-1].name) in values:
-        return f"; did you mean `{last}`?"
-    begun = dict.fromkeys((*scope.short(word + "."), *beginning_with(word + ".", scope.names)))
-    flags = [other for other in begun if "." not in other[len(word) + 1 :]]
-    if 0 < len(flags) < 4:  # an ability or operation, and no resource
-        return f"; write {' or '.join(flags)}"
-    own = [*values, *scope.short(), *scope.parameters, *scope.vocabulary.names_beside(scope.prefixes)]
-    if near := _suggestion_of(word, own, scope.names, 0.7):
-        return near
-    if values:
-        return _suggestion_of(word, own, scope.names, 0.5) or f"; write one of {', '.join(values)}"
-    owners = [other for other, type_ in scope.variables.items() if word in _names(type_)]
-    for prefix in (*scope.prefixes, ""):
-        if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
-            return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
-    return _suggestion_of(word, own, scope.names, 0.5)
-
-
-def _suggestion_of(word: str, own: Collection[str], names: tuple[str, ...], likeness: float) -> str:
-    return meant(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
+    return ExpressionError(f"unknown {what} `{name}`{what_was_meant(name, scope, values)}", name.span)
 
 
 def _names(type_: Type) -> tuple[str, ...]:

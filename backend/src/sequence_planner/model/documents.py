@@ -423,14 +423,30 @@ class SetDocument(DocumentPart):
 Members = ReadValue | Annotated[list[ReadValue], Field(min_length=1)]
 
 
+def _pair(written: object) -> object:
+    if not isinstance(written, list) or len(written) != 2:
+        raise ValueError(
+            "a pair is a list of two, such as `[home, left]`: a set or a list stands for each of its values"
+        )
+    return written
+
+
+def _two_domains(written: object) -> object:
+    if not isinstance(written, list) or len(written) != 2:
+        raise ValueError("a relation is between two enumerations or sets: write a list of two, such as `[pose, pose]`")
+    return written
+
+
 class RelationDocument(DocumentPart):
     """A relation between the values of two enumerations, by its pairs."""
 
-    between: Annotated[list[TypeName], Field(min_length=2, max_length=2)]
+    between: Annotated[list[TypeName], Field(min_length=2, max_length=2), BeforeValidator(_two_domains)]
     """The two enumerations or sets."""
     symmetric: bool = False
     """Whether each pair holds the other way round as well."""
-    pairs: Annotated[list[Annotated[list[Members], Field(min_length=2, max_length=2)]], Field(min_length=1)]
+    pairs: Annotated[
+        list[Annotated[list[Members], Field(min_length=2, max_length=2), BeforeValidator(_pair)]], Field(min_length=1)
+    ]
     """The pairs. A set, or a list, stands for each of its values: `[free, free]` is all pairs of these."""
 
 

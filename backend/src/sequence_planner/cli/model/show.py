@@ -83,10 +83,10 @@ def show(
     guards, unfinished = _guards(automaton, wanted, limits)
     if json:
         described = described_automaton(automaton, guards, lambda name: _chosen(name, wanted))
-        names = {
+        sections = {
             section: {each.name: each.content for each in declared if each.section == section} for section in _SECTIONS
         }
-        print_json({**described, **names})
+        print_json({**described, **sections})
     else:
         typer.echo("\n".join(_lines(automaton, guards, wanted, declared)).strip("\n"))
     if unfinished:
@@ -191,7 +191,7 @@ class _DeclaredName(NamedTuple):
     section: str
     name: str
     lines: tuple[str, ...]
-    content: dict[str, object]
+    content: Mapping[str, object]
 
 
 def _declared(automaton: Automaton) -> Iterator[_DeclaredName]:
@@ -216,7 +216,7 @@ def _declared(automaton: Automaton) -> Iterator[_DeclaredName]:
         shown = f"{name}({', '.join(predicate.parameters)})" if parameters else name
         lines = [*(f"  {'for':10}  {each}" for each in parameters), f"  {'when':10}  {when}"]
         lines += [] if means is None or means == when else [f"  {'that is':10}  {means}"]
-        content = {
+        content: dict[str, object] = {
             "parameters": {each: list(values.values) for each, values in predicate.parameters.items()},
             "when": when,
             "means": means,
@@ -248,11 +248,11 @@ def _written(path: Path) -> Iterator[_DeclaredName]:
         content = document.model_dump(mode="json", by_alias=True, exclude_none=True, exclude_defaults=True)
         lines = tuple(_sequence(document, "  "))
         yield _DeclaredName("sequences", str(name), (f"sequence {name}{title}", *lines), content)
-    for name, (parameters, instances) in written_types(path).items():
+    for kind, (parameters, instances) in written_types(path).items():
         lines = tuple(f"  {each}: {what}" for each, what in parameters.items())
         of = (f"  instances   {', '.join(instances)}",) if instances else ()
-        content = {"parameters": dict(parameters), "instances": instances}
-        yield _DeclaredName("types", name, (f"type {name}", *lines, *of), content)
+        said = {"parameters": parameters, "instances": instances}
+        yield _DeclaredName("types", kind, (f"type {kind}", *lines, *of), said)
 
 
 def _sequence(part: SequencePart, margin: str) -> Lines:
