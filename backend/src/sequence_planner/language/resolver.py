@@ -10,14 +10,14 @@ there is a case for each of its values. What has no value, as what comes before 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import product
 from typing import TypeVar
 
 from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.language.evaluator import RELATIONS
-from sequence_planner.language.lexer import PREFIX_LETTERS
+from sequence_planner.language.lexer import KEYWORDS, PREFIX_LETTERS
 from sequence_planner.language.parser import temporal_refused
 from sequence_planner.language.shorthand.cases import (
     BY_CASES,
@@ -34,11 +34,18 @@ from sequence_planner.language.shorthand.cases import (
     require_few,
     truth_of,
 )
-from sequence_planner.language.shorthand.misuse import decided_by_number, not_among, other_form, what_was_meant
+from sequence_planner.language.shorthand.misuse import (
+    decided_by_number,
+    hint_of_truth,
+    not_among,
+    other_form,
+    unfit,
+    unordered,
+)
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, NamedPredicate, Vocabulary
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import placed_at
-from sequence_planner.language.suggestions import beginning_with, meant, nearest
+from sequence_planner.language.suggestions import beginning_with, meant, nearest, nearest_of
 from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
@@ -258,7 +265,7 @@ def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> s
 def _truth(expression: Expression, scope: NameScope) -> Expression:
     resolved, found = _typed(expression, scope, BOOLEAN)
     if not isinstance(found, BooleanType):
-        raise _expected(BOOLEAN, found, expression)
+        raise unfit(BOOLEAN, found, expression)
     return truth_of(resolved, expression.span) if isinstance(resolved, BY_CASES) else resolved
 
 
@@ -271,20 +278,8 @@ def _written(expression: Expression, scope: NameScope, expected: Type) -> Expres
         resolved = truth_of(resolved, expression.span)
     fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else overlap(found, expected)
     if not fits:
-        raise _expected(expected, found, expression)
+        raise unfit(expected, found, expression)
     return resolved
-
-
-def _expected(expected: Type, found: Type, expression: Expression) -> ExpressionError:
-    message = f"expected {described(expected)}, found {described(found)}{_truth_value(expected, found)}"
-    return ExpressionError(message, expression.span)
-
-
-def _truth_value(expected: Type, found: Type) -> str:
-    """Say what to write for 0 and 1 where a truth value is meant."""
-    if expected != BOOLEAN or found not in (IntegerRange(0, 0), IntegerRange(1, 1)):
-        return ""
-    return "; write true" if found == IntegerRange(1, 1) else "; write false"
 
 
 def _typed(expression: Expression, scope: NameScope, expected: Type | None) -> tuple[Dependent, Type]:
@@ -560,14 +555,14 @@ def _in_order(name: Name, scope: NameScope) -> tuple[Dependent, Type]:
         set_name = name.argument(0)
         domain = _domain(set_name, scope)
         if (order := vocabulary.order_of(domain)) is None:
-            raise _unordered(str(set_name), domain, set_name.span)
+            raise unordered(str(set_name), domain, set_name.span)
         values = [value for value in order.values if value in domain.values]
         return Constant(values[ENDS[head.name]], name.span), domain
     _require_arguments(name, head.name, ("a value",))
     written = name.argument(0)
     value, type_ = _value_of_argument(written, scope)
     if not isinstance(type_, EnumerationType) or (order := vocabulary.order_of(type_)) is None:
-        raise _unordered(str(written), type_, written.span)
+        raise unordered(str(written), type_, written.span)
     step = STEPS[head.name]
     neighbours = zip(order.values, order.values[1:], strict=False)
     table = dict(neighbours if step > 0 else ((after, before) for before, after in neighbours))
@@ -581,11 +576,6 @@ def _value_of_argument(written: Name, scope: NameScope) -> tuple[Dependent, Type
             if str(written) in order.values:
                 return Constant(str(written), written.span), EnumerationType((str(written),))
     return _typed(written, scope, None)
-
-
-def _unordered(written: str, type_: Type, span: Span) -> ExpressionError:
-    message = f"`{written}` is {described(type_)}, which has no order: declare its enumeration with `ordered: true`"
-    return ExpressionError(message, span)
 
 
 def _dynamic(name: Name, scope: NameScope) -> tuple[Dependent, Type] | None:
@@ -683,7 +673,36 @@ def _unknown(name: Name, scope: NameScope, values: Iterable[str]) -> ExpressionE
     if (said := other_form(name, scope.vocabulary, scope.prefixes)) is not None:
         return ExpressionError(said, name.span)
     what = "variable or value" if values else "variable"
-    return ExpressionError(f"unknown {what} `{name}`{what_was_meant(name, scope, values)}", name.span)
+    return ExpressionError(f"unknown {what} `{name}`{_meant(name, scope, values)}", name.span)
+
+
+def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
+    """Say what to write in place of an unknown name, as far as that can be guessed."""
+    word = str(name)
+    if word.lower() in KEYWORDS:
+        return f"; write {word.lower()}"
+    if (last := name.path[-1].name) in values:
+        return f"; did you mean `{last}`?"
+    begun = dict.fromkeys((*scope.short(word + "."), *beginning_with(word + ".", scope.names)))
+    flags = [other for other in begun if "." not in other[len(word) + 1 :]]
+    if 0 < len(flags) < 4:  # an ability or operation, and no resource
+        return f"; write {' or '.join(flags)}"
+    own = [*values, *scope.short(), *scope.parameters, *scope.vocabulary.names_beside(scope.prefixes)]
+    if near := _suggestion_of(word, own, scope.names, 0.7):
+        return near
+    if values:
+        return _suggestion_of(word, own, scope.names, 0.5) or f"; write one of {', '.join(values)}"
+    owners = [
+        other for other, type_ in scope.variables.items() if isinstance(type_, EnumerationType) and word in type_.values
+    ]
+    for prefix in (*scope.prefixes, ""):
+        if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
+            return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
+    return _suggestion_of(word, own, scope.names, 0.5)
+
+
+def _suggestion_of(word: str, own: Collection[str], names: tuple[str, ...], likeness: float) -> str:
+    return meant(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
 
 
 def _names(type_: Type) -> tuple[str, ...]:
@@ -758,7 +777,7 @@ def _comparable(expression: Expression, type_: Type, scope: NameScope) -> Depend
     resolved, found = _typed(expression, scope, type_)
     # A parameter counts with all its values, so that an ability means the same for each of them.
     if not overlap(found, type_):
-        hint = _truth_value(type_, found)
+        hint = hint_of_truth(type_, found)
         raise ExpressionError(f"cannot compare {described(type_)} with {described(found)}{hint}", expression.span)
     return resolved
 

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.language.shorthand.vocabulary import Vocabulary
-from sequence_planner.language.suggestions import beginning_with, meant, nearest, nearest_of
-from sequence_planner.language.syntax import Binder, Name, Quantified
-from sequence_planner.language.types import EnumerationType, described
-
-if TYPE_CHECKING:
-    from sequence_planner.language.resolver import NameScope
+from sequence_planner.language.syntax import Binder, Expression, ExpressionError, Name, Quantified, Span
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, described
 
 # Numbers in quantifiers.
 
@@ -104,33 +98,23 @@ def _free_word(word: str, vocabulary: Vocabulary) -> str:
     return next((each for each in (word[:1], f"one_{word}") if each not in values), f"each_{word}")
 
 
-# Names that nothing has.
+# Values of a type that does not fit.
 
 
-def what_was_meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
-    """Say what to write in place of an unknown name, as far as that can be guessed."""
-    word = str(name)
-    if word.lower() in KEYWORDS:
-        return f"; write {word.lower()}"
-    if (last := name.path[-1].name) in values:
-        return f"; did you mean `{last}`?"
-    begun = dict.fromkeys((*scope.short(word + "."), *beginning_with(word + ".", scope.names)))
-    flags = [other for other in begun if "." not in other[len(word) + 1 :]]
-    if 0 < len(flags) < 4:  # an ability or operation, and no resource
-        return f"; write {' or '.join(flags)}"
-    own = [*values, *scope.short(), *scope.parameters, *scope.vocabulary.names_beside(scope.prefixes)]
-    if near := _suggestion_of(word, own, scope.names, 0.7):
-        return near
-    if values:
-        return _suggestion_of(word, own, scope.names, 0.5) or f"; write one of {', '.join(values)}"
-    owners = [
-        other for other, type_ in scope.variables.items() if isinstance(type_, EnumerationType) and word in type_.values
-    ]
-    for prefix in (*scope.prefixes, ""):
-        if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
-            return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
-    return _suggestion_of(word, own, scope.names, 0.5)
+def unfit(expected: Type, found: Type, expression: Expression) -> ExpressionError:
+    """An expression of another type than the one expected there."""
+    message = f"expected {described(expected)}, found {described(found)}{hint_of_truth(expected, found)}"
+    return ExpressionError(message, expression.span)
 
 
-def _suggestion_of(word: str, own: Collection[str], names: tuple[str, ...], likeness: float) -> str:
-    return meant(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
+def hint_of_truth(expected: Type, found: Type) -> str:
+    """Say what to write for 0 and 1 where a truth value is meant."""
+    if expected != BOOLEAN or found not in (IntegerRange(0, 0), IntegerRange(1, 1)):
+        return ""
+    return "; write true" if found == IntegerRange(1, 1) else "; write false"
+
+
+def unordered(written: str, type_: Type, span: Span) -> ExpressionError:
+    """A value of an enumeration whose values have no order."""
+    message = f"`{written}` is {described(type_)}, which has no order: declare its enumeration with `ordered: true`"
+    return ExpressionError(message, span)
