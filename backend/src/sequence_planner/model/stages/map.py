@@ -53,7 +53,7 @@ from sequence_planner.model.stages.support import (
 
 # `map`: each value becomes another.
 
-ValueTable = Mapping[SourceText, Scalar | str]
+ValueTable = Mapping[SourceText, object]
 
 
 def is_same(one: object, other: object) -> bool:
@@ -87,14 +87,13 @@ class MapDocument(StageDeclaration):
             return None
         path, source_type = found
         rest = [] if self.otherwise is None else [self.otherwise]
-        written_table = self.values
         table: ValueTable | None
-        if isinstance(written_table, SourceText):
-            table = table_of_map(written_table, source, source_type, target, context)
+        if isinstance(self.values, SourceText):
+            table = table_of_map(self.values, source, source_type, target, context)
             if table is None:
                 return None
         else:
-            table = written_table
+            table = self.values
         target_type = type_for(context, target, [*(table or {}).values(), *rest])
         if target_type is None:
             return None

@@ -125,6 +125,7 @@ export const model = {
 		start: 'Start',
 		when: 'When',
 		do: 'Actions',
+		until: 'Until',
 		executing: 'Executing',
 		finished: 'Finished',
 		cancel: 'Calling off',

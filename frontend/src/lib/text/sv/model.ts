@@ -123,6 +123,7 @@ export const model: Text['model'] = {
 		start: 'Start',
 		when: 'När',
 		do: 'Handlingar',
+		until: 'Tills',
 		executing: 'Pågår',
 		finished: 'Klar',
 		cancel: 'Avbrott',
