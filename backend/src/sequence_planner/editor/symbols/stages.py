@@ -89,7 +89,10 @@ class Stages:
                 self.names.naming.note_table(mark.kind, where.to(*path), text, self.names.resource)
             if isinstance(mark, ValueMark) and text != mark.but:
                 enumeration = _of_entry(path, made if mark.of_given else ranges)
-                self.names.naming.note_value(enumeration, where.to(*path), text)
+                if enumeration is not None and not mark.of_given:  # a set may stand for several
+                    self.names.naming.note_member(enumeration, where.to(*path), text)
+                else:
+                    self.names.naming.note_value(enumeration, where.to(*path), text)
 
     def _read(self, text: SourceText, where: Where, mark: NameMark, use: NameUse) -> _Read:
         before = len(self.names.naming.gathered.occurrences)
