@@ -201,7 +201,7 @@ export const model = {
 		from: (type: string): string => `From type ${type}:`,
 		changed: (type: string): string => `Changed here. Type ${type} has:`,
 		reset: 'Reset to the type’s',
-		resetOf: (field: string): string => `Reset ${field} to the type’s`
+		resetOf: (field: string): string => `Reset to the type’s: ${field}`
 	},
 	required: 'needed',
 	otherwise: (value: string): string => `without it: ${value}`,

@@ -198,7 +198,7 @@ export const model: Text['model'] = {
 		from: (type) => `Från typen ${type}:`,
 		changed: (type) => `Ändrat här. Typen ${type} har:`,
 		reset: 'Återställ till typens',
-		resetOf: (field) => `Återställ ${field} till typens`
+		resetOf: (field) => `Återställ till typens: ${field}`
 	},
 	required: 'krävs',
 	otherwise: (value) => `utan det: ${value}`,
