@@ -26,6 +26,7 @@ STATIONS = {
     "shorthand": SHORTHAND,
 }
 LARGE = of_folder(REPOSITORY / "models" / "truck_engine_station")
+TYPED = of_folder(REPOSITORY / "models" / "robots_with_buffer")  # its laws are in test_types
 FRESH = "z9"
 
 
@@ -104,7 +105,7 @@ def test_every_part_there_and_back(station: str, tmp_path: Path) -> None:
 def test_every_kind_of_part_is_among_them(tmp_path: Path) -> None:
     write(IN_SEQUENCE, tmp_path)
     messages = messages_of(tmp_path)
-    assert {part.kind for files in (IN_SEQUENCE, SHORTHAND) for part in parts_of(files, messages)} == set(KINDS)
+    assert {part.kind for files in (IN_SEQUENCE, SHORTHAND, TYPED) for part in parts_of(files, messages)} == set(KINDS)
 
 
 def test_parts_of_a_large_station_there_and_back(tmp_path: Path) -> None:
