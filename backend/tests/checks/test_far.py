@@ -19,6 +19,7 @@ from sequence_planner.analysis.checks.feasibility import UNKNOWN
 from sequence_planner.analysis.checks.large_reachability import FarAnswers, FarInquiry, from_afar
 from sequence_planner.analysis.checks.reachability import Questions
 from sequence_planner.analysis.checks.supervised import subjects_of
+from sequence_planner.analysis.checks.ways import LayeredWay
 from sequence_planner.analysis.finding import without_numbers
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
@@ -122,6 +123,15 @@ def with_edits(choices: Choices) -> list[Automaton]:
     return versions
 
 
+def with_tightened_guard(choices: Choices) -> tuple[Automaton, Automaton]:
+    """A random station, and the same with a condition more for one start."""
+    made = with_operations(choices)
+    scope = [Variable(name, variable.type) for name, variable in made.variables.items()]
+    ability = made.abilities[choices.pick(sorted(made.abilities))]
+    tightened = replace(ability, start_guard=conjunction(ability.start_guard, equality(choices, scope)))
+    return made, replace(made, abilities={**made.abilities, ability.name: tightened})
+
+
 @examples(80)
 @given(made_by(with_edits))
 def test_after_an_edit_what_was_known_leads_to_what_the_definition_says(versions: list[Automaton]) -> None:
@@ -145,8 +155,34 @@ def test_after_an_edit_no_step_leads_out_of_a_trap_and_ways_lead_on(versions: li
         within, steps = inquiry.perhaps_reached(), inquiry.limited(inquiry.plant, inquiry.plant.helpful)
         for trap in inquiry.traps:
             assert not any((step.after(trap) & within & ~trap).satisfiable() for step in steps)
-        for target, states in inquiry.ways:
-            assert not (states & within & ~reaching(inquiry.diagrams, target & within, steps, within)).satisfiable()
+        for way in inquiry.ways:
+            leading = reaching(inquiry.diagrams, way.target & within, steps, within)
+            assert not (way.states & within & ~leading).satisfiable()
+
+
+@examples(80)
+@given(made_by(with_tightened_guard))
+def test_after_a_guard_was_tightened_it_is_known_what_does_not_need_it(versions: tuple[Automaton, Automaton]) -> None:
+    """From all states from where no way met a start that is taken away."""
+    made, other = versions
+    known = proven(made)
+    inquiry = FarInquiry(about(other), NodeLimit(1 << 30), known.ordered(other.variables))
+    inquiry.recall(known)
+    within, diagrams = inquiry.perhaps_reached(), inquiry.diagrams
+    assume(not (diagrams.imported(known.reached[True]) & diagrams.valid & ~within).satisfiable())
+    before = Plant(made, diagrams.names, diagrams=diagrams)
+    steps = [*before.helpful, *before.all_starts]
+    taken_away = diagrams.disjunction(
+        before.where(conjunction(each.enabled, each.start_guard))
+        & ~before.where(conjunction(other.abilities[name].enabled, other.abilities[name].start_guard))
+        for name, each in made.abilities.items()
+    )
+    unneeded = within & ~reaching(diagrams, taken_away & within, steps, within)
+    ways = {way.target: way.states for way in inquiry.ways}
+    for target, layers in known.ways:
+        leading = diagrams.imported(layers[-1]) & diagrams.valid & unneeded
+        found = ways.get(diagrams.imported(target) & diagrams.valid, diagrams.false)
+        assert not (leading & ~found).satisfiable()
 
 
 @examples(80)
@@ -167,9 +203,13 @@ def proven(made: Automaton) -> Evidence:
     within, steps = inquiry.perhaps_reached(), inquiry.limited(inquiry.plant, inquiry.plant.helpful)
     for operation in made.operations.values():
         goal = inquiry.plant.where(operation.goal)
-        leading = reaching(inquiry.diagrams, goal & within, steps, within)
-        inquiry.ways.append((goal, leading))
-        inquiry.traps.append(within & ~leading)
+        layers = [goal & within]
+        while (further := layers[-1] | inquiry.diagrams.disjunction(s.before(layers[-1]) for s in steps) & within) != (
+            layers[-1]
+        ):
+            layers.append(further)
+        inquiry.ways.append(LayeredWay.of(goal, layers))
+        inquiry.traps.append(within & ~layers[-1])
     return inquiry.evidence(Supervisor(inquiry.diagrams.exported(inquiry.safe), {}))
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from oxidd.util import BooleanOperator
+
 from sequence_planner.synthesis.bdd import Diagrams, Function
 from sequence_planner.synthesis.transition_relation import (
     BitUpdate,
@@ -23,26 +25,44 @@ def included(
 
     False also where that is only not seen: a step is looked for among those of its kind that write the same.
     """
-    return all(_is_one_of(diagrams, step, others, states) for step in some)
+    begun = (_begun(diagrams, step, others, states) for step in some)
+    return all(each is not None and not each.satisfiable() for each in begun)
 
 
-def _is_one_of(diagrams: Diagrams, step: TransitionStep, others: Sequence[TransitionStep], states: Function) -> bool:
+def lost(
+    diagrams: Diagrams, some: Iterable[TransitionStep], others: Sequence[TransitionStep], states: Function
+) -> Function | None:
+    """Return those of `states` in which some can be taken that is none of `others`, and perhaps more; None where that
+    cannot be told.
+    """
+    found = diagrams.false
+    for step in some:
+        if (begun := _begun(diagrams, step, others, states)) is None:
+            return None
+        found |= begun
+    return found
+
+
+def _begun(
+    diagrams: Diagrams, step: TransitionStep, others: Sequence[TransitionStep], states: Function
+) -> Function | None:
     match step:
         case Stutter():
-            return True  # it leads nowhere else
+            return diagrams.false  # it leads nowhere else
         case BitUpdate(guard, values, written):
             alike = (e.guard for e in others if isinstance(e, BitUpdate) and (e.values, e.written) == (values, written))
-            return not (states & guard & ~diagrams.disjunction(alike)).satisfiable()
+            return states & guard & ~diagrams.disjunction(alike)
         case TransitionRelation(relation, now, afterwards):
             found = [
                 e for e in others if isinstance(e, TransitionRelation) and (e.now, e.afterwards) == (now, afterwards)
             ]
-            return not (states & relation & ~diagrams.disjunction(e.relation for e in found)).satisfiable()
-        case Flip():
-            return any(isinstance(each, Flip) and each.top == step.top for each in others)
-        case Reaction():
-            return any(isinstance(each, Reaction) and _reacts(diagrams, step, each, states) for each in others)
-    return False
+            other = diagrams.disjunction(e.relation for e in found)
+            return states.apply_exists(BooleanOperator.AND, relation & ~other, afterwards)
+        case Flip() if any(isinstance(each, Flip) and each.top == step.top for each in others):
+            return diagrams.false
+        case Reaction() if any(isinstance(each, Reaction) and _reacts(diagrams, step, each, states) for each in others):
+            return diagrams.false
+    return None
 
 
 def _reacts(diagrams: Diagrams, one: Reaction, other: Reaction, states: Function) -> bool:

@@ -7,15 +7,15 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property, reduce
-from operator import or_
+from functools import cached_property, partial
 
+from sequence_planner.analysis.checks.ways import MOST_AGAIN, LayeredWay, Removal
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.tick import apply_effects, initial_state, synchronise
 from sequence_planner.planning.problem import PlanTick
 from sequence_planner.synthesis.bdd import Function
-from sequence_planner.synthesis.inclusion import included
+from sequence_planner.synthesis.inclusion import included, lost
 from sequence_planner.synthesis.traces import StepKind, Steps, Trace, TraceStep, Valuation, forbidding
 from sequence_planner.synthesis.transition_relation import (
     NodeLimit,
@@ -192,7 +192,8 @@ def known_values(state: State) -> Valuation:
 # It is plain data, and a proposal: of an edited model nothing of it is believed. A run is taken again, step by step, on
 # the reference. A set that is said to have all that is reached is tested for having the initial states and for no step
 # leading out, and what leads out of it is added. That from some states others can be reached holds where the edited
-# model can do in them whatever the former could, which is found out by comparing the steps of the two, as sets.
+# model can do in them whatever the former could, which is found out by comparing the steps of the two, as sets; around
+# those where it cannot, other steps are looked for (`ways`).
 
 MOST_ADDED = 6_000_000  # nodes, see `synthesis.transition_relation`, for what an edit adds to what is reached
 _MOST_OF_TRAP = 1_000_000  # the same for what it adds to a trap
@@ -203,9 +204,9 @@ class Evidence:
     """The evidence found of `automaton` under its `supervisor`, over the variables of `order`.
 
     `reached` has at least what is reached with the supervisor (True) and without, as found with parts of so large a
-    `level`. `ways` are states, and more from which some of these can be reached within the former set without faults.
-    Nothing leads out of a trap without faults: of `traps` with the supervisor, of `bounds` without. With
-    `guards_of_safe` too much is reached to look for guards there only.
+    `level`. `ways` are states, and more from which some of these can be reached within the former set without faults,
+    in the layers of a `LayeredWay`. Nothing leads out of a trap without faults: of `traps` with the supervisor, of
+    `bounds` without. With `guards_of_safe` too much is reached to look for guards there only.
     """
 
     automaton: Automaton
@@ -214,7 +215,7 @@ class Evidence:
     reached: Mapping[bool, StateSet]
     level: Mapping[bool, int]
     runs: tuple[KeptStep, ...]
-    ways: tuple[tuple[StateSet, StateSet], ...]
+    ways: tuple[tuple[StateSet, tuple[StateSet, ...]], ...]
     traps: tuple[StateSet, ...]
     bounds: tuple[StateSet, ...]
     guards_of_safe: bool = False
@@ -239,21 +240,6 @@ def closed(states: Function, new: Function, steps: Sequence[TransitionStep], wit
     return states
 
 
-def joining(states: Function, target: Function, steps: Sequence[TransitionStep]) -> Function:
-    """Those of `states` from which `steps` lead to `target` without leaving them; quick where they are few."""
-    images = [step.after(states) for step in steps]
-    left, new = states & ~target, target
-    while new.satisfiable():
-        reached = (
-            step.before(there)
-            for step, image in zip(steps, images, strict=True)
-            if (there := image & new).satisfiable()
-        )
-        new = left & reduce(or_, reached, left & ~left)
-        left &= ~new
-    return states & ~left
-
-
 class Again:
     """The evidence kept of another model, in the `plant` of this one."""
 
@@ -274,13 +260,27 @@ class Again:
             self.exported[states] = kept
         return states
 
-    def ways(self, within: Function) -> Iterator[tuple[Function, Function]]:
-        """The ways of the other model, if that can do nothing in the states they are about that this one cannot."""
-        if self._before is None or (self._there & ~within).satisfiable():
+    def ways(self, within: Function) -> Iterator[LayeredWay]:
+        """The ways of the other model, as far as they are soon seen to be ways of this one."""
+        if self._before is None:
             return
-        if included(self._plant.diagrams, self._before, self._now, self._there):
-            for target, states in self.kept.ways:
-                yield self.states(target), self.states(states) & self._there
+        begun = lost(self._plant.diagrams, self._before, self._now, self._there)
+        if begun is None:
+            return
+        removal = Removal(begun, self._there & ~within, self._before, self._now, within)
+        effort = NodeLimit(MOST_AGAIN)
+        for target, layers in self.kept.ways:
+            states = self.states(layers[-1]) & self._there
+            way = LayeredWay(self.states(target), states, partial(self._layers, layers), self._as_kept(layers))
+            if (still := removal.still(way, effort)) is not None:
+                yield still
+
+    def _layers(self, kept: tuple[StateSet, ...]) -> tuple[Function, ...]:
+        return tuple(self.states(layer) & self._there for layer in kept)
+
+    def _as_kept(self, layers: tuple[StateSet, ...]) -> tuple[StateSet, ...] | None:
+        """The same, if they mean the same in the diagrams of this model."""
+        return layers if self._plant.diagrams.names == self.kept.order else None
 
     def added(self, within: Function) -> Function:
         """Return what this model may reach of `within` and the other did not; nothing where the two differ too much."""

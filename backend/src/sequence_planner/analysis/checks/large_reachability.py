@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
-from sequence_planner.analysis.checks.evidence import Again, Evidence, Runs, grown, joining
+from sequence_planner.analysis.checks.evidence import Again, Evidence, Runs, grown
 from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding, Possibility, Subject
 from sequence_planner.analysis.checks.reachability import Questions, ReachabilityQuery, bits
+from sequence_planner.analysis.checks.ways import LayeredWay, joined, joining
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.language.syntax import Expression
@@ -88,9 +89,8 @@ class FarInquiry(ReachabilityQuery):
         self._runs = Runs(self.plant, self.safe)
         self._more: dict[bool, Function] = {}
         self._level = {True: 0, False: 0}
-        # States, and others from which some of them can be reached; and such as nothing leads out of.
-        self.ways: list[tuple[Function, Function]] = []
-        self.traps: list[Function] = []
+        self.ways: list[LayeredWay] = []
+        self.traps: list[Function] = []  # states that nothing leads out of
         self._bounds: list[Function] = []
         self._again: Again | None = None
         self._added = self.diagrams.false  # to what may be reached, by an edit
@@ -131,10 +131,14 @@ class FarInquiry(ReachabilityQuery):
             {supervised: self._exported(states) for supervised, states in self._more.items()},
             dict(self._level),
             self._runs.kept(),
-            tuple((self._exported(target), self._exported(states & within)) for target, states in self.ways[-_KEPT:]),
+            tuple(self._exported_way(way, within) for way in self.ways[-_KEPT:]),
             tuple(self._exported(trap & within) for trap in self.traps[-_KEPT:]),
             tuple(map(self._exported, self._bounds)),
         )
+
+    def _exported_way(self, way: LayeredWay, within: Function) -> tuple[StateSet, tuple[StateSet, ...]]:
+        layers = way.kept or tuple(self._exported(layer & within) for layer in way.layers)
+        return self._exported(way.target), layers
 
     def _exported(self, states: Function) -> StateSet:
         known = None if self._again is None else self._again.exported.get(states)
@@ -224,15 +228,19 @@ class FarInquiry(ReachabilityQuery):
                 self.traps.remove(trap)
                 self.traps.append(trap)
                 return trap & left & known
-        begin = self._known_to_lead(goal, within)
-        if (left & ~begin).satisfiable():
-            begin |= self._newly_leading(goal, begin)
-        if not (left := left & ~begin).satisfiable():
-            self._learn_way(goal, begin)
+        ways = [way for way in self.ways if not (way.target & within & ~goal).satisfiable()]
+        begin = self.diagrams.disjunction(way.states for way in ways) & within
+        if not (left & ~begin).satisfiable():
+            self.ways = [*(way for way in self.ways if way not in ways), *ways]  # these have served last
+            return left & ~begin
+        layers = joined(self.diagrams, ways, within)
+        layers += (begin | self._newly_leading(goal, begin),)
+        if not (left := left & ~layers[-1]).satisfiable():
+            self._learn_way(LayeredWay.of(goal, layers))
             return left
         whole, looked = self.effort, False
         self.effort = NodeLimit(_SOON, whole=whole)
-        growing = _Growing(begin | self.seen(goal, within), within)
+        growing = _Growing(self.seen(goal, within), layers, within)
         while (left := left & ~growing.seen).satisfiable():
             try:
                 if not growing.go_on(self.limited(self.plant, self.plant.helpful)):
@@ -249,7 +257,7 @@ class FarInquiry(ReachabilityQuery):
         if found.satisfiable():
             self.traps.append(within & ~growing.seen)
         else:
-            self._learn_way(goal, growing.seen)
+            self._learn_way(LayeredWay.of(goal, growing.layers))
         return found
 
     def _newly_leading(self, goal: Function, known: Function) -> Function:
@@ -267,18 +275,10 @@ class FarInquiry(ReachabilityQuery):
         finally:
             self.effort = asked
 
-    def _learn_way(self, target: Function, states: Function) -> None:
-        """Know that `states` lead to `target`, and forget what says no more than that."""
-
-        def says_more(way: tuple[Function, Function]) -> bool:
-            return (target & ~way[0]).satisfiable() or (way[1] & ~states).satisfiable()
-
-        self.ways = [*filter(says_more, self.ways), (target, states)]
-
-    def _known_to_lead(self, goal: Function, within: Function) -> Function:
-        """The states of `within` from which it is known that `goal` can be brought about."""
-        known = (states for target, states in self.ways if not (target & within & ~goal).satisfiable())
-        return self.diagrams.disjunction(known) & within
+    def _learn_way(self, new: LayeredWay) -> None:
+        """Know it, or what says as much, and forget what says no more."""
+        new = next((way for way in self.ways if way.says(new)), new)
+        self.ways = [*(way for way in self.ways if not new.says(way)), new]
 
     def _stuck_nearby(self, states: Function, goal: Function) -> Function | None:
         """Some of `states` at most one step from a known run that surely do not lead to `goal`; None if none is met."""
@@ -330,10 +330,13 @@ class FarInquiry(ReachabilityQuery):
 
 
 class _Growing:
-    """The states `begin`, and from where steps lead to them within a set; `new` is what has come last."""
+    """The states `begin`, those that are known to lead to them, and from where steps lead to these, within a set, in
+    layers; `new` is what has come last.
+    """
 
-    def __init__(self, begin: Function, within: Function) -> None:
-        self.new = self.seen = begin & within
+    def __init__(self, begin: Function, known: Sequence[Function], within: Function) -> None:
+        self.layers = [(begin | layer) & within for layer in known]
+        self.new = self.seen = self.layers[-1]
         self._within = within
 
     def go_on(self, steps: Sequence[TransitionStep]) -> bool:
@@ -343,6 +346,7 @@ class _Growing:
             before |= step.before(before) & self._within
         self.new = before & ~self.seen
         self.seen |= self.new
+        self.layers.append(self.seen)
         return self.new.satisfiable()
 
 
