@@ -19,8 +19,8 @@ from sequence_planner.analysis.checks.feasibility import UNKNOWN
 from sequence_planner.analysis.checks.large_reachability import FarAnswers, FarInquiry, from_afar
 from sequence_planner.analysis.checks.reachability import Questions
 from sequence_planner.analysis.checks.supervised import subjects_of
-from sequence_planner.analysis.checks.ways import LayeredWay
 from sequence_planner.analysis.finding import without_numbers
+from sequence_planner.analysis.layered_ways import LayeredWay
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.language.evaluator import holds
@@ -208,7 +208,7 @@ def proven(made: Automaton) -> Evidence:
             layers[-1]
         ):
             layers.append(further)
-        inquiry.ways.append(LayeredWay.of(goal, layers))
+        inquiry.ways.append(LayeredWay.in_layers(goal, layers))
         inquiry.traps.append(within & ~layers[-1])
     return inquiry.evidence(Supervisor(inquiry.diagrams.exported(inquiry.safe), {}))
 

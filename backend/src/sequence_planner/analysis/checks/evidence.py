@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 
-from sequence_planner.analysis.checks.ways import MOST_AGAIN, LayeredWay, Removal
+from sequence_planner.analysis.layered_ways import MOST_AGAIN, LayeredWay, Removal
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.tick import apply_effects, initial_state, synchronise
@@ -193,7 +193,7 @@ def known_values(state: State) -> Valuation:
 # the reference. A set that is said to have all that is reached is tested for having the initial states and for no step
 # leading out, and what leads out of it is added. That from some states others can be reached holds where the edited
 # model can do in them whatever the former could, which is found out by comparing the steps of the two, as sets; around
-# those where it cannot, other steps are looked for (`ways`).
+# those where it cannot, other steps are looked for (`analysis.layered_ways`).
 
 MOST_ADDED = 6_000_000  # nodes, see `synthesis.transition_relation`, for what an edit adds to what is reached
 _MOST_OF_TRAP = 1_000_000  # the same for what it adds to a trap

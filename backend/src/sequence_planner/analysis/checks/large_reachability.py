@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from sequence_planner.analysis.checks.evidence import Again, Evidence, Runs, grown
 from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding, Possibility, Subject
 from sequence_planner.analysis.checks.reachability import Questions, ReachabilityQuery, bits
-from sequence_planner.analysis.checks.ways import LayeredWay, joined, joining
+from sequence_planner.analysis.layered_ways import LayeredWay, joined, joining
 from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.language.syntax import Expression
@@ -236,7 +236,7 @@ class FarInquiry(ReachabilityQuery):
         layers = joined(self.diagrams, ways, within)
         layers += (begin | self._newly_leading(goal, begin),)
         if not (left := left & ~layers[-1]).satisfiable():
-            self._learn_way(LayeredWay.of(goal, layers))
+            self._learn_way(LayeredWay.in_layers(goal, layers))
             return left
         whole, looked = self.effort, False
         self.effort = NodeLimit(_SOON, whole=whole)
@@ -257,7 +257,7 @@ class FarInquiry(ReachabilityQuery):
         if found.satisfiable():
             self.traps.append(within & ~growing.seen)
         else:
-            self._learn_way(LayeredWay.of(goal, growing.layers))
+            self._learn_way(LayeredWay.in_layers(goal, growing.layers))
         return found
 
     def _newly_leading(self, goal: Function, known: Function) -> Function:

@@ -58,7 +58,7 @@ class LayeredWay:
         self._layers = layers
 
     @classmethod
-    def of(cls, target: Function, layers: Sequence[Function]) -> LayeredWay:
+    def in_layers(cls, target: Function, layers: Sequence[Function]) -> LayeredWay:
         """The way of these, in no more layers than are kept."""
         count = len(layers)
         chosen = tuple(layers)
@@ -108,7 +108,7 @@ class Removal:
         layers: list[Function] = []
         with suppress(TooMuchError):
             layers.extend(self._sound(way, effort.limited(self.now)))
-        return LayeredWay.of(way.target, layers) if layers and layers[-1].satisfiable() else None
+        return LayeredWay.in_layers(way.target, layers) if layers and layers[-1].satisfiable() else None
 
     def _sound(self, way: LayeredWay, steps: Sequence[TransitionStep]) -> Iterator[Function]:
         nothing = self.lost & ~self.lost
