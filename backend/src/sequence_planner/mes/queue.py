@@ -11,6 +11,7 @@ from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.mes.order import JobOrder, OrderState
+from sequence_planner.texts.message import Message, message
 
 # In which order what may start is begun.
 
@@ -27,12 +28,7 @@ def order_of_work(orders: Sequence[JobOrder]) -> list[JobOrder]:
 # Two orders are in each other's way when they share an operation, or a variable that the products of both bring. What
 # is in the way of an order that comes before it waits for that one, so that nothing is overtaken for ever.
 
-UNHEARD = "the station is not heard"
-_MODES: Mapping[Mode, str] = {
-    Mode.PAUSED: "the station is paused",
-    Mode.HOLD: "the station is held",
-    Mode.RESTART: "the station is in restart mode",
-}
+_UNHEARD = message("order-waits.unheard")
 
 
 @dataclass(frozen=True)
@@ -43,7 +39,7 @@ class Queue:
     """
 
     next: list[JobOrder] = field(default_factory=list)
-    waits: dict[str, list[str]] = field(default_factory=dict)
+    waits: dict[str, list[Message]] = field(default_factory=dict)
     revisions: dict[str, int] = field(default_factory=dict)
 
     def knows(self, order: JobOrder) -> bool:
@@ -62,7 +58,7 @@ def queue(
     found, hindered = Queue(), _station_waits(view)
     worked = _worked(orders, view)
     first: dict[str, str] = {}  # by work master, the title of the first that is not worked yet
-    in_the_way_of: dict[str, list[str]] = {}  # by work master, what is; there are few of these, and many orders
+    in_the_way_of: dict[str, list[Message]] = {}  # by work master, what is; there are few of these, and many orders
     waiting = [each for each in orders if each.state is OrderState.ALLOWED_TO_START and not each.is_at_station]
     for order in sequence(waiting):
         found.revisions[order.id] = order.revision
@@ -76,7 +72,7 @@ def queue(
                 first[master] = order.title
                 in_the_way_of.clear()
         if waits or masters is None:
-            found.waits[order.id] = waits or [UNHEARD]
+            found.waits[order.id] = waits or [_UNHEARD]
         else:
             found.next.append(order)
     return found
@@ -84,11 +80,13 @@ def queue(
 
 def _in_front(
     masters: WorkMastersView, master: str, worked: Sequence[tuple[str, str]], first: Mapping[str, str]
-) -> list[str]:
+) -> list[Message]:
     """Return what an order of this work master waits for, of those that are worked or that come first."""
-    return [f"{title} is being worked" for title, other in worked if in_the_way(masters, master, other)] or [
-        f"{title} comes first" for other, title in first.items() if in_the_way(masters, master, other)
-    ]
+    in_work = [title for title, other in worked if in_the_way(masters, master, other)]
+    if in_work:
+        return [message("order-waits.worked", title=title) for title in in_work]
+    before = [title for other, title in first.items() if in_the_way(masters, master, other)]
+    return [message("order-waits.first", title=title) for title in before]
 
 
 def _worked(orders: Sequence[JobOrder], view: StationView | None) -> list[tuple[str, str]]:
@@ -110,21 +108,22 @@ def in_the_way(masters: WorkMastersView, one: str, other: str) -> bool:
     return bool(operations) or not set(first.brought).isdisjoint(second.brought)
 
 
-def _station_waits(view: StationView | None) -> list[str]:
+def _station_waits(view: StationView | None) -> list[Message]:
     if view is None or view.production is Production.PREPARING:
-        return [UNHEARD if view is None else "the station is being prepared"]
-    waits = [] if view.by_order else ["the station works freely"]
+        return [_UNHEARD if view is None else message("order-waits.preparing")]
+    waits = [] if view.by_order else [message("order-waits.freely")]
     if view.production is not Production.STARTED:
-        waits.append("production is not started")
-    if (mode := _MODES.get(view.mode)) is not None:
-        waits.append(mode)
+        waits.append(message("order-waits.production"))
+    if view.mode is not Mode.AUTOMATIC:
+        waits.append(message(f"order-waits.{view.mode}"))
     return waits
 
 
-def _own_waits(order: JobOrder, masters: WorkMastersView | None, now: float) -> list[str]:
+def _own_waits(order: JobOrder, masters: WorkMastersView | None, now: float) -> list[Message]:
     waits = []
     if order.earliest is not None and order.earliest > now:
-        waits.append(f"not before {datetime.fromtimestamp(order.earliest, UTC):%Y-%m-%d %H:%M:%S} UTC")
+        earliest = datetime.fromtimestamp(order.earliest, UTC)
+        waits.append(message("order-waits.earliest", time=f"{earliest:%Y-%m-%d %H:%M:%S}"))
     if masters is not None and order.work_master not in masters.work_masters:
-        waits.append(f"the station has no work master {order.work_master}")
+        waits.append(message("order-waits.no-master", name=order.work_master))
     return waits

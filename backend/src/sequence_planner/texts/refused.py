@@ -14,7 +14,7 @@ class Refused(Exception):
     """
 
     def __init__(self, slug: str, detail: str, status: int = 409, *, title: str | None = None) -> None:
-        super().__init__(detail)
+        Exception.__init__(self, detail)  # one that is something else as well has its own beginning
         self.slug = slug
         self.title: Message = message(f"refused.{slug}") if title is None else as_it_was(title)
         self.detail: Message = as_it_was(detail)

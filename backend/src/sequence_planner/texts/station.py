@@ -253,4 +253,17 @@ STATION: Final[dict[str, str]] = {
     "watch-state.active": "active",
     "watch-state.revoked": "revoked",
     "watch-state.expired": "expired",
+    # What job orders wait for.
+    "order-waits.unheard": "the station is not heard",
+    "order-waits.preparing": "the station is being prepared",
+    "order-waits.freely": "the station works freely",
+    "order-waits.production": "production is not started",
+    "order-waits.paused": "the station is paused",
+    "order-waits.hold": "the station is held",
+    "order-waits.restart": "the station is in restart mode",
+    "order-waits.earliest": "not before {time} UTC",
+    "order-waits.no-master": "the station has no work master {name}",
+    "order-waits.worked": "{title} is being worked",
+    "order-waits.first": "{title} comes first",
+    "order-waits.take": "the station to take it",
 }

@@ -27,6 +27,7 @@ function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 		ended: null,
 		ended_at: null,
 		waits_for: [],
+		waits_for_messages: [],
 		...rest
 	};
 }

@@ -54,7 +54,7 @@ from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.orders import OrderService
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import Message, message
 
 # A job order as it is answered over REST.
 
@@ -97,6 +97,7 @@ class OrderAnswer(AnswerModel):
     ended: float | None
     ended_at = iso("ended", optional=True)
     waits_for: list[str]
+    waits_for_messages: list[Message]
 
 
 _KEPT = OrderAnswer.model_fields.keys() & JobOrder.model_fields.keys()
@@ -115,7 +116,8 @@ def all_answered(orders: Sequence[JobOrder], desk: OrderService) -> list[OrderAn
             **each.model_dump(include=_KEPT),
             commanded=None if each.wish is None else _COMMANDS[each.wish],
             allowed=[] if each.removed is not None else list(each.allowed),
-            waits_for=waits[each.id],
+            waits_for=[*waits[each.id]],
+            waits_for_messages=waits[each.id],
         )
         for each in orders
     ]

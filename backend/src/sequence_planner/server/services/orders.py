@@ -25,7 +25,7 @@ from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState, Wish
 from sequence_planner.mes.queue import OrderOfWork, Queue, order_of_work, queue
 from sequence_planner.mes.tracker import OrderTracker
 from sequence_planner.server.services.identity import IdentityService
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import Message, message
 
 # What is said to the controller of orders that the station works on or may have been given.
 #
@@ -46,7 +46,7 @@ class OrderDispatch:
         self._office = office
         self._controller = controller
         self._changed = changed
-        self._refused: dict[str, tuple[str, float]] = {}  # why the station has not taken an order, and when
+        self._refused: dict[str, tuple[Message, float]] = {}  # why the station has not taken an order, and when
         # What was wished for when something was said of a job last, and when: older views do not know of it.
         self._said: dict[str, tuple[Wish | None, float]] = {}
         self._strays: dict[str, float] = {}  # jobs under way that nobody waits for any more, and since when
@@ -56,15 +56,15 @@ class OrderDispatch:
         self._said = {id_: said for id_, said in self._said.items() if id_ in known}
         self._refused = {id_: why for id_, why in self._refused.items() if id_ in known}
 
-    def why_refused(self, order: str) -> str | None:
+    def why_refused(self, order: str) -> Message | None:
         """Return why the station has not taken an order when it was given to it last."""
         refused = self._refused.get(order)
         return None if refused is None else refused[0]
 
     def may_take(self, order: str) -> bool:
         """Return whether an order is to be given to the station now, which may have refused it a moment ago."""
-        _, refused = self._refused.get(order, ("", float("-inf")))
-        return time.monotonic() - refused > TRY_AGAIN
+        refused = self._refused.get(order)
+        return refused is None or time.monotonic() - refused[1] > TRY_AGAIN
 
     async def take(self, order: JobOrder) -> None:
         """Have the controller take an order, be it for another time."""
@@ -257,7 +257,7 @@ class OrderService:
         id_ = "refused.unknown-work-master.known" if known else "refused.unknown-work-master.none"
         return OrderRefused("unknown-work-master", message(id_, name=name, known=known), 422)
 
-    def waits_for(self, asked: Sequence[JobOrder]) -> dict[str, list[str]]:
+    def waits_for(self, asked: Sequence[JobOrder]) -> dict[str, list[Message]]:
         """In words why nothing is done for each of these orders now; empty where something is, or nothing is to be.
 
         What was changed since the last look is looked at. Any thread may ask.
@@ -268,11 +268,11 @@ class OrderService:
             now_queued = queue(list(known.values()), view, self._masters, self._office.now(), self.sequence)
         return {each.id: self._waits_for(each, view, now_queued) for each in asked}
 
-    def _waits_for(self, order: JobOrder, view: StationView | None, queued: Queue) -> list[str]:
+    def _waits_for(self, order: JobOrder, view: StationView | None, queued: Queue) -> list[Message]:
         refused = self._dispatch.why_refused(order.id)
         if order.is_at_station:
             job = None if view is None else view.jobs.get(order.id)
-            return job.waits_for if job is not None else [refused or "the station to take it"]
+            return job.waits_for_messages if job is not None else [refused or message("order-waits.take")]
         if not _may_wait(order):
             return []
         return queued.waits.get(order.id) or ([] if refused is None else [refused])
