@@ -307,4 +307,7 @@ def test_every_answer_says_what_the_order_waits_for_as_it_is_read_right_after(me
         mes.put(f"{ORDERS}/engine", json=later, headers={"If-Match": "*"}),
         [*freely, "not before 2126-01-15 06:00:00 UTC"],
     )
+    told = mes.get(f"{ORDERS}/engine").json()["waits_for_messages"]
+    assert [each["id"] for each in told] == ["order-waits.freely", "order-waits.earliest"]
+    assert told[1]["arguments"] == {"time": "2126-01-15 06:00:00"}
     same(tell(mes, "engine", "Abort"), [])

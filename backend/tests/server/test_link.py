@@ -22,6 +22,7 @@ from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.process.unix_socket import SocketTakenError, listen_on
+from sequence_planner.texts.message import message
 from support.example_view import example_view
 from support.examples import TIMED
 
@@ -251,7 +252,7 @@ def test_replies_find_their_commands_whatever_their_order(path: Path) -> None:
     async def handle(command: Command) -> None:
         if command.actor.name == "slow":
             await asyncio.sleep(0.1)
-            raise CommandRefused("too-slow", "Be quicker.", title="Too slow")
+            raise CommandRefused("control-needed", message("refused.control-needed.holder", holder="Eva"))
 
     async def scenario() -> None:
         async with ControllerLink(path, handle) as link:
@@ -262,9 +263,11 @@ def test_replies_find_their_commands_whatever_their_order(path: Path) -> None:
             await asyncio.sleep(0)
             await client.send(SetMode(actor=named("quick"), mode=Mode.PAUSED))
             assert not slow.done()
-            with pytest.raises(CommandRefused, match="Be quicker") as refused:
+            with pytest.raises(CommandRefused, match="Eva is in control") as refused:
                 await slow
-            assert (refused.value.slug, refused.value.status) == ("too-slow", 409)
+            assert (refused.value.slug, refused.value.status) == ("control-needed", 409)
+            assert refused.value.title.id == "refused.control-needed"
+            assert refused.value.detail.arguments == {"holder": "Eva"}
             running.cancel()
 
     asyncio.run(scenario())

@@ -23,6 +23,7 @@ from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan, S
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.server.settings import Settings
+from sequence_planner.texts.message import message
 from support.server import Controller, Loop, Server
 
 from .example_answers import ADVICE, OFFER, example_answer
@@ -110,6 +111,13 @@ def test_refusals_come_in_the_controllers_words(engineer: httpx.Client, controll
     controller.refusal = CommandRefused("advisor-timeout", "Try again.", 504)
     late = problem(engineer.get("recovery/proposals"), 504, "advisor-timeout")
     assert (late["detail"], late["place"]) == ("Try again.", None)
+    assert late["title_message"] == {"id": "refused.advisor-timeout", "arguments": {}}
+    assert late["detail_message"] == {"id": "as-it-was", "arguments": {"text": "Try again."}}
+    why = message("refused.plan-running.title", title=message("offer.try", ability="Move"))
+    controller.refusal = CommandRefused("plan-running", why)
+    running = problem(engineer.get("recovery/proposals"), 409, "plan-running")
+    assert running["detail"] == "Try: Move is being carried out. Wait for its end, or stop it."
+    assert running["detail_message"] == why.sent()
     detail = "character 1, `up`: unknown name `up`"
     place = TextPlace(start=0, end=2, message="unknown name `up`")
     controller.refusal = CommandRefused("bad-predicate", detail, 422, place=place)
