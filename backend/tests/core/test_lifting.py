@@ -273,6 +273,23 @@ def test_two_indices() -> None:
     assert found.title == "go(from, to), for all from in pair, to in pair where from != to"
 
 
+def test_texts_are_told_together_where_they_differ_in_the_value_only() -> None:
+    texts = {f"robot.move({pair}).leaves": (f"at := {pair} if bolts[{pair}] == tight", "p10") for pair in PAIR.values}
+    (found,) = IndexFolding(WORDING).folded_texts(texts, dict.fromkeys(texts))
+    assert found.title == "robot.move(to).leaves, for all to in pair"
+    assert found.conditions == ("at := to if bolts[to] == tight", "p10")
+    texts["robot.move(p2).leaves"] = ("at := p3 if bolts[p2] == tight", "p10")
+    found, alone = IndexFolding(WORDING).folded_texts(texts, dict.fromkeys(texts))
+    assert (found.over, alone.name, alone.conditions) == ("all to in {p1, p3}", *list(texts.items())[1])
+    ways = dict.fromkeys(texts) | {"robot.move(p3).leaves": "otherwise"}
+    assert all(each.over is None for each in IndexFolding(WORDING).folded_texts(texts, ways))
+
+
+def test_a_word_that_stands_in_a_text_already_is_not_taken() -> None:
+    texts = {f"robot.move({pair})": (f"go to {pair}",) for pair in PAIR.values}
+    assert [each.over for each in IndexFolding(WORDING).folded_texts(texts, dict.fromkeys(texts))] == [None] * 3
+
+
 def test_names_of_all_instances_are_one() -> None:
     names = ["never(p1)", "never(p2)", "never(p3)", "other(p1)"]
     found = IndexFolding(WORDING, "specification.").folded_names(names)

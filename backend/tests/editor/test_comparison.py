@@ -51,18 +51,45 @@ def test_the_same_model_in_other_words_does_the_same(tmp_path: Path) -> None:
     assert list(view.text) == ["operations.yaml"]
     assert "-  goal: bolts[pair] == placed\n+  goal: placed == bolts[pair]" in view.text["operations.yaml"]
     assert (view.behaviour, view.plans, view.obstacle) == ([], [], None)
-    assert set(parts(view, "operation")) == {f"place_bolt_pair(bolt_pair_{number})" for number in (1, 2, 3)}
+    assert view.parts is not None
+    (placing,) = view.parts
+    assert (placing.kind, placing.name, placing.over) == ("operation", "place_bolt_pair(pair)", "all pair in bolt_pair")
+    assert placing.members == [f"place_bolt_pair(bolt_pair_{number})" for number in (1, 2, 3)]
+    assert [(each.before, each.after) for each in placing.parts] == [("bolts[pair] == placed", "placed == bolts[pair]")]
+
+
+def test_a_predicate_is_told_by_its_name_with_what_it_means_beside(tmp_path: Path) -> None:
+    tight, loose = "all pair in bolt_pair: bolts[pair] == tightened", "any pair in bolt_pair: bolts[pair] != tightened"
+    written = bolts()
+    written["station.yaml"] += f'\npredicates:\n  done: "{tight}"\n'
+    old, new = dict(written), dict(written)
+    for files, condition in ((old, "done"), (new, "not done")):
+        files["operations.yaml"] += f"\nfinish:\n  precondition: true\n  goal: {condition}\n"
+    view = compare(tmp_path, old, new)
+    assert view.parts is not None
+    (finish,) = view.parts
+    (changed,) = finish.parts
+    assert (changed.before, changed.after) == ("done", "not done")
+    meaning = " and ".join(f"bolts[bolt_pair_{number}] == tightened" for number in (1, 2, 3))
+    assert (changed.before_expanded, changed.after_expanded) == (meaning, f"not ({meaning})")
+    new = dict(old)
+    new["station.yaml"] = old["station.yaml"].replace(tight, loose)
+    view = compare(tmp_path, old, new)
+    assert view.parts is not None
+    ((changed,),) = [each.parts for each in view.parts]
+    assert changed.before == meaning, "of one name with two meanings these are told"
+    assert (changed.before_expanded, changed.after_expanded) == (None, None)
 
 
 def test_a_specification_that_is_gone_sets_starts_free(tmp_path: Path) -> None:
     old, new = bolts(), {path: text for path, text in bolts().items() if path != SPECIFICATIONS}
     view = compare(tmp_path, old, new)
-    placing = parts(view, "ability")["operator.place_bolt_pair(bolt_pair_1)"]
+    placing = parts(view, "ability")["operator.place_bolt_pair(pair)"]
     assert placing == (
         Difference.CHANGED,
-        {"added by the supervisor": ("robot.pose != bolt_pair_1 and robot.target_pose != bolt_pair_1", None)},
+        {"added by the supervisor": ("robot.pose != pair and robot.target_pose != pair", None)},
     )
-    assert parts(view, "specification")["no_standing_tool_on_placed_bolts(bolt_pair_1)"][0] is Difference.GONE
+    assert parts(view, "specification")["no_standing_tool_on_placed_bolts(pair)"][0] is Difference.GONE
     assert view.behaviour is not None
     gained = {each.ability: each for each in view.behaviour}["robot.move_to_position(bolt_pair_1)"]
     assert gained.lost is None

@@ -267,7 +267,9 @@ def test_versions_are_compared(eva: httpx.Client) -> None:
     id = save(eva, "More", number).json()["id"]
     found = read(eva, "/comparison", old="running", new=id)
     assert list(found["text"]) == ["operations.yaml", "station.yaml"]
-    assert {each["name"] for each in found["parts"]} == {f"tighten_bolt_pair(bolt_pair_{n})" for n in (1, 2, 3)}
+    (part,) = found["parts"]
+    assert (part["name"], part["over"]) == ("tighten_bolt_pair(pair)", "all pair in bolt_pair")
+    assert part["members"] == [f"tighten_bolt_pair(bolt_pair_{n})" for n in (1, 2, 3)]
     assert read(eva, "/comparison", old=id)["text"] == {}
     problem(eva.get(f"{MODEL}/comparison", params={"old": "0" * 40}), 404, "no-revision")
     problem(eva.get(f"{MODEL}/comparison", params={"old": "HEAD"}), 422, "invalid-request")

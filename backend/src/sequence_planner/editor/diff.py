@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation, Specification
+from sequence_planner.automaton.declarations import OPERATION
+from sequence_planner.automaton.lifting.index_folding import FoldedStatement, IndexFolding
+from sequence_planner.automaton.lifting.wording import ModelWording, wording_of
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.editor.schemas.diff import (
@@ -84,14 +88,21 @@ def _lines(text: str) -> list[str]:
 
 
 def differences(old: Meant, new: Meant) -> list[PartDifference]:
-    """All parts that are others, new or gone."""
+    """All parts that are others, new or gone, each in the words of its model, and once for all instances of which the
+    same is so.
+    """
+
+    def compared(kind: str, before: _Properties, after: _Properties) -> Iterator[PartDifference]:
+        return _folded(kind, old.automaton, new.automaton, list(_compared(kind, words, before, after)))
+
+    words = wording_of(old.automaton), wording_of(new.automaton)
     return [
-        *_compared("variable", _variables(old.automaton), _variables(new.automaton)),
-        *_compared("ability", _abilities(old), _abilities(new)),
-        *_compared("effect", _effects(old.automaton), _effects(new.automaton)),
-        *_compared("operation", _operations(old.automaton), _operations(new.automaton)),
-        *_compared("specification", _specifications(old.automaton), _specifications(new.automaton)),
-        *_compared("station", {"rest": _rest(old.automaton)}, {"rest": _rest(new.automaton)}),
+        *compared("variable", _variables(old.automaton), _variables(new.automaton)),
+        *compared("ability", _abilities(old), _abilities(new)),
+        *compared("effect", _effects(old.automaton), _effects(new.automaton)),
+        *compared("operation", _operations(old.automaton), _operations(new.automaton)),
+        *compared("specification", _specifications(old.automaton), _specifications(new.automaton)),
+        *compared("station", {"rest": _rest(old.automaton)}, {"rest": _rest(new.automaton)}),
     ]
 
 
@@ -127,8 +138,22 @@ def _starts(plan: Plan | None) -> list[str] | None:
     return None if plan is None else [name for _, name in plan.starts]
 
 
+class _Property(NamedTuple):
+    """A property of a part: its text, and the conditions that it consists of, if it does."""
+
+    text: str
+    conditions: tuple[Expression, ...] = ()
+
+    def words(self, wording: ModelWording) -> str:
+        """The same in the words of a model."""
+        return "; ".join(map(wording.in_words, self.conditions)) if self.conditions else self.text
+
+
+_Properties = Mapping[str, Mapping[str, _Property]]
+
+
 def _compared(
-    kind: str, old: Mapping[str, Mapping[str, str]], new: Mapping[str, Mapping[str, str]]
+    kind: str, words: tuple[ModelWording, ModelWording], old: _Properties, new: _Properties
 ) -> Iterator[PartDifference]:
     for name in dict.fromkeys((*old, *new)):
         before, after = old.get(name), new.get(name)
@@ -136,25 +161,86 @@ def _compared(
             continue
         state = Difference.GONE if after is None else Difference.NEW if before is None else Difference.CHANGED
         parts = [
-            Changed(part=part, before=(before or {}).get(part), after=(after or {}).get(part))
+            _changed(part, words, (before or {}).get(part), (after or {}).get(part))
             for part in dict.fromkeys((*(before or {}), *(after or {})))
             if (before or {}).get(part) != (after or {}).get(part)
         ]
-        yield PartDifference(kind=kind, name=name, state=state, parts=parts)
+        yield PartDifference(kind=kind, name=name, over=None, members=[name], state=state, parts=parts)
 
 
-def _variables(automaton: Automaton) -> dict[str, dict[str, str]]:
+def _changed(
+    part: str, words: tuple[ModelWording, ModelWording], before: _Property | None, after: _Property | None
+) -> Changed:
+    """What is told of a property that is another one: what the models have one name for is written out."""
+    texts = [None if each is None else each.text for each in (before, after)]
+    told = [None if each is None else each.words(wording) for each, wording in zip((before, after), words, strict=True)]
+    if told[0] == told[1]:
+        told = texts
+    expanded = [None if said == text else text for said, text in zip(told, texts, strict=True)]
+    return Changed(part=part, before=told[0], after=told[1], before_expanded=expanded[0], after_expanded=expanded[1])
+
+
+_INDEXED_AS = {"operation": f"{OPERATION}.", "specification": "specification."}
+
+
+def _folded(kind: str, old: Automaton, new: Automaton, parts: Sequence[PartDifference]) -> Iterator[PartDifference]:
+    """Differences of one kind, those of several instances of which the same is so as one."""
+    by_name = {each.name: each for each in parts}
+    found: list[FoldedStatement] = []
+    for automaton, is_there in ((new, True), (old, False)):
+        mine = [each for each in parts if (each.state is not Difference.GONE) is is_there]
+        texts = {each.name: tuple(text for text in _texts(each) if text is not None) for each in mine}
+        ways = {each.name: _way(each) for each in mine}
+        found += IndexFolding(wording_of(automaton), _INDEXED_AS.get(kind, "")).folded_texts(texts, ways)
+    order = list(by_name)
+    for each in sorted(found, key=lambda one: order.index(one.members[0])):
+        first, told = by_name[each.members[0]], iter(each.conditions)
+        worded = [None if text is None else next(told) for text in _texts(first)]
+        changed = [
+            Changed(
+                part=part.part, before=before, after=after, before_expanded=before_expanded, after_expanded=expanded
+            )
+            for part, (before, after, before_expanded, expanded) in zip(first.parts, _by_part(worded), strict=True)
+        ]
+        members = list(each.members)
+        yield PartDifference(
+            kind=kind, name=each.name, over=each.over, members=members, state=first.state, parts=changed
+        )
+
+
+def _texts(difference: PartDifference) -> list[str | None]:
+    return [
+        text
+        for part in difference.parts
+        for text in (part.before, part.after, part.before_expanded, part.after_expanded)
+    ]
+
+
+def _by_part(texts: Sequence[str | None]) -> Iterator[Sequence[str | None]]:
+    return (texts[start : start + 4] for start in range(0, len(texts), 4))
+
+
+def _way(difference: PartDifference) -> object:
+    """What has to be alike in differences that are told as one, beside their texts."""
+    return difference.state, [part.part for part in difference.parts], [text is None for text in _texts(difference)]
+
+
+def _variables(automaton: Automaton) -> dict[str, dict[str, _Property]]:
     return {
-        name: {"kind": str(each.kind), "values": str(each.type), "initial": str(each.initial)}
+        name: {
+            "kind": _Property(str(each.kind)),
+            "values": _Property(str(each.type)),
+            "initial": _Property(str(each.initial)),
+        }
         for name, each in automaton.variables.items()
     }
 
 
-def _abilities(meant: Meant) -> dict[str, dict[str, str]]:
+def _abilities(meant: Meant) -> dict[str, dict[str, _Property]]:
     return {name: dict(_ability(each, meant.guards.get(name))) for name, each in meant.automaton.abilities.items()}
 
 
-def _ability(ability: Ability, guard: SupervisorGuard | None) -> Iterator[tuple[str, str]]:
+def _ability(ability: Ability, guard: SupervisorGuard | None) -> Iterator[tuple[str, _Property]]:
     yield "enabled", _said(ability.enabled)
     yield "start", _said(ability.start_guard)
     yield "start actions", _done(ability.start_actions)
@@ -168,51 +254,51 @@ def _ability(ability: Ability, guard: SupervisorGuard | None) -> Iterator[tuple[
     if guard is not None and guard.expression is not None:
         yield "added by the supervisor", _said(guard.expression)
     elif guard is not None and guard.blocked:
-        yield "held back by the supervisor, among others", "; ".join(map(_said, guard.blocked))
+        yield "held back by the supervisor, among others", _said(*guard.blocked)
     if ability.restart:
-        yield "restart", "yes"
+        yield "restart", _Property("yes")
     if ability.human is not None:
-        yield "task", ability.human.text
+        yield "task", _Property(ability.human.text)
 
 
-def _effects(automaton: Automaton) -> dict[str, dict[str, str]]:
-    def said(effect: Effect) -> dict[str, str]:
+def _effects(automaton: Automaton) -> dict[str, dict[str, _Property]]:
+    def said(effect: Effect) -> dict[str, _Property]:
         return {
             "when": _said(effect.guard),
             "does": _done(effect.actions),
-            "takes": f"{effect.shortest:g} to {effect.longest:g} s",
+            "takes": _Property(f"{effect.shortest:g} to {effect.longest:g} s"),
         }
 
     return {effect.name: said(effect) for effect in automaton.effects}
 
 
-def _operations(automaton: Automaton) -> dict[str, dict[str, str]]:
-    def said(operation: Operation) -> dict[str, str]:
-        local = {} if operation.local is None else {"local": _said(operation.local)}
+def _operations(automaton: Automaton) -> dict[str, dict[str, _Property]]:
+    def said(operation: Operation) -> dict[str, _Property]:
+        local = {} if operation.local is None else {"local": _Property(print_expression(operation.local))}
         return {
             "precondition": _said(operation.precondition),
             "goal": _said(operation.goal),
             **local,
-            "priority": str(operation.priority),
+            "priority": _Property(str(operation.priority)),
         }
 
     return {name: said(operation) for name, operation in automaton.operations.items()}
 
 
-def _specifications(automaton: Automaton) -> dict[str, dict[str, str]]:
-    def said(specification: Specification) -> dict[str, str]:
+def _specifications(automaton: Automaton) -> dict[str, dict[str, _Property]]:
+    def said(specification: Specification) -> dict[str, _Property]:
         return {"forbidden": _said(specification.forbidden)}
 
     return {name: said(specification) for name, specification in automaton.specifications.items()}
 
 
-def _rest(automaton: Automaton) -> dict[str, str]:
+def _rest(automaton: Automaton) -> dict[str, _Property]:
     return {} if automaton.rest is None else {"states of rest": _said(automaton.rest)}
 
 
-def _said(expression: Expression) -> str:
-    return print_expression(expression)
+def _said(*conditions: Expression) -> _Property:
+    return _Property("; ".join(map(print_expression, conditions)), conditions)
 
 
-def _done(actions: Iterable[Assignment]) -> str:
-    return "; ".join(map(print_assignment, actions))
+def _done(actions: Iterable[Assignment]) -> _Property:
+    return _Property("; ".join(map(print_assignment, actions)))

@@ -75,6 +75,42 @@ class IndexFolding:
                     del left[member]
                 yield found
 
+    def folded_texts(
+        self, texts: Mapping[str, tuple[str, ...]], ways: Mapping[str, object]
+    ) -> Iterator[FoldedStatement]:
+        """Texts about instances, where the first of those stood that are the same but for the values of indices. What
+        is said in another of the `ways` is not told together.
+        """
+        together: dict[str, list[str]] = {}
+        for name in texts:
+            instance = self._instance(name)
+            told = None if instance is None else self._worded(instance, texts[name])
+            key = name if instance is None or told is None else repr((instance[1:3], instance.rest, told, ways[name]))
+            together.setdefault(key, []).append(name)
+        for members in together.values():
+            first = self._instance(members[0])
+            over = None
+            if first is not None and len(members) > 1:
+                instances = [each for name in members if (each := self._instance(name)) is not None]
+                over = self._index(first.family, [each.arguments for each in instances])
+            if first is None or over is None:
+                yield from (FoldedStatement(name, None, (name,), texts[name], ()) for name in members)
+            else:
+                told = self._worded(first, texts[first.name]) or ()
+                yield FoldedStatement(self._title(first), over, tuple(members), told, ())
+
+    def _worded(self, instance: _Instance, texts: Sequence[str]) -> tuple[str, ...] | None:
+        """Texts with words in the place of values; None where these would be mistaken for others."""
+        words = dict(zip(instance.arguments, self._parameters(instance.family), strict=True))
+        pattern = re.compile(rf"\b({'|'.join(map(re.escape, (*words, *words.values())))})\b")
+        if any(found in words.values() for text in texts for found in pattern.findall(text)):
+            return None
+        return tuple(pattern.sub(lambda found: words[found[1]], text) for text in texts)
+
+    def _title(self, instance: _Instance) -> str:
+        words = self._parameters(instance.family)
+        return with_arguments(instance.family, words, instance.brackets == "[") + instance.rest
+
     def folded_names(self, names: Iterable[str]) -> list[str]:
         """Names, those of all instances over an index as one."""
         instances = {name: GroundStatement(()) for name in names}
@@ -118,9 +154,8 @@ class IndexFolding:
         index = self._index(first.family, [each.arguments for each in members])
         if index is None:
             return None
-        title = with_arguments(first.family, self._parameters(first.family), first.brackets == "[") + first.rest
         told = tuple(specifications_folded(self._wording, names))
-        return FoldedStatement(title, index, tuple(each.name for each in members), conditions, told)
+        return FoldedStatement(self._title(first), index, tuple(each.name for each in members), conditions, told)
 
     def _like(
         self, shown: _Instance, alike: Sequence[_Instance], statements: Mapping[str, GroundStatement]

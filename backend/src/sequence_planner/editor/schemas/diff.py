@@ -16,18 +16,28 @@ class Difference(StrEnum):
 
 
 class Changed(View):
-    """A property of a part, `before` and `after`; null is none."""
+    """A property of a part, `before` and `after`, in the words of the models; null is none. Where these are names for
+    more, that is `…_expanded`.
+    """
 
     part: str
     before: str | None
     after: str | None
+    before_expanded: str | None
+    after_expanded: str | None
 
 
 class PartDifference(View):
-    """A part of the model that is new, gone, or another one; `kind` is what it is, such as `ability`."""
+    """A part of the model that is new, gone, or another one; `kind` is what it is, such as `ability`.
+
+    Where the same is so of several instances of a declaration, `members` are all of them, `over` says which they are,
+    as in `all pair in bolt_pair`, and a word stands in place of the value of each, in `name` too.
+    """
 
     kind: str
     name: str
+    over: str | None
+    members: list[str]
     state: Difference
     parts: list[Changed]
 

@@ -65,6 +65,8 @@ export const deploy = {
 	},
 
 	compare: {
+		over: (index: string): string => `for ${index}`,
+		expanded: 'Written out',
 		title: 'Compare',
 		old: 'Older',
 		new: 'Newer',

@@ -65,6 +65,8 @@ export const deploy: Text['deploy'] = {
 	},
 
 	compare: {
+		over: (index: string): string => `för ${index}`,
+		expanded: 'Utskrivet',
 		title: 'Jämför',
 		old: 'Den äldre',
 		new: 'Den nyare',
