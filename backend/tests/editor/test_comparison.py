@@ -74,7 +74,8 @@ def test_a_predicate_is_told_by_its_name_with_what_it_means_beside(tmp_path: Pat
     assert (changed.before_expanded, changed.after_expanded) == (meaning, f"not ({meaning})")
     new = dict(old)
     new["station.yaml"] = old["station.yaml"].replace(tight, loose)
-    view = compare(tmp_path, old, new)
+    (tmp_path / "again").mkdir()
+    view = compare(tmp_path / "again", old, new)
     assert view.parts is not None
     ((changed,),) = [each.parts for each in view.parts]
     assert changed.before == meaning, "of one name with two meanings these are told"
