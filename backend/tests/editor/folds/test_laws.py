@@ -139,6 +139,45 @@ def _read(files: dict[str, str]) -> Automaton:
         return read_station(Path(folder)).automaton
 
 
+RESOURCE = """\
+output:
+  on: {type: bool}
+abilities:
+  empty:
+    enabled: not on
+    start:
+      do:
+        - on := true
+        # All of them.
+        - bolts[p2] := empty if at != home and ready[p2]
+        - bolts[p1] := empty if at != home and ready[p1]
+        - bolts[p3] := empty if at != home and ready[p3]
+        - ready[p1] := false
+        - ready[p2] := false # and this
+        - ready[p3] := false
+        - at := home
+"""
+
+
+def test_actions_for_each_value_are_one() -> None:
+    files = {"station.yaml": STATION, "resources/arm.yaml": RESOURCE}
+    with tempfile.TemporaryDirectory() as folder:
+        (found,) = FoldFinder(Path(folder)).folds(files).folds
+    assert (
+        found.files["resources/arm.yaml"].partition("do:\n")[2]
+        == """\
+        - on := true
+        # All of them.
+        - 'all p in part: bolts[p] := empty if at != home and ready[p]'
+        - ready[p1] := false
+        - ready[p2] := false # and this
+        - ready[p3] := false
+        - at := home
+"""
+    )
+    assert difference(_read(files), _read({**files, **found.files})) is None
+
+
 def test_each_kind_is_found() -> None:
     conditions = (
         "bolts[p1] == placed and bolts[p3] == placed and bolts[p2] == placed and at in {left, right, out}",

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sequence_planner.editor.draft import Edit, applied
+from sequence_planner.editor.folds.actions import action_proposals
 from sequence_planner.editor.folds.pipelines import list_proposals, pipeline_difference
 from sequence_planner.editor.folds.predicates import predicate_proposals
 from sequence_planner.editor.folds.proposal import FoldProposal, WrittenPlace
@@ -31,6 +32,7 @@ _WORTH_A_NAME = 30  # characters that a predicate saves
 _PROPOSALS = (
     relation_proposals,
     quantifier_proposals,
+    action_proposals,
     include_proposals,
     list_proposals,
     set_proposals,

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from sequence_planner.automaton.shorthand import RESERVED
 from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, part_of, with_replacements
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
@@ -92,6 +93,10 @@ def quantified(is_all: bool, body: Expression, domain: str, word: str) -> str:
 
 def words_for(station: FoldableStation, body: Expression, domain: str) -> Iterator[str]:
     """Words for the value that `body` is about, the one first that the declaration has of what is indexed by it."""
+    return (word for word in _words_for(station, body, domain) if word not in RESERVED)
+
+
+def _words_for(station: FoldableStation, body: Expression, domain: str) -> Iterator[str]:
     for name in names_in(body):
         for part in name.path:
             for index, argument in enumerate(part.arguments):
@@ -99,7 +104,8 @@ def words_for(station: FoldableStation, body: Expression, domain: str) -> Iterat
                     if full.rpartition(".")[2] == part.name and index < len(words):
                         yield words[index]
     if domain.isidentifier():
-        yield domain.rpartition("_")[2]
+        if "_" in domain:
+            yield domain.rpartition("_")[2]
         yield domain[0]
     yield from ("each", "one", "value")
 
