@@ -178,6 +178,19 @@ def test_actions_for_each_value_are_one() -> None:
     assert difference(_read(files), _read({**files, **found.files})) is None
 
 
+def test_formulas_are_folded_where_they_are_about_a_state() -> None:
+    formula = "G (ready[p1] and ready[p2] and ready[p3] implies at != home) and (F bolts[p1] == placed and F ready[p2])"
+    operation = f"precondition: at == home\n  goal: at == out\n  local: {formula}"
+    files = {"station.yaml": STATION, "operations.yaml": f"one:\n  {operation}\ntwo:\n  {operation}\n"}
+    with tempfile.TemporaryDirectory() as folder:
+        found = FoldFinder(Path(folder)).folds(files).folds
+    assert [fold.title for fold in found if fold.kind is FoldKind.QUANTIFIER] == [
+        "Write `all which in part: ready[which]`"
+    ]
+    for fold in found:
+        assert difference(_read(files), _read({**files, **fold.files})) is None
+
+
 def test_each_kind_is_found() -> None:
     conditions = (
         "bolts[p1] == placed and bolts[p3] == placed and bolts[p2] == placed and at in {left, right, out}",

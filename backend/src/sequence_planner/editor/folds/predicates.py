@@ -36,6 +36,7 @@ from sequence_planner.language.syntax import (
     Or,
     Quantified,
     Span,
+    first_temporal,
 )
 from sequence_planner.model.paths import resource_of
 
@@ -133,7 +134,11 @@ class _Names:
         return frozenset(each.skeleton for each in (*lexicon.families, *lexicon.short.values()))
 
     def in_full(self, text: FoldableText, tree: Expression) -> Expression | None:
-        """A condition with all its names in full; None where it depends on a parameter of what it belongs to."""
+        """A condition with all its names in full; None for one about a run, and where it depends on a parameter of what
+        it belongs to.
+        """
+        if first_temporal(tree) is not None:
+            return None
         parameters = set(map(str, text.field.parameters))
         if parameters and parameters & {*words_of(tree), *_domains_of(tree)}:
             return None
