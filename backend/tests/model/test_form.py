@@ -67,9 +67,9 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
         (OPERATIONS, "fetch:\n", "‹fetch:\n  {goal: true}\nother:\n", "`precondition` is missing here"),
         (
             ARM,
-            "      leaves:\n        kind: starting\n        when: goto != pose and pose != unknown\n        do: [pose := unknown, moving := true]\n",
-            "      ‹leaves:\n        kind: starting\n        when: goto != pose and pose != unknown\n",
-            "`do` is missing here",
+            "  /arm/command:\n    type: cell_msgs/msg/ArmCommand\n    direction: out\n",
+            "  ‹/arm/command:\n    type: cell_msgs/msg/ArmCommand\n",
+            "`direction` is missing here",
         ),
         (STATION, "name: cell\n", "‹", "`name` is missing here"),
         (
