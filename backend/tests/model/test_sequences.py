@@ -5,6 +5,7 @@ That this allows the orders a sequence stands for, and no others, is a law of `c
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from shutil import copytree
 
@@ -150,6 +151,28 @@ def test_steps_add_to_the_sequence_of_a_work_master(tmp_path: Path) -> None:
     }
 
 
+def test_further_orders_hold_as_well(tmp_path: Path) -> None:
+    masters = (
+        "m: {sequence: [lay, leave], orders: [{sequence: [lay, look, leave]}, {alternative: [look, feel]}], "
+        "operations: {feel: {after: [lay]}}}"
+    )
+    master = station(tmp_path, "", masters).work_masters["m"]
+    assert master.operations == {
+        "lay": frozenset(),
+        "leave": frozenset({"lay", "look"}),
+        "look": frozenset({"lay"}),
+        "feel": frozenset({"lay"}),
+    }
+    assert master.alternatives == ((frozenset({"look"}), frozenset({"feel"})),)
+    (tmp_path / "only").mkdir()
+    only = station(tmp_path / "only", "", "m: {orders: [{sequence: [lay, look]}, {sequence: [lay, leave]}]}")
+    assert only.work_masters["m"].operations == {
+        "lay": frozenset(),
+        "look": frozenset({"lay"}),
+        "leave": frozenset({"lay"}),
+    }
+
+
 ONE_OF = "write exactly one of sequence, parallel, alternative, arbitrary here"
 CIRCLE = "sequences order these in a circle, each before the next"
 
@@ -209,6 +232,12 @@ def test_what_is_wrong_with_a_sequence(tmp_path: Path, written: str, message: st
             "m: {sequence: [‹lay, look], operations: {lay: {after: [look]}}}",
             "each of these would have to come before the next: lay → look → lay",
         ),
+        (
+            "m: {sequence: [‹lay, look], orders: [{sequence: [look, lay]}]}",
+            "each of these would have to come before the next: lay → look → lay",
+        ),
+        ("m: {orders: [{sequence: [lay, ‹lok]}]}", "there is no operation `lok`; did you mean `look`?"),
+        ("m: {sequence: lay, orders: [‹{}]}", ONE_OF),
         # The other order is that of the sequence `s`.
         ("m: {sequence: [‹leave, feel]}", "each of these would have to come before the next: leave → feel → leave"),
         (
@@ -245,16 +274,29 @@ _ENGINE = """\
       parallel: place_bolt_pair(pair)
     - return_kit
     - release_engine
-  operations:
+  orders:
+    - for: {pair: bolt_pair}
+      parallel: {sequence: [place_bolt_pair(pair), tighten_bolt_pair(pair)]}
+    # In the order in which the ladder frame settles evenly.
+    - sequence: [tighten_bolts, tighten_oil_filter, release_engine]
 """
-_ENGINE_STEPS = f"""\
-  operations:
-    identify_engine:
-    bring_kit: {{after: [identify_engine]}}
-    mount_ladder_frame: {{after: [bring_kit]}}
-{"".join(f"    place_bolt_pair({pair}): {{after: [mount_ladder_frame]}}" + chr(10) for pair in _PAIRS)}\
-    return_kit: {{after: [{", ".join(f"place_bolt_pair({pair})" for pair in _PAIRS)}]}}
-"""
+_AFTER = {
+    "identify_engine": [],
+    "bring_kit": ["identify_engine"],
+    "mount_ladder_frame": ["bring_kit"],
+    **{f"place_bolt_pair({pair})": ["mount_ladder_frame"] for pair in _PAIRS},
+    "return_kit": [f"place_bolt_pair({pair})" for pair in _PAIRS],
+    f"tighten_bolt_pair({_PAIRS[0]})": [f"place_bolt_pair({_PAIRS[0]})"],
+    **{
+        f"tighten_bolt_pair({pair})": [f"place_bolt_pair({pair})", f"tighten_bolt_pair({before})"]
+        for before, pair in pairwise(_PAIRS)
+    },
+    "tighten_oil_filter": [f"tighten_bolt_pair({_PAIRS[-1]})"],
+    "release_engine": ["return_kit", "tighten_oil_filter"],
+}
+_ENGINE_STEPS = "  operations:\n" + "".join(
+    f"    {name}: {{after: [{', '.join(all_)}]}}\n" for name, all_ in _AFTER.items()
+)
 _TIGHTENING = """
 # In the order in which the ladder frame settles evenly.
 tighten_bolts:
@@ -284,10 +326,7 @@ _EACH_AFTER_THE_OTHER = "    and (pair == first(bolt_pair) or bolts[previous(pai
         (
             "truck_engine_station",
             {
-                "work_masters.yaml": [
-                    (_ENGINE, _ENGINE_STEPS),
-                    ("[tighten_oil_filter]", "[tighten_oil_filter, return_kit]"),
-                ],
+                "work_masters.yaml": [(_ENGINE, _ENGINE_STEPS)],
                 "operations.yaml": [(_TIGHTENING, ""), (_READY, _READY + _EACH_AFTER_THE_OTHER)],
             },
         ),

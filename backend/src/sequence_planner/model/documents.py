@@ -657,17 +657,20 @@ class WorkStepDocument(DocumentPart):
 class WorkMasterDocument(SequencePart, TitledDocument):
     """What a job consists of: its operations with their order, and the estimated values a new product `brings`.
 
-    The order is that of a sequence, of `operations` with what comes before each, or of both together.
+    The order is that of a sequence, of further `orders`, of `operations` with what comes before each, or of all of them
+    together.
     """
 
     brings: list[SourceText] = Field(default_factory=list)
     """The estimated values of a new product, such as `part := absent`."""
     operations: Given[dict[SourceText, WorkStepDocument | None]] = Field(default=None, min_length=1)
     """The operations of a job, each with what comes before it."""
+    orders: Given[list[SequencePart]] = Field(default=None, min_length=1)
+    """Further orders that hold as well: an operation may stand in several."""
 
     @model_validator(mode="after")
     def _has_operations(self) -> WorkMasterDocument:
-        if self.kind is None and self.operations is None:
+        if self.kind is None and self.operations is None and self.orders is None:
             raise ValueError("write its `operations`, or one of sequence, parallel, alternative, arbitrary")
         return self
 

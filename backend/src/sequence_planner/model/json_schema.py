@@ -85,7 +85,7 @@ class _Generator(GenerateJsonSchema):
         if schema["cls"] is StageDocument:
             made |= {"minProperties": 1, "maxProperties": 1}
         if issubclass(schema["cls"], SequencePart):
-            instead = ["operations"] if schema["cls"] is WorkMasterDocument else []
+            instead = ["operations", "orders"] if schema["cls"] is WorkMasterDocument else []
             made["anyOf" if instead else "oneOf"] = [{"required": [key]} for key in (*KINDS, *instead)]
         if schema["cls"] is AbilityDocument:
             made["if"] = {"not": {"required": ["until"]}}

@@ -61,6 +61,19 @@ def test_renaming_renames_it_there(part: str, new: str, file: str, line: str) ->
     assert line in text
 
 
+def test_further_orders_are_renamed_too() -> None:
+    orders = "  orders:\n    - for: {where: side}\n      parallel: {sequence: [clamp_part, inspect_side(where)]}\n"
+    files = {**FILES, MASTERS: FILES[MASTERS].rstrip("\n") + "\n" + orders}
+    for part, new, line in (
+        ("operation:inspect_side", "look_at_side", "[clamp_part, look_at_side(where)]"),
+        ("enumeration:side", "flank", "{where: flank}"),
+        ("parameter:work_master:clamped_part.where", "which", "[clamp_part, inspect_side(which)]"),
+    ):
+        text = renamed(files, parse_part(part), new, None)[MASTERS]
+        assert text is not None
+        assert line in text
+
+
 def test_an_operation_is_not_called_as_a_sequence_is() -> None:
     with pytest.raises(EditError, match="the sequence `one_part` is there already"):
         renamed(FILES, parse_part("operation:clamp_part"), "one_part", None)
@@ -87,6 +100,8 @@ def test_it_is_a_part_of_the_model() -> None:
         (OPERATIONS, ("other", "alternative", 0), "one", "one_part"),
         (MASTERS, ("clamped_part", "sequence"), "one", "one_part"),
         (MASTERS, ("new", "sequence", 0), "rel", "release_part"),
+        (MASTERS, ("clamped_part", "orders", 0, "sequence", 1), "rel", "release_part"),
+        (MASTERS, ("clamped_part", "orders", 0, "for", "where"), "si", "side"),
     ],
 )
 def test_its_operations_are_completed(lexicon: Lexicon, file: str, path: EntryPath, typed: str, offered: str) -> None:

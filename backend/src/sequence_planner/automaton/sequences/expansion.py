@@ -175,13 +175,16 @@ class StationSequences:
 
     def order_of(self, document: WorkMasterDocument) -> StepOrder:
         """The steps of a job: those of its sequence, and those that are written one by one."""
-        term = self.reader.term_of(document)
-        steps = {} if term is None else _steps(term)
+        written = (self.reader.term_of(each) for each in (document, *(document.orders or ())))
+        terms = [term for term in written if term is not None]
+        steps: dict[SourceText, tuple[SourceText, ...]] = {}
+        for step, before in (each for term in terms for each in _steps(term).items()):
+            steps[step] = (*steps.get(step, ()), *before)
         for step, step_document in (document.operations or {}).items():
             steps[step] = (*steps.get(step, ()), *(() if step_document is None else step_document.after))
-        if term is None:
-            return StepOrder(steps)
-        return StepOrder(steps, _branches(term, "alternative"), _branches(term, "arbitrary"))
+        alternatives = tuple(each for term in terms for each in _branches(term, "alternative"))
+        arbitrary = tuple(each for term in terms for each in _branches(term, "arbitrary"))
+        return StepOrder(steps, alternatives, arbitrary)
 
 
 def _steps(term: SequenceTerm) -> dict[SourceText, tuple[SourceText, ...]]:

@@ -84,6 +84,13 @@ def field_of_work_master(
             document = station.work_masters.get(placed(name))
             if rest and rest[0] in (*KINDS, "for"):
                 return _of_part(station, document, tuple(rest), operations, ())
+            if rest and rest[0] == "orders":
+                orders = [] if document is None else document.orders or []
+                match rest[1:]:
+                    case (int(index), *inner):
+                        part = orders[index] if index < len(orders) else None
+                        return _of_part(station, part, tuple(inner), operations, ())
+                return None
             steps: Steps = {}
             if document is not None:
                 steps = station_sequences(meaning, station, operations).order_of(document).steps

@@ -377,6 +377,8 @@ class _Walk:
             self._add(part, at, name, declares=True)
             self._sequence(part.id, document, at)
             self._read.actions(entry(document, "brings"), at.to("brings"))
+            for index, order in enumerate(items(entry(document, "orders"))):
+                self._sequence(part.id, order, at.to("orders", index))
             for step, inner in pairs(entry(document, "operations")):
                 self._operation(step, at.to("operations", step))
                 for index, before in enumerate(items(entry(inner, "after"))):

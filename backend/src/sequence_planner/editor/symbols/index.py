@@ -345,9 +345,9 @@ def operation_part(name: str, document: object) -> ModelPart:
 
 
 def parameters_within(document: object) -> Parameters:
-    """The parameters of a sequence, and of all parts of it."""
+    """The parameters of a sequence or a work master, and of all parts of it."""
     found = dict(parameters(entry(document, "for")))
-    for branch, _ in branches_in(document):
+    for branch in (*(branch for branch, _ in branches_in(document)), *items(entry(document, "orders"))):
         found |= parameters_within(branch)
     return found
 

@@ -157,6 +157,7 @@ export const model = {
 		exclusive: 'Exclusive',
 		zone: 'Zone',
 		order: 'Order',
+		orders: 'Further orders',
 		brings: 'A new product brings',
 		operations: 'Operations',
 		values: 'Values',

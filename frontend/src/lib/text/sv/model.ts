@@ -155,6 +155,7 @@ export const model: Text['model'] = {
 		exclusive: 'Uteslutande',
 		zone: 'Zon',
 		order: 'Ordning',
+		orders: 'Fler ordningar',
 		brings: 'En ny produkt medför',
 		operations: 'Operationer',
 		values: 'Värden',
