@@ -7,19 +7,22 @@ const STEP = 2;
 const BELOW = /^(-(\s|$)|#|\?(\s|$)|("(?:[^"\\]|\\.)*"|'(?:[^']|'')*'|[^\s"'[\]{}&*!|>%@`#][^#]*?)\s*:(\s|$))/;
 
 const indentOf = (line: string): number => line.length - line.trimStart().length;
-/** The lines, the first of those that say something at the margin `to`; empty lines stay empty. */
-function shifted(lines: readonly string[], to: number): string[] {
-	const said = lines.filter((line) => line.trim() !== '');
-	const by = to - Math.min(...said.map(indentOf));
+const marginOf = (lines: readonly string[]): number => Math.min(...lines.filter((line) => line.trim() !== '').map(indentOf));
+/** The lines, further in by so many signs; empty lines stay empty. */
+function movedIn(lines: readonly string[], by: number): string[] {
 	return lines.map((line) => (line.trim() === '' ? '' : ' '.repeat(Math.max(0, indentOf(line) + by)) + line.trimStart()));
 }
+/** The lines, the one that is furthest out at the margin `to`. */
+const shifted = (lines: readonly string[], to: number): string[] => movedIn(lines, to - marginOf(lines));
 
 /** The value of the entry that stands there. */
 export function valueText(text: string, { from, to }: Placed): string {
 	const [first = '', ...below] = text.split('\n').slice(from, to);
-	const beside = keyOf(first)?.value ?? first.trim();
-	const lines = shifted(below, 0);
-	return [...(beside === '' ? [] : [beside]), ...lines].join('\n');
+	const key = keyOf(first);
+	const beside = key?.value ?? first.trim();
+	if (beside === '') return shifted(below, 0).join('\n');
+	// What goes on from beside the key may stand in columns of its own.
+	return [beside, ...movedIn(below, -Math.min((key?.indent ?? 0) + STEP, marginOf(below)))].join('\n');
 }
 
 /** The text with another value of that entry. */
@@ -29,8 +32,10 @@ export function withValue(text: string, { from, to }: Placed, value: string): st
 	const lines = value.replace(/\s+$/, '').split('\n');
 	const margin = (key?.indent ?? 0) + STEP;
 	const [first = '', ...others] = lines;
-	const now = BELOW.test(first.trimStart())
+	const before = key?.value === '' ? all.slice(from + 1, to).find((line) => line.trim() !== '') : undefined;
+	const stoodBelow = before !== undefined && !BELOW.test(before.trimStart());
+	const now = first !== '' && (stoodBelow || BELOW.test(first.trimStart()))
 		? [`${key?.head ?? ''}:`, ...shifted(lines, margin)]
-		: [`${key?.head ?? ''}: ${first.trim()}`.trimEnd(), ...shifted(others, margin)];
+		: [`${key?.head ?? ''}: ${first.trim()}`.trimEnd(), ...movedIn(others, margin)];
 	return [...all.slice(0, from), ...now, ...all.slice(to)].join('\n');
 }
