@@ -159,7 +159,7 @@ def test_nothing_is_found_in_the_texts_of_a_station_that_grounds(station: str) -
             14,
             (
                 "`F` is a temporal operator here: temporal operators stand only in `local` formulas of "
-                "operations and in goals"
+                "operations and in goals of plain automata"
             ),
         ),
         ("work_masters.yaml", ("truck_engine", "brings", 0), "bolts[bolt_pair_2] := empty", 0, 0, None),
