@@ -206,7 +206,8 @@ def test_what_a_name_is_told(editor: Editor, station: Path) -> None:
     line = editor.text(uri).split("\n")[found["range"]["start"]["line"]]
     assert line[start:end] == "robot.pose"
     key = editor.ask("textDocument/hover", **editor.at(uri, "    executing:", 6))
-    assert key["contents"]["value"] == "`executing`: It is under way; where that is something else than what `until` says."
+    told = "`executing`: It is under way; where that is something else than what `until` says."
+    assert key["contents"]["value"] == told
     assert editor.ask("textDocument/hover", **editor.at(uri, "# The command and", 4)) is None
     editor.close(uri)
 

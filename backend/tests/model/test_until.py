@@ -86,6 +86,7 @@ def test_what_is_so_by_the_command_of_another_resource_is_not_waited_for(tmp_pat
          "`until` needs a command: a start action that writes an output of `gate`"),
         ("  a:\n    start: {do: [other.wanted := true]}\n    until: ‹stuck\n",
          "`until` needs a command: a start action that writes an output of `gate`"),
+        ("  a:\n    start: {do: [‹lam := true]}\n    until: stuck\n", "unknown variable `lam`; did you mean `lamp`?"),
         ("  a:\n    start: {do: [lamp := true]}\n    until: ‹stuk\n", "unknown variable `stuk`; did you mean `stuck`?"),
         ("  ‹a:\n    timeouts: {finish: 3}\n", "`timeouts` need a `finish` or an `until`: without one the ability is "
          "done with its start"),

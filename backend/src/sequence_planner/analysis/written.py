@@ -12,6 +12,7 @@ from pydantic import BaseModel
 
 from sequence_planner.analysis.checks.ungiven_values import check_never_given
 from sequence_planner.analysis.checks.warning import ModelWarning
+from sequence_planner.analysis.folded_conditions import check_folded
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.shorthand.misuse import decided_by_number
@@ -36,7 +37,10 @@ def suspicious_in(station: Station | None, automaton: Automaton, pipelines: Stat
     """
     if station is not None:
         yield from _unused(station)
-        yield from _always_true(station, automaton.vocabulary)
+        said = list(_always_true(station, automaton.vocabulary))
+        yield from said
+        places = {each.place for each in said}
+        yield from (each for each in check_folded(station) if each.place not in places)
     yield from check_never_given(automaton, pipelines)
 
 

@@ -317,7 +317,7 @@ def _course(
     until = meaning.predicate(document.until, scope)
     variables = meaning.declarations.variables.values()
     command = commanded(start, {v.name for v in variables if v.kind is Kind.OUTPUT and v.resource == resource})
-    if command == TRUE and isinstance(document.until, SourceText):
+    if command == TRUE and isinstance(document.until, SourceText) and not meaning.findings.all:
         message = f"`until` needs a command: a start action that writes an output of `{resource}`"
         meaning.findings.add(document.until, message)
     if "executing" in document.model_fields_set:
@@ -437,7 +437,7 @@ def ground_work_masters(
     for name, document in station.work_masters.items():
         meaning.declarations.check_name(name)
         order = sequences.order_of(document)
-        check_steps(meaning, order.steps, operations, ordered)
+        check_steps(meaning, order.steps, operations, ordered, name)
         masters[str(name)] = WorkMaster(
             str(name),
             readable(document.title, name, {}),
@@ -474,10 +474,14 @@ def _operation_place(text: Predicate, otherwise: SourceText) -> Place:
 
 
 def check_steps(
-    meaning: Meaning, steps: Steps, operations: Collection[str], ordered: Mapping[str, Sequence[str]] | None = None
+    meaning: Meaning,
+    steps: Steps,
+    operations: Collection[str],
+    ordered: Mapping[str, Sequence[str]] | None = None,
+    master: SourceText | None = None,
 ) -> None:
     """Note steps that are none of the `operations`, and those that come before themselves, by way of what sequences
-    have `ordered` too.
+    have `ordered` too. That is told where the work master writes one of them, or else at its name `master`.
     """
     findings, ordered = meaning.findings, ordered or {}
     for step, before in steps.items():
@@ -492,8 +496,10 @@ def check_steps(
         TopologicalSorter({**graph, **others}).prepare()
     except CycleError as error:
         circle: list[str] = error.args[1]
-        first = next(step for step in steps if step in circle)
-        findings.add(first, f"each of these would have to come before the next: {' → '.join(circle)}")
+        texts = [each for step, before in steps.items() if step in circle for each in (step, *before) if each in circle]
+        own = [each for each in texts if master is None or each.place.file == master.place.file]
+        message = f"each of these would have to come before the next: {' → '.join(circle)}"
+        findings.add(own[0] if own else master or texts[0], f"{message}. Leave out one of the orders that say so")
 
 
 def brought_by(meaning: Meaning, texts: Iterable[SourceText]) -> tuple[Assignment, ...]:
