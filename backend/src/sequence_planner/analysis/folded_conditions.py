@@ -1,0 +1,110 @@
+"""Conditions that relations, maps, quantifiers and orders make true or false for good.
+
+In an automaton they are constants, which nobody can tell from what was meant so; here they are as they were written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sequence_planner.analysis.checks.warning import ModelWarning
+from sequence_planner.automaton.declarations import Declarations
+from sequence_planner.automaton.findings import Binding, Findings, instance_name
+from sequence_planner.automaton.shorthand import RESERVED
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.simplifier import simplify
+from sequence_planner.language.syntax import And, Constant, Expression, ExpressionError, Span
+from sequence_planner.language.types import Place
+from sequence_planner.model.documents import AbilityDocument
+from sequence_planner.model.loader import Station
+from sequence_planner.model.source import ExpandedText, SourceText
+
+_LONGEST = 160  # characters of a condition in a message
+
+
+class _Condition(NamedTuple):
+    """A text, with what names mean there for one choice of the parameters."""
+
+    text: SourceText
+    scope: NameScope
+
+
+def check_folded(station: Station) -> Iterator[ModelWarning]:
+    """Yield the parts of conditions that always hold or never do, for all values of parameters and in all instances, by
+    what relations, maps, quantifiers and orders say alone.
+    """
+    declarations = Declarations(station, Findings())
+    vocabulary = declarations.vocabulary
+    names = {name.rpartition(".")[2] for name in (*vocabulary.relations, *vocabulary.maps)}
+    told = re.compile(rf"\b(?:{'|'.join(map(re.escape, sorted({*names, *RESERVED})))})\b")
+    found: dict[Place, tuple[str, set[bool | None]]] = {}
+    for condition in _conditions(station, declarations):
+        if not told.search(condition.text):
+            continue
+        for span, truth in _parts(condition):
+            written = condition.text[span.start : span.end]
+            if told.search(written) and not _is_given(condition.text, span):
+                place = condition.text.at(span)._replace(instance="")
+                found.setdefault(place, (written, set()))[1].add(truth)
+    for place, (written, truths) in sorted(found.items()):
+        if truths in ({True}, {False}):
+            holds, advice = ("always", "leave it out, or write") if truths == {True} else ("never", "write")
+            shown = written if len(written) <= _LONGEST else f"{written[:_LONGEST].rpartition(' ')[0]} …"
+            message = f"`{shown}` {holds} holds, whatever the values of its variables: {advice} what was meant"
+            yield ModelWarning(place, f"{holds}-holds", message)
+
+
+def _conditions(station: Station, declarations: Declarations) -> Iterator[_Condition]:
+    """The conditions of abilities, operations, alarms and of rest, for each choice of their parameters."""
+
+    def scope(binding: Binding, *prefixes: str) -> NameScope:
+        return NameScope(declarations.types, prefixes, binding, declarations.vocabulary)
+
+    for resource, name, document in declarations.written_abilities():
+        for binding in declarations.bindings(document.parameters):
+            inside = scope(binding, f"{instance_name(f'{resource}.{name}', binding)}.", f"{resource}.")
+            yield from _of(inside, *_of_ability(document))
+    for operation in station.operations.values():
+        for binding in declarations.bindings(operation.parameters):
+            yield from _of(scope(binding), operation.precondition, operation.goal)
+    for resource, written in station.resources.items():
+        yield from _of(scope({}, f"{resource}."), *(each.when for each in written.alarms.values()))
+    yield from _of(scope({}), station.station.rest, *(each.when for each in station.station.alarms.values()))
+
+
+def _of_ability(document: AbilityDocument) -> Iterator[object]:
+    yield from (document.enabled, document.start.when, document.until, document.executing, document.finished)
+    if document.finish is not None:
+        yield document.finish.when
+    yield from (effect.when for effect in document.effects.values())
+
+
+def _of(scope: NameScope, *texts: object) -> Iterator[_Condition]:
+    return (_Condition(text, scope) for text in texts if isinstance(text, SourceText))
+
+
+def _parts(condition: _Condition) -> Iterator[tuple[Span, bool | None]]:
+    """What must all hold, each with whether it does whatever the state is; None where that depends on it."""
+    try:
+        whole = parse(condition.text)
+    except ExpressionError:
+        return
+    for part in whole.operands if isinstance(whole, And) else (whole,):
+        if not isinstance(part, Constant):
+            yield part.span, _truth(part, condition.scope)
+
+
+def _truth(part: Expression, scope: NameScope) -> bool | None:
+    try:
+        found = simplify(resolve_predicate(part, scope))
+    except ExpressionError:
+        return None
+    return found.value if isinstance(found, Constant) and isinstance(found.value, bool) else None
+
+
+def _is_given(text: SourceText, span: Span) -> bool:
+    """Return whether an argument of an instance is a part of it: another instance may give another one."""
+    return isinstance(text, ExpandedText) and any(span.start <= each.start < span.end for each in text.pieces)
