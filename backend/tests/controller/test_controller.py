@@ -141,7 +141,8 @@ def test_a_command_that_cannot_be_sent_is_owed_and_nothing_is_started_meanwhile(
                 shown = on.controller.view()
                 assert shown.alarms["command"].priority is Priority.HIGH
                 assert shown.topics[COMMAND].trouble == "the network is down"
-                assert shown.plan.steps[0].waits_for == [f"the command on {COMMAND} to be sent"]
+                owed = [f"the command on {COMMAND} to be sent"]
+                await on.until(lambda: on.controller.view().plan.steps[0].waits_for == owed)
                 assert value(on, "arm.goto") == "home"
             await on.until(lambda: arm.commands[-1:] == ["out"])
             assert arm.commands[0] == "home", "what was owed comes first"
