@@ -18,7 +18,7 @@ from sequence_planner.controller.views.station import Priority
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
-from sequence_planner.forking.starting import children
+from sequence_planner.forking.starting import Child, children
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.qos import QualityOfService
@@ -55,9 +55,13 @@ def value(on: Bench, name: str) -> object:
 
 def end_planner() -> None:
     """Kill the planner's process, as the system does when memory is short."""
-    (planner,) = [child for child in children() if child.name == "planner"]
+    (planner,) = planners()
     planner.kill()
     planner.join()
+
+
+def planners() -> list[Child]:
+    return [child for child in children() if child.name == "planner"]
 
 
 def test_an_operation_is_carried_out() -> None:
@@ -81,7 +85,7 @@ def test_a_planner_that_is_killed_over_a_question_is_asked_again() -> None:
         with arm.saying("home"):
             await on.until(lambda: value(on, "arm.pose") == "home")
             await on.start()
-            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.PLANNING)
+            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.PLANNING and planners())
             end_planner()
             await on.until(lambda: alarm(on, "planner"))
             await on.until(lambda: "out" in arm.commands)
