@@ -85,7 +85,7 @@ def test_a_planner_that_is_killed_over_a_question_is_asked_again() -> None:
         with arm.saying("home"):
             await on.until(lambda: value(on, "arm.pose") == "home")
             await on.start()
-            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.PLANNING and planners())
+            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.PLANNING and bool(planners()))
             end_planner()
             await on.until(lambda: alarm(on, "planner"))
             await on.until(lambda: "out" in arm.commands)
