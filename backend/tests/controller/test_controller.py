@@ -18,7 +18,8 @@ from sequence_planner.controller.views.station import Priority
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
-from sequence_planner.forking.starting import Child, children
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.qos import QualityOfService
