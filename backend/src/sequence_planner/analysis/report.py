@@ -61,7 +61,9 @@ class TraceDocument(Document):
 
 
 class FindingDocument(Document):
-    """Something suspicious, where it is written, and a run that shows it."""
+    """Something suspicious, where it is written, and a run that shows it. Where it is said of several instances in one,
+    as in `for all pair in bolt_pair`, `members` are these, and the run is that of the first.
+    """
 
     severity: str
     kind: str
@@ -69,6 +71,7 @@ class FindingDocument(Document):
     line: int
     column: int
     message: str
+    members: list[str]
     trace: TraceDocument | None
 
 
@@ -115,6 +118,7 @@ def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[
             line=warning.place.line,
             column=warning.place.column,
             message=warning.message,
+            members=list(warning.members),
             trace=None if warning.trace is None else trace_document(automaton, warning.trace),
         )
         for warning in warnings
@@ -130,6 +134,7 @@ def error_document(finding: Finding) -> FindingDocument:
         line=finding.place.line,
         column=finding.place.column,
         message=finding.message,
+        members=[],
         trace=None,
     )
 
