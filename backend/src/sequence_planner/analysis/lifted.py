@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from sequence_planner.analysis.report import Document, GuardDocument
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding
-from sequence_planner.automaton.lifting.wording import ModelWording
+from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding, specifications_folded
+from sequence_planner.automaton.lifting.wording import ModelWording, wording_of
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import resolve_predicate
 
@@ -31,7 +31,7 @@ class LiftedGuard(Document):
 
 def lifted_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> list[LiftedGuard]:
     """The guards that synthesis has found of `automaton`, in the order in which the first of each stands."""
-    wording = ModelWording(automaton)
+    wording = wording_of(automaton)
     if not wording:
         return [
             LiftedGuard(name=name, index=None, **guard.model_dump(exclude={"literals"}))
@@ -54,6 +54,19 @@ def lifted_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> 
             )
         )
     return found
+
+
+def guard_in_words(automaton: Automaton, guard: GuardDocument) -> GuardDocument:
+    """A guard by itself, in the words of the model; the specifications of all instances over an index are one."""
+    wording = wording_of(automaton)
+    told = [wording.in_words(condition) for condition in _statement(wording, guard).conditions]
+    return guard.model_copy(
+        update={
+            "guard": None if guard.guard is None else told[0],
+            "blocked": told if guard.guard is None else guard.blocked,
+            "specifications": specifications_folded(wording, guard.specifications),
+        }
+    )
 
 
 def _statement(wording: ModelWording, guard: GuardDocument) -> GroundStatement:

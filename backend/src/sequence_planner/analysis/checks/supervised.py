@@ -192,9 +192,9 @@ def _told(automaton: Automaton, found: Sequence[FeasibilityFinding]) -> Iterator
             left["" if first.relative else first.message].append(first)
     for members in left.values():
         first = members[0]
-        names = listed([each.subject.name for each in members])
-        names = f"each of {names}" if len(members) > 1 else names
-        yield ModelWarning(place(automaton, *first.subject.keys), first.kind, f"{names} {first.message}", first.trace)
+        said = listed([each.subject.name for each in members])
+        said = f"each of {said}" if len(members) > 1 else said
+        yield ModelWarning(place(automaton, *first.subject.keys), first.kind, f"{said} {first.message}", first.trace)
 
 
 def _indexed(subject: Subject) -> str:
