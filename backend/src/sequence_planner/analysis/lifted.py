@@ -4,29 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sequence_planner.analysis.report import Document, GuardDocument
+from sequence_planner.analysis.guard_documents import GuardDocument, LiftedGuard
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding, specifications_folded
 from sequence_planner.automaton.lifting.wording import ModelWording, wording_of
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import resolve_predicate
-
-
-class LiftedGuard(Document):
-    """Guards as they are told to people: of all `starts`, which `index` names where they are instances of one
-    declaration, as in `all pair in bolt_pair`. A word of the index stands for the value of each, in `name` too.
-
-    `guard`, `blocked` and `rest` are as those of a `GuardDocument`, and `specifications` are told together in the same
-    way.
-    """
-
-    name: str
-    index: str | None
-    starts: list[str]
-    guard: str | None
-    blocked: list[str]
-    specifications: list[str]
-    rest: bool
 
 
 def lifted_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> list[LiftedGuard]:

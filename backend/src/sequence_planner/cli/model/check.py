@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.report import Document, FindingDocument, error_document, findings_of
+from sequence_planner.analysis.guard_documents import Document
+from sequence_planner.analysis.report import FindingDocument, error_document, findings_of
 from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.cli.analysing import (
     USUAL_DEADLINE,

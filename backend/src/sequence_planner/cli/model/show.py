@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import typer
 
 from sequence_planner.analysis.lifted import guard_in_words
-from sequence_planner.analysis.report import GuardDocument
 from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
@@ -22,10 +22,9 @@ from sequence_planner.automaton.lifting.wording import wording_of
 from sequence_planner.cli.analysing import Deadline, Limits, analysed, guarded
 from sequence_planner.cli.loading import LoadedModel, usable_automaton, usable_model
 from sequence_planner.cli.model.pipelines import chosen, pipeline_lines
-from sequence_planner.cli.model.synthesize import described_automaton, guard_lines
+from sequence_planner.cli.model.synthesize import Guards, added_lines, described_automaton
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
-from sequence_planner.core.immutable import replace
 from sequence_planner.language.printer import print_assignment, print_expression, print_value
 from sequence_planner.language.resolver import NameScope, expand, suggestion
 from sequence_planner.language.syntax import (
@@ -39,7 +38,7 @@ from sequence_planner.language.syntax import (
 from sequence_planner.model.sequences import SequencePart
 
 Lines = Iterator[str]
-Guards = Mapping[str, GuardDocument]  # by ability
+Added = Mapping[str, list[str]]  # the lines about what the supervisor adds to each ability
 Said = Callable[[Expression], str]  # a condition as it is told
 
 LONGEST = 30.0  # seconds that whoever wants to see a model waits for guards
@@ -96,10 +95,11 @@ def show(
         }
         print_json({**described, **sections})
     else:
-        if not expanded:
-            guards = {name: guard_in_words(automaton, guard) for name, guard in guards.items()}
+        told = guards if expanded else {name: guard_in_words(automaton, guard) for name, guard in guards.items()}
         said = print_expression if expanded else wording_of(automaton).in_words
-        typer.echo("\n".join(_lines(automaton, guards, wanted, declared, said)).strip("\n"))
+        rest = "marked" if automaton.one_at_a_time else "rest"
+        added = {name: added_lines(guard, rest) for name, guard in told.items()}
+        typer.echo("\n".join(_lines(automaton, added, wanted, declared, said)).strip("\n"))
     if unfinished:
         raise typer.Exit(FINDINGS)
 
@@ -156,18 +156,18 @@ def _chosen(name: str, wanted: list[str]) -> bool:
 
 
 def _lines(
-    automaton: Automaton, guards: Guards, wanted: list[str], declared: Iterable[_DeclaredName], said: Said
+    automaton: Automaton, added: Added, wanted: list[str], declared: Iterable[_DeclaredName], said: Said
 ) -> Lines:
     if not wanted:
         yield f"{automaton.title} ({automaton.name})"
     for resource, title in (*automaton.resources.items(), (None, "The station")):
         variables = [v for v in automaton.variables.values() if v.resource == resource and _chosen(v.name, wanted)]
         abilities, effects = _of_resource(automaton, resource)
-        shown = [*_variables(variables), *_abilities(abilities, effects, guards, wanted, said)]
+        shown = [*_variables(variables), *_abilities(abilities, effects, added, wanted, said)]
         if shown:
             yield from ("", title if resource is None else f"{title} ({resource})", *shown)
     if automaton.one_at_a_time:
-        yield from _transitions(automaton, guards, wanted, said)
+        yield from _transitions(automaton, added, wanted, said)
     for operation in automaton.operations.values():
         if _chosen(operation.name, wanted):
             yield from ("", *_operation(operation, said))
@@ -292,24 +292,24 @@ def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
 
 
 def _abilities(
-    abilities: Iterable[Ability], effects: Iterable[Effect], guards: Guards, wanted: list[str], said: Said
+    abilities: Iterable[Ability], effects: Iterable[Effect], added: Added, wanted: list[str], said: Said
 ) -> Lines:
     left = {effect.name: effect for effect in effects}
     for ability in abilities:
         own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]
         shown = [effect for effect in own if _chosen(ability.name, wanted) or _chosen(effect.name, wanted)]
         if _chosen(ability.name, wanted):
-            yield from _ability(ability, guards.get(ability.name), said)
+            yield from _ability(ability, added.get(ability.name, ()), said)
         for effect in shown:
             yield from _effect(effect, said)
 
 
-def _ability(ability: Ability, guard: GuardDocument | None, said: Said) -> Lines:
+def _ability(ability: Ability, added: Sequence[str], said: Said) -> Lines:
     restart = ", for restart mode only" if ability.restart else ""
     yield from ("", f"  ability {ability.name}: {ability.title}{restart}")
     yield from _condition("enabled", ability.enabled, TRUE, said)
     yield from _condition("start", ability.start_guard, TRUE, said)
-    yield from _added(guard)
+    yield from _added(added)
     yield from _actions("start", ability.start_actions, said, "    ")
     yield from _condition("executing", ability.executing, FALSE, said)
     yield from _condition("finished", ability.finished, FALSE, said)
@@ -338,13 +338,13 @@ def _effect(effect: Effect, said: Said) -> Lines:
     yield from _actions("do", effect.actions, said, "      ")
 
 
-def _transitions(automaton: Automaton, guards: Guards, wanted: list[str], said: Said) -> Lines:
+def _transitions(automaton: Automaton, added: Added, wanted: list[str], said: Said) -> Lines:
     """Those of a plain automaton."""
     for ability in automaton.abilities.values():
         if _chosen(ability.name, wanted):
             yield from ("", f"controllable {ability.name}")
             yield from _condition("guard", ability.start_guard, TRUE, said)
-            yield from _added(guards.get(ability.name), rest="marked")
+            yield from _added(added.get(ability.name, ()))
             yield from _actions("set", ability.start_actions, said, "    ")
     for effect in automaton.effects:
         if _chosen(effect.name, wanted):
@@ -368,19 +368,15 @@ def _condition(name: str, condition: Expression, usual: Expression | None, said:
         yield f"    {name:10}  {said(condition)}"
 
 
-def _added(guard: GuardDocument | None, rest: str = "rest") -> Lines:
-    """Say what the supervisor adds, and the specifications that this comes from."""
-    if guard is not None:
-        reasons = [*guard.specifications, *([rest] if guard.rest else [])]
-        lines = [*guard_lines(guard), f"(because of {', '.join(reasons)})"]
-        for name, line in zip(("supervisor", *([""] * (len(lines) - 1))), lines, strict=True):
-            yield f"    {name:10}  {line}"
+def _added(lines: Sequence[str]) -> Lines:
+    """What the supervisor adds."""
+    for name, line in zip_longest(("supervisor",) if lines else (), lines, fillvalue=""):
+        yield f"    {name:10}  {line}"
 
 
 def _actions(name: str, actions: Iterable[Assignment], said: Said, margin: str = "  ") -> Lines:
     for action in actions:
-        condition = "" if action.condition is None else f" if {said(action.condition)}"
-        yield f"{margin}{name:10}  {print_assignment(replace(action, condition=None))}{condition}"
+        yield f"{margin}{name:10}  {print_assignment(action, said)}"
 
 
 def _seconds(fewest: float, most: float) -> str:
