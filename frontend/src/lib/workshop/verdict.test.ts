@@ -10,6 +10,7 @@ const ANALYSIS: NonNullable<ModelCheck['analysis']> = {
 	supervised_at_most: null,
 	guarded: null,
 	guards: {},
+	lifted: [],
 	findings: null
 };
 const DONE: ModelCheck = { number: 3, state: 'done', doing: '', findings: [], summary: null, analysis: ANALYSIS };
