@@ -231,5 +231,5 @@ test('what the supervisor adds stands beside the starts', async () => {
 		textDocument: { uri: robot.uri },
 		range: { start: { line: 0, character: 0 }, end: { line: 999, character: 0 } }
 	});
-	expect(hints?.map((each) => each.label).join('\n')).toContain('supervisor: 3 guards, as `robot.move_to_position(bolt_pair_1)`');
+	expect(hints?.map((each) => each.label).join('\n')).toContain('supervisor: operator.requested_pair != position and ');
 });

@@ -124,8 +124,66 @@ def test_an_instance_with_one_argument_twice_may_be_impossible(tmp_path: Path) -
 
 def test_all_instances_are_reported_under_one_name(tmp_path: Path) -> None:
     assert found(station(tmp_path, {"arm": MOVES % "and at == between"})) == [
-        "arm.yaml:7:14: `arm.at == left` and `arm.at == between` exclude each other, so the ability never starts: "
-        "write what was meant [never-holds]"
+        "arm.yaml:7:14: for all source in side, to in side where source != to: `arm.at == source` and "
+        "`arm.at == between` exclude each other, so the ability never starts: write what was meant [never-holds]"
+    ]
+
+
+NAMED = """
+name: s
+enumerations: {stage: [one, two, three, four]}
+estimated: {done: {type: stage}, seen: {for: {at: stage}, type: bool}}
+predicates:
+  is_over: done == two or done == three
+  is_known: seen[one] and done == one
+  all_seen: "all at in stage: seen[at]"
+  is_hidden: {parameters: {at: stage}, when: "not seen[at] and done != at"}
+"""
+
+
+def test_what_is_wrong_is_told_by_the_names_of_the_model(tmp_path: Path) -> None:
+    """Of all instances once, of each of which that is so; and of a name for several only what lacks."""
+    text = """
+abilities:
+  mark:
+    parameters: {which: stage}
+    enabled: is_hidden(which) and seen[which]
+    start: {do: [done := which]}
+  end:
+    enabled: is_over and done == one
+    start: {do: [done := one]}
+"""
+    operations = """
+finish: {precondition: done == one, goal: all_seen}
+look: {precondition: done == one, goal: is_known}
+"""
+    automaton = station(tmp_path, {"a": text}, station=NAMED, operations=operations)
+    nothing = (
+        "neither an action nor a message, so the operation is never completed: write what was meant, or the action"
+    )
+    assert found(automaton) == [
+        f"operations.yaml:2:1: nothing ever makes `all_seen` true, {nothing} that is missing [unreachable]",
+        f"operations.yaml:3:1: nothing ever makes `seen[one]` true, {nothing} that is missing [unreachable]",
+        "a.yaml:5:14: for all which in stage: `not seen[which]` and `seen[which]` exclude each other, so the ability "
+        "never starts: write what was meant [never-holds]",
+        "a.yaml:8:14: `is_over` and `done == one` exclude each other, so the ability never starts: write what was "
+        "meant [never-holds]",
+    ]
+
+
+def test_instances_of_which_not_the_same_is_said_are_not_told_as_if(tmp_path: Path) -> None:
+    """Each contradicts something else: of the first is told what is so of it."""
+    text = """
+measured: {at: {type: place, initial: left}}
+abilities:
+  mark:
+    parameters: {which: side}
+    enabled: at == which and (which == left implies at == right) and (which == right implies at == between)
+    start: {do: [part := true]}
+"""
+    assert found(station(tmp_path, {"a": text})) == [
+        "a.yaml:6:14: `a.at == left` and `a.at == right` exclude each other, so the ability never starts: write what "
+        "was meant [never-holds]"
     ]
 
 

@@ -60,7 +60,7 @@ look: {{precondition: true, goal: device.command}}
 s: {{alternative: [make, look]}}
 """
     (said,) = (each for each in found(device(tmp_path, operations=operations)) if "sequence" in each)
-    begins = "operations.yaml:3:25: `not (operation.make.active or (count == 0 and device.on and part"
+    begins = "operations.yaml:3:25: `not (operation.make.active or count == 0 and device.on and part"
     assert said.startswith(begins)
     assert said.endswith(
         f" …` never holds, so `look` never becomes active in the sequence `s`, beside `make`: {WRITTEN} [never-holds]"

@@ -363,5 +363,6 @@ abilities:
 """
     apart = "left_only:\n  forbidden: robot.at != left\n"
     (warning,) = found(station(tmp_path, {"robot": resource}, specifications=apart))
-    assert warning.message.startswith("each of `robot.go(right)`, `robot.go(between)` never starts, as the supervisor")
+    assert warning.message.startswith("for all to in {right, between}: `robot.go(to)` never starts, as the supervisor")
+    assert warning.members == ("robot.go(right)", "robot.go(between)")
     assert warning.place.file.endswith("robot.yaml")

@@ -98,7 +98,28 @@ def test_warnings_for_programs() -> None:
     assert finding.pop("message").startswith("`nutrunner.run_nut` finishes only after it was seen executing")
     file = str(WORKED_EXAMPLE / "resources" / "nutrunner.yaml")
     place = {"file": file, "line": 19, "column": 13}
-    assert finding == {"severity": "warning", "kind": "relies-on-executing", **place, "trace": None}
+    assert finding == {"severity": "warning", "kind": "relies-on-executing", **place, "members": [], "trace": None}
+
+
+def test_what_is_so_of_all_instances_is_told_once(tmp_path: Path) -> None:
+    """For people with the run of the first, for programs with all of them."""
+    model = Path(shutil.copytree(BOLT_TIGHTENING, tmp_path / "model"))
+    specifications = model / "specifications.yaml"
+    written = specifications.read_text(encoding="utf-8")
+    specifications.write_text(written.replace(" and not nutrunner.run_nut.executing", ""), encoding="utf-8")
+    code, out, _ = command("check", model)
+    first, *run, _, _, _ = out.splitlines()
+    assert code == 1
+    assert first.startswith(
+        f"{model / 'operations.yaml'}:8:1: warning: for all pair in bolt_pair: `tighten_bolt_pair(pair)` cannot be "
+        "completed under the supervisor, though it could without it"
+    )
+    assert "breaks `no_standing_tool_on_placed_bolts(pair)`. Let another way" in first
+    assert any("robot.move_to_position(bolt_pair_1)" in line for line in run)
+    _, document = as_json("check", model)
+    (finding,) = document["findings"]
+    assert finding["members"] == [f"tighten_bolt_pair(bolt_pair_{number})" for number in (1, 2, 3)]
+    assert finding["trace"]["steps"]
 
 
 def test_unusable_input_for_programs(tmp_path: Path) -> None:
@@ -113,6 +134,7 @@ def test_unusable_input_for_programs(tmp_path: Path) -> None:
         "line": 1,
         "column": 1,
         "message": "`nam` is not known here; did you mean `name`?",
+        "members": [],
         "trace": None,
     }
 

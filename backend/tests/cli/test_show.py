@@ -184,6 +184,33 @@ def test_names_for_what_is_said_more_than_once(press: Path) -> None:
     assert (code, sorted(out.split("\n\n"))) == (0, sorted(NAMES.split("\n\n")))
 
 
+def test_conditions_are_told_by_their_names(press: Path) -> None:
+    """What the model has a name for, with `--expanded` what it stands for; programs have that."""
+    _, out, _ = command("show", press, "go", "arm.move(home)", "--deadline", "60")
+    assert "  precondition  all_tight" in out.splitlines()
+    assert "  goal          arm.is_at(out)" in out.splitlines()
+    (enabled,) = [line for line in out.splitlines() if "enabled" in line]
+    assert enabled.split(maxsplit=1)[1] == "arm.at == out and not arm.is_at(home) and not arm.is_at(left)"
+    _, out, _ = command("show", press, "go", "--expanded")
+    written = "bolts[p1] == tight and bolts[p2] == tight and bolts[p3] == tight"
+    assert f"  precondition  {written}" in out.splitlines()
+    assert "  goal          arm.at == out and arm.target == out" in out.splitlines()
+    _, shown = as_json("show", press, "go")
+    assert shown["operations"]["go"]["precondition"] == written
+
+
+def test_what_the_supervisor_adds_is_told_by_names_too() -> None:
+    """And specifications that are instances of one are named together."""
+    truck = MODELS / "truck_engine_station"
+    _, out, _ = command("show", truck, "nutrunner.run_nut")
+    lines = [line.strip() for line in out.splitlines()]
+    at = lines.index("supervisor  not robot.pose in bolt_pair and not robot.target_pose in bolt_pair")
+    assert lines[at + 1] == "(because of no_turning_without_loose_bolts(pair) for all pair in bolt_pair)"
+    _, out, _ = command("show", truck, "nutrunner.run_nut", "--expanded")
+    (line,) = [line for line in out.splitlines() if "(because of" in line]
+    assert line.count("no_turning_without_loose_bolts(AtBoltPair") == 6
+
+
 def test_names_for_programs(press: Path) -> None:
     _, shown = as_json("show", press, "all_tight", "free", "both", "is_heavy")
     assert shown["predicates"] == {

@@ -242,9 +242,20 @@ def test_what_the_supervisor_adds(editor: Editor, station: Path) -> None:
     until(hints, "hints of guards")
     assert "workspace/inlayHint/refresh" in editor.asked
     labels = {str(each["label"]): each for each in hints()}
-    label = next(each for each in labels if "move_to_position(bolt_pair_1)" in each)
-    assert label.startswith(
-        "supervisor: 3 guards, as `robot.move_to_position(bolt_pair_1)`: operator.requested_pair != bolt_pair_1 and "
+    (label,) = [each for each in labels if "position" in each]
+    assert label.startswith("supervisor: operator.requested_pair != position and (bolts[position] != placed or ")
+    assert label.endswith("…, for all position in bolt_pair")
+    tooltip = labels[label]["tooltip"]
+    assert isinstance(tooltip, dict)
+    lets, guard, why, *meant = tooltip["value"].split("\n\n")
+    assert lets == (
+        "The supervisor lets `robot.move_to_position(position)`, for all position in bolt_pair, start only while"
+    )
+    assert guard.endswith("nutrunner.run_nut.executing)`")
+    assert why == "because of `no_standing_tool_on_placed_bolts(position)`"
+    assert len(meant) == 3
+    assert meant[1].startswith(
+        "`robot.move_to_position(bolt_pair_2)`: `operator.requested_pair != bolt_pair_2 and (bolts[bolt_pair_2] != "
     )
     position = labels[label]["position"]
     assert isinstance(position, dict)

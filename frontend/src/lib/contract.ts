@@ -46,6 +46,7 @@ export type Message = Schemas['Message'];
 export type Argument = Schemas['Argument'];
 export type Item = Schemas['Item'];
 export type Analysis = Schemas['AnalysisDocument'];
+export type LiftedGuard = Schemas['LiftedGuard'];
 export type Trace = Schemas['TraceDocument'];
 export type Priority = Schemas['Priority'];
 export type Mode = Schemas['Mode'];

@@ -4,34 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sequence_planner.analysis.report import Document, GuardDocument
+from sequence_planner.analysis.guard_documents import GuardDocument, LiftedGuard
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding
-from sequence_planner.automaton.lifting.wording import ModelWording
+from sequence_planner.automaton.lifting.index_folding import GroundStatement, IndexFolding, specifications_folded
+from sequence_planner.automaton.lifting.wording import ModelWording, wording_of
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import resolve_predicate
 
 
-class LiftedGuard(Document):
-    """Guards as they are told to people: of all `starts`, which `index` names where they are instances of one
-    declaration, as in `all pair in bolt_pair`. A word of the index stands for the value of each, in `name` too.
-
-    `guard`, `blocked` and `rest` are as those of a `GuardDocument`, and `specifications` are told together in the same
-    way.
-    """
-
-    name: str
-    index: str | None
-    starts: list[str]
-    guard: str | None
-    blocked: list[str]
-    specifications: list[str]
-    rest: bool
-
-
 def lifted_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> list[LiftedGuard]:
     """The guards that synthesis has found of `automaton`, in the order in which the first of each stands."""
-    wording = ModelWording(automaton)
+    wording = wording_of(automaton)
     if not wording:
         return [
             LiftedGuard(name=name, index=None, **guard.model_dump(exclude={"literals"}))
@@ -54,6 +37,19 @@ def lifted_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> 
             )
         )
     return found
+
+
+def guard_in_words(automaton: Automaton, guard: GuardDocument) -> GuardDocument:
+    """A guard by itself, in the words of the model; the specifications of all instances over an index are one."""
+    wording = wording_of(automaton)
+    told = [wording.in_words(condition) for condition in _statement(wording, guard).conditions]
+    return guard.model_copy(
+        update={
+            "guard": None if guard.guard is None else told[0],
+            "blocked": told if guard.guard is None else guard.blocked,
+            "specifications": specifications_folded(wording, guard.specifications),
+        }
+    )
 
 
 def _statement(wording: ModelWording, guard: GuardDocument) -> GroundStatement:

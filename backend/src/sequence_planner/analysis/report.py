@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from sequence_planner.analysis.guard_documents import Document, GuardDocument, LiftedGuard
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.core.data_models import DataModel
 from sequence_planner.language.printer import print_expression
 
 if TYPE_CHECKING:
@@ -17,26 +17,6 @@ if TYPE_CHECKING:
     from sequence_planner.synthesis.traces import Trace
 
 Value = bool | int | str
-
-
-class Document(DataModel):
-    """Base of all parts: immutable, and nothing beside what is declared."""
-
-
-class GuardDocument(Document):
-    """What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
-
-    Then `blocked` are some conditions wherever one of which holds they must wait, the one nearest to the initial state
-    first. `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could
-    be reached any more.
-    """
-
-    guard: str | None
-    literals: int | None
-    starts: list[str]
-    specifications: list[str]
-    rest: bool
-    blocked: list[str]
 
 
 class StepDocument(Document):
@@ -61,7 +41,9 @@ class TraceDocument(Document):
 
 
 class FindingDocument(Document):
-    """Something suspicious, where it is written, and a run that shows it."""
+    """Something suspicious, where it is written, and a run that shows it. Where it is said of several instances in one,
+    as in `for all pair in bolt_pair`, `members` are these, and the run is that of the first.
+    """
 
     severity: str
     kind: str
@@ -69,6 +51,7 @@ class FindingDocument(Document):
     line: int
     column: int
     message: str
+    members: list[str]
     trace: TraceDocument | None
 
 
@@ -77,7 +60,7 @@ class AnalysisDocument(Document):
 
     `supervised` says whether there is a supervisor. Where the states that are reached with it are not counted, they are
     no more than `supervised_at_most`. `guarded` are the abilities that it restricts, and `guards` what it
-    adds to them, by ability, and in a plain automaton by event.
+    adds to them, by ability, and in a plain automaton by event; `lifted` are these as they are told to people.
     """
 
     pending: str | None
@@ -87,12 +70,16 @@ class AnalysisDocument(Document):
     supervised_at_most: int | None
     guarded: list[str] | None
     guards: dict[str, GuardDocument] | None
+    lifted: list[LiftedGuard] | None
     findings: list[FindingDocument] | None
 
 
 def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
     """Return what was found of `automaton`."""
+    from sequence_planner.analysis.lifted import lifted_guards  # noqa: PLC0415 (what is kept is told without it)
+
     warnings = analysis.warnings
+    guards = None if analysis.guards is None else {name: _guard(guard) for name, guard in analysis.guards.items()}
     return AnalysisDocument(
         pending=analysis.pending,
         supervised=True if analysis.supervisor is not None else None if analysis.warnings is None else False,
@@ -100,7 +87,8 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
         supervised_states=analysis.supervised_states,
         supervised_at_most=analysis.supervised_at_most,
         guarded=None if analysis.guarded is None else list(analysis.guarded),
-        guards=None if analysis.guards is None else {name: _guard(guard) for name, guard in analysis.guards.items()},
+        guards=guards,
+        lifted=None if guards is None else lifted_guards(automaton, guards),
         findings=None if warnings is None else findings_of(automaton, warnings),
     )
 
@@ -115,6 +103,7 @@ def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[
             line=warning.place.line,
             column=warning.place.column,
             message=warning.message,
+            members=list(warning.members),
             trace=None if warning.trace is None else trace_document(automaton, warning.trace),
         )
         for warning in warnings
@@ -130,6 +119,7 @@ def error_document(finding: Finding) -> FindingDocument:
         line=finding.place.line,
         column=finding.place.column,
         message=finding.message,
+        members=[],
         trace=None,
     )
 

@@ -38,8 +38,8 @@ COMMANDS = (
     LazyCommand(
         "show",
         "model.show:show",
-        "Show what a model means: its variables, ground abilities with their effects, operations and specifications, "
-        "and\nthe names that it gives to what is said more than once.",
+        "Show what a model means: its variables, ground abilities with their effects, operations and "
+        "specifications, and\nthe names that it gives to what is said more than once.",
     ),
     LazyCommand(
         "edit",

@@ -250,6 +250,7 @@ _UNSUPERVISED = AnalysisDocument(
     supervised_at_most=None,
     guarded=None,
     guards=None,
+    lifted=None,
     findings=[],
 )
 
@@ -369,14 +370,14 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
     try:
         known = await asyncio.to_thread(_known, automaton, folder)
         if known is not None:
-            preparation.take(document_of(automaton, known), known)
+            preparation.take(await asyncio.to_thread(document_of, automaton, known), known)
             if known.pending is None:
                 return
             await asyncio.sleep(PUT_OFF)
         of = await asyncio.to_thread(key, automaton)
         async with asyncio.timeout(ANALYSIS_DEADLINE), analysing(automaton) as finding:
             async for found in finding:
-                preparation.take(document_of(automaton, found), found)
+                preparation.take(await asyncio.to_thread(document_of, automaton, found), found)
                 if found.supervisor is not None:
                     await asyncio.to_thread(write, of, found, folder)
     except WorkerError as ended:

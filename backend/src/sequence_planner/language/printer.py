@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from sequence_planner.language.lexer import PREFIX_LETTERS
 from sequence_planner.language.syntax import (
     And,
@@ -40,9 +42,9 @@ def print_expression(expression: Expression) -> str:
     return _print(expression, _IMPLIES)
 
 
-def print_assignment(action: Assignment) -> str:
-    """The canonical text of an action."""
-    condition = f" if {print_expression(action.condition)}" if action.condition is not None else ""
+def print_assignment(action: Assignment, said: Callable[[Expression], str] | None = None) -> str:
+    """The canonical text of an action; its condition as it is `said`."""
+    condition = f" if {(said or print_expression)(action.condition)}" if action.condition is not None else ""
     bound = f"all {_bound(action.binders)}: " if action.binders else ""
     return f"{bound}{print_expression(action.target)} := {print_expression(action.value)}{condition}"
 

@@ -6,12 +6,11 @@ import asyncio
 import gc
 import tempfile
 import traceback
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
-from sequence_planner.analysis.report import FindingDocument, GuardDocument, error_document
+from sequence_planner.analysis.report import AnalysisDocument, FindingDocument, error_document
 from sequence_planner.core.late_log import LateLog
 from sequence_planner.editor.language.draft import LanguageDraft
 from sequence_planner.editor.processes import CheckDesk, Knowing
@@ -45,8 +44,8 @@ class StationListener(Protocol):
 class EditedStation:
     """The station in `folder`. Used from one event loop; what takes longer is done in `threads`.
 
-    `findings` are of change `checked`: then its files were `checked_files`. `guards` are what the supervisor adds, by
-    ground ability, as far as it is known; after an edit they are those from before until they have been found again.
+    `findings` are of change `checked`: then its files were `checked_files`. `analysis` has what the supervisor adds, as
+    far as that is known; after an edit it is that of before until it has been found again.
     """
 
     def __init__(self, folder: Path, threads: ServerThreads, listener: StationListener, deadline: float) -> None:
@@ -54,7 +53,7 @@ class EditedStation:
         self.number = 0
         self.findings: list[FindingDocument] = []
         self.checked_files: Files = {}
-        self.guards: Mapping[str, GuardDocument] = {}
+        self.analysis: AnalysisDocument | None = None
         self._listener = listener
         self._threads = threads
         self._saved = FolderReader(folder)
@@ -133,7 +132,7 @@ class EditedStation:
         if files is None or view.state is CheckState.WAITING:
             return
         if view.analysis is not None and view.analysis.guards is not None:
-            self.guards = view.analysis.guards
+            self.analysis = view.analysis
             self._listener.guards_changed(self)
         if view.findings or view.state is CheckState.DONE:
             self._show(view.number, files, view.findings)

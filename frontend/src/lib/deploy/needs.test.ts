@@ -11,6 +11,7 @@ const UNMET: StationView['analysis'] = {
 	supervised_at_most: null,
 	guarded: null,
 	guards: null,
+	lifted: null,
 	findings: []
 };
 const WORKSHOP: Workshop = {

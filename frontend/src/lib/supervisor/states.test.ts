@@ -10,6 +10,7 @@ const NOTHING: Analysis = {
 	supervised_at_most: null,
 	guarded: null,
 	guards: null,
+	lifted: null,
 	findings: null
 };
 

@@ -10,12 +10,13 @@ const ANALYSIS: NonNullable<ModelCheck['analysis']> = {
 	supervised_at_most: null,
 	guarded: null,
 	guards: {},
+	lifted: [],
 	findings: null
 };
 const DONE: ModelCheck = { number: 3, state: 'done', doing: '', findings: [], summary: null, analysis: ANALYSIS };
 
 function found(severity: string): Finding {
-	return { severity, kind: 'x', file: 'a.yaml', line: 1, column: 1, message: 'It is so', trace: null };
+	return { severity, kind: 'x', file: 'a.yaml', line: 1, column: 1, message: 'It is so', members: [], trace: null };
 }
 
 test('a check that is done says whether the draft can be used, and supervised', () => {

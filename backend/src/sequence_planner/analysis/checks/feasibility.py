@@ -90,7 +90,9 @@ class Possibility:
         elif self._is_news(*(conjunction(each.enabled, each.start_guard) for each in subject.abilities)):
             first = subject.abilities[0]
             guard = simplify(conjunction(first.enabled, first.start_guard))
-            yield FeasibilityFinding("never-starts", subject, f"never starts: {_never(guard)}", relative=True)
+            yield FeasibilityFinding(
+                "never-starts", subject, f"never starts: {_never(self._automaton, guard)}", relative=True
+            )
 
     def _begun(self, ability: Ability) -> Expression:
         """What its start brings about."""
@@ -189,7 +191,7 @@ class Possibility:
             in_sequence = self._out_of_turn(operation)
             keys = () if in_sequence is None else (f"operation.{operation.name}.sequence.{in_sequence}",)
             where = "" if in_sequence is None else f" in the sequence `{in_sequence}`, {operation.turns[in_sequence]}"
-            message = f"never becomes active{where}: {_never(operation.precondition)}"
+            message = f"never becomes active{where}: {_never(self._automaton, operation.precondition)}"
             subject = replace(subject, keys=(*keys, *subject.keys))
             yield FeasibilityFinding("never-active", subject, message, relative=not keys)
 
@@ -279,8 +281,8 @@ def _causes(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(without_arguments(event_of(name)) for name in names)
 
 
-def _never(condition: Expression) -> str:
+def _never(automaton: Automaton, condition: Expression) -> str:
     return (
-        f"{quoted(condition)} holds in no state that can be reached, with or without the supervisor. Write what was "
-        "meant, or the action or effect that is missing"
+        f"{quoted(automaton, condition)} holds in no state that can be reached, with or without the supervisor. Write "
+        "what was meant, or the action or effect that is missing"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import combinations, islice
 from math import prod
 
@@ -20,10 +21,14 @@ from sequence_planner.analysis.checks.warning import (
     parts,
     place,
     quoted,
+    shortened,
+    told_together,
 )
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
 from sequence_planner.automaton.dependencies import cone_of_influence
+from sequence_planner.automaton.lifting.wording import phrase, wording_of
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import (
     FALSE,
     Arithmetic,
@@ -365,20 +370,19 @@ def check_guards(automaton: Automaton) -> Iterator[ModelWarning]:
     written = [part for part in everything if not isinstance(part.expression, Constant)]
     reporting = _Reporting(automaton, everything)
     never, always = _constant(automaton, written)
-    for part, others in reporting.worth_saying(always, instances=False):
-        always_true = f"{quoted(part.expression)} always holds, whatever the values of its variables"
-        message = f"{always_true}: leave it out, or write what was meant"
-        yield reporting.warning("always-holds", part, others, message)
-    for part, others in reporting.worth_saying(never):
-        message = f"{_contradiction(automaton, part)}{_so(part)}: write what was meant"
-        yield reporting.warning("never-holds", part, others, message)
+
+    def holding(part: ModelCondition) -> tuple[str, str]:
+        always_true = f"{quoted(automaton, part.expression)} always holds, whatever the values of its variables"
+        return "always-holds", f"{always_true}: leave it out, or write what was meant"
+
+    contradictions = _Contradictions(automaton)
+    yield from reporting.warnings(always, holding, some=False)
+    yield from reporting.warnings(never, contradictions.of)
     reporting.dead |= {part.name for part in never}
     for growth in (Growth(automaton, any_measurement=True), Growth(automaton, any_measurement=False)):
         left = [part for part in written if part.name not in reporting.dead]
         stuck = [part for part in left if not growth.may(part.expression)]
-        for part, others in reporting.worth_saying(growth.roots(stuck, reporting.dead)):
-            kind, message = _stuck(growth, part)
-            yield reporting.warning(kind, part, others, message)
+        yield from reporting.warnings(growth.roots(stuck, reporting.dead), partial(_stuck, automaton, growth))
         reporting.dead |= {part.name for part in stuck}
 
 
@@ -389,10 +393,13 @@ def check_alarms(automaton: Automaton) -> Iterator[ModelWarning]:
     for kind, found, comes in (("always-holds", always, "always"), ("never-holds", never, "never")):
         for part in found:
             message = (
-                f"the alarm `{part.key}` is {comes} there, since {quoted(part.expression)} {comes} holds: "
+                f"the alarm `{part.key}` is {comes} there, since {quoted(automaton, part.expression)} {comes} holds: "
                 "write when it is to be there"
             )
             yield ModelWarning(alarms[part.key].place, kind, message)
+
+
+MOST_TOLD = 200  # instances of which it is looked whether the same is said
 
 
 class _Reporting:
@@ -407,13 +414,32 @@ class _Reporting:
             if part.expression == FALSE:
                 self.dead.add(part.name)
 
-    def worth_saying(
-        self, found: Collection[ModelCondition], instances: bool = True
-    ) -> Iterator[tuple[ModelCondition, Sequence[ModelCondition]]]:
-        """A part of each family, and those of its instances that are meant; none stands for all of them.
+    def warnings(
+        self,
+        found: Collection[ModelCondition],
+        said: Callable[[ModelCondition], tuple[str, str]],
+        some: bool = True,
+    ) -> Iterator[ModelWarning]:
+        """Yield what is `said` of each part that is `found`, its kind and the message, once for all instances.
 
-        With `instances` also those families of which only some are `found`.
+        With `some` also of families of which only some are found.
         """
+        for members, is_all in self._worth_saying(found, some):
+            first = members[0]
+            kind, message = said(first)
+            where = place(self._automaton, first.key, first.key.rpartition(".")[0])
+            told = told_together(self._automaton, {part.key: said(part)[1] for part in members[:MOST_TOLD]})
+            if len(members) > 1 and [len(each.members) for each in told] == [len(members)]:
+                yield ModelWarning(where, kind, told[0].message, members=told[0].members)
+            elif is_all:
+                yield ModelWarning(where, kind, message)
+            else:
+                yield ModelWarning(where, kind, f"of {listed([each.key for each in members])}: {message}")
+
+    def _worth_saying(
+        self, found: Collection[ModelCondition], some: bool
+    ) -> Iterator[tuple[Sequence[ModelCondition], bool]]:
+        """Those instances of each family that are meant, and whether all of it are found."""
         of_family: dict[str, list[ModelCondition]] = defaultdict(list)
         found_names = {part.name for part in found}
         for part in found:
@@ -421,20 +447,11 @@ class _Reporting:
                 of_family[part.family].append(part)
         for family, members in of_family.items():
             written = self._families[family]
+            named = [part for part in members if not part.repeats_an_argument]
             if len(members) == len(written):
-                yield next((part for part in members if not part.repeats_an_argument), members[0]), ()
-            elif instances and 2 * len(members) < len(written):
-                named = [part for part in members if not part.repeats_an_argument]
-                if named:
-                    yield named[0], named
-
-    def warning(
-        self, kind: str, part: ModelCondition, instances: Sequence[ModelCondition], message: str
-    ) -> ModelWarning:
-        """Return what is said of `part`, or of some `instances`."""
-        some = f"of {listed([each.key for each in instances])}: " if len(self._families[part.family]) > 1 else ""
-        where = place(self._automaton, part.key, part.key.rpartition(".")[0])
-        return ModelWarning(where, kind, f"{some if instances else ''}{message}")
+                yield named or members, True
+            elif some and 2 * len(members) < len(written) and named:
+                yield named, False
 
 
 def _constant(
@@ -470,21 +487,37 @@ def _can_hold_and_fail(automaton: Automaton, part: ModelCondition) -> tuple[bool
     return holds is not None, fails is not None
 
 
-def _contradiction(automaton: Automaton, part: ModelCondition) -> str:
-    """Say which words of a part exclude each other."""
-    few: list[tuple[Expression, ...]] = [(each,) for each in conjuncts(part.expression)]
-    few += combinations(conjuncts(part.expression), 2)
-    for words in few:
-        piece = ModelCondition(part.key, part.what, conjunction(*words), old_flags=part.old_flags)
-        if _constant(automaton, [piece])[0]:
-            texts = [quoted(word) for word in words]
-            return f"{texts[0]} never holds" if len(texts) == 1 else f"{' and '.join(texts)} exclude each other"
-    return f"{quoted(part.expression)} never holds"
+class _Contradictions:
+    """Words of conditions that exclude each other. Those found last are tried first, as instances are alike."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self._automaton = automaton
+        self._before: tuple[int, ...] = ()
+
+    def of(self, part: ModelCondition) -> tuple[str, str]:
+        """Say what is wrong with a part that never holds."""
+        return "never-holds", f"{self._excluding(part)}{_so(part)}: write what was meant"
+
+    def _excluding(self, part: ModelCondition) -> str:
+        wording = wording_of(self._automaton)
+        words = [each for piece in conjuncts(part.expression) for each in wording.told_parts(piece)]
+        few = [*((at,) for at in range(len(words))), *combinations(range(len(words)), 2)]
+        for numbers in sorted(few, key=lambda each: each != self._before):
+            some = [words[at] for at in numbers]
+            piece = conjunction(*(each.condition for each in some))
+            if _constant(self._automaton, [ModelCondition(part.key, part.what, piece, old_flags=part.old_flags)])[0]:
+                self._before = numbers
+                if len(some) > 1:
+                    return f"{' and '.join(shortened(phrase(each)) for each in some)} exclude each other"
+                is_named = some[0].words != some[0].condition
+                meant = f", that is {shortened(print_expression(piece))}," if is_named else ""
+                return f"{shortened(phrase(*some))}{meant} never holds"
+        return f"{quoted(self._automaton, part.expression)} never holds"
 
 
-def _stuck(growth: Growth, part: ModelCondition) -> tuple[str, str]:
+def _stuck(automaton: Automaton, growth: Growth, part: ModelCondition) -> tuple[str, str]:
     """Return what is said of a part that nothing brings about."""
-    lacking = [quoted(each) for each in conjuncts(part.expression) if not growth.may(each)]
+    lacking = list(_lacking(automaton, growth, part.expression)) or [quoted(automaton, part.expression)]
     more = f" and {len(lacking) - MOST_NAMED} more" if len(lacking) > MOST_NAMED else ""
     what = f"{' and '.join(lacking[:MOST_NAMED])}{more}"
     if growth.any_measurement:
@@ -499,6 +532,17 @@ def _stuck(growth: Growth, part: ModelCondition) -> tuple[str, str]:
     return "nothing-brings-about", (
         f"no effect brings about {what}{_so(part)} in any plan: write the effect with which the device does it"
     )
+
+
+def _lacking(automaton: Automaton, growth: Growth, condition: Expression) -> Iterator[str]:
+    """The words of a condition that nothing brings about; of a name for several those of them, unless all are."""
+    for told in wording_of(automaton).told_parts(condition):
+        pieces = list(conjuncts(told.condition))
+        left = [each for each in pieces if not growth.may(each)]
+        if len(left) < len(pieces):
+            yield from (quoted(automaton, each) for each in left)
+        elif left:
+            yield shortened(phrase(told))
 
 
 def _so(part: ModelCondition) -> str:

@@ -14,7 +14,7 @@ from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding, Possibility, Subject
 from sequence_planner.analysis.checks.large_reachability import from_afar
 from sequence_planner.analysis.checks.reachability import Questions, ReachabilityQuery, bits
-from sequence_planner.analysis.checks.warning import ModelWarning, listed, place
+from sequence_planner.analysis.checks.warning import ModelWarning, listed, place, told_together
 from sequence_planner.automaton.automaton import Ability, Automaton
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.findings import without_arguments
@@ -157,7 +157,7 @@ def _warnings(
 ) -> Iterator[ModelWarning]:
     """One for all instances of which the same is said, with the trace of the first."""
     instances = Counter(without_arguments(subject.name) for subject in subjects)
-    alike: dict[tuple[str, str, str], list[FeasibilityFinding]] = defaultdict(list)
+    alike: dict[tuple[str, str], list[FeasibilityFinding]] = defaultdict(list)
     unknown = [each.subject for each in found if each.kind == UNKNOWN]
     if unknown:
         names = listed([subject.name for subject in unknown])
@@ -167,11 +167,36 @@ def _warnings(
         )
         yield ModelWarning(place(automaton, *unknown[0].keys), UNKNOWN, message)
     for each in (each for each in found if each.kind != UNKNOWN):
-        alike[each.kind, without_arguments(each.subject.name), "" if each.relative else each.message].append(each)
-    for (kind, family, _), members in alike.items():
+        alike[each.kind, without_arguments(each.subject.name)].append(each)
+    for (_, family), members in alike.items():
+        relative = [each for each in members if each.relative]
+        if not len(relative) < instances[family] <= 2 * len(relative):
+            yield from _told(automaton, relative)
+        yield from _told(automaton, [each for each in members if not each.relative])
+
+
+def _told(automaton: Automaton, found: Sequence[FeasibilityFinding]) -> Iterator[ModelWarning]:
+    """What is said of instances: what they share once, and so what differs in the values of an index only."""
+    by_name = {_indexed(each.subject): each for each in found}
+    together = told_together(
+        automaton, {name: f"`{each.subject.name}` {each.message}" for name, each in by_name.items()}
+    )
+    left: dict[str, list[FeasibilityFinding]] = defaultdict(list)
+    for told in together:
+        first = by_name[told.members[0]]
+        if len(told.members) == len(found) > 1 or (len(told.members) > 1 and not first.relative):
+            names = tuple(by_name[name].subject.name for name in told.members)
+            where = place(automaton, *first.subject.keys)
+            yield ModelWarning(where, first.kind, told.message, first.trace, members=names)
+        else:
+            left["" if first.relative else first.message].append(first)
+    for members in left.values():
         first = members[0]
-        if first.relative and len(members) < instances[family] <= 2 * len(members):
-            continue
-        names = listed([each.subject.name for each in members])
-        names = f"each of {names}" if len(members) > 1 else names
-        yield ModelWarning(place(automaton, *first.subject.keys), kind, f"{names} {first.message}", first.trace)
+        said = listed([each.subject.name for each in members])
+        said = f"each of {said}" if len(members) > 1 else said
+        yield ModelWarning(place(automaton, *first.subject.keys), first.kind, f"{said} {first.message}", first.trace)
+
+
+def _indexed(subject: Subject) -> str:
+    """The name of a subject as indices know it."""
+    return subject.name if subject.operation is None else subject.keys[-1]

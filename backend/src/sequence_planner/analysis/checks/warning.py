@@ -6,10 +6,13 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from sequence_planner.automaton.automaton import Ability, Automaton, State
 from sequence_planner.automaton.findings import without_arguments
-from sequence_planner.language.printer import print_expression, print_value
+from sequence_planner.automaton.lifting.index_folding import IndexFolding
+from sequence_planner.automaton.lifting.wording import wording_of
+from sequence_planner.language.printer import print_value
 from sequence_planner.language.syntax import TRUE, Expression, conjunction
 from sequence_planner.language.types import Place
 from sequence_planner.synthesis.traces import Trace
@@ -104,13 +107,15 @@ LONGEST_QUOTED = 160  # characters of a condition in a message
 class ModelWarning:
     """The place where something is suspicious, a stable name for what it is, and what to do about it.
 
-    A `trace` shows how it comes about, where there is one to show.
+    A `trace` shows how it comes about, where there is one to show. `members` are the instances it is about, where it is
+    told of several in one.
     """
 
     place: Place
     kind: str
     message: str
     trace: Trace | None = field(default=None, compare=False)
+    members: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.place}: warning: {self.message} [{self.kind}]"
@@ -135,9 +140,38 @@ def listed(names: Sequence[str], most: int | None = MOST_NAMED) -> str:
     return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"
 
 
-def quoted(expression: Expression) -> str:
-    """A condition in backticks; of a long one the first words, since its place has all of it."""
-    text = print_expression(expression)
+class ToldTogether(NamedTuple):
+    """A message about instances, and their names."""
+
+    message: str
+    members: tuple[str, ...]
+
+
+def told_together(automaton: Automaton, messages: Mapping[str, str]) -> list[ToldTogether]:
+    """Messages by the names of what they are about: those as one, for all values of an index, that are the same but for
+    these values in backticks.
+    """
+    pieces = {name: message.split("`") for name, message in messages.items()}
+    code = {name: tuple(each[1::2]) for name, each in pieces.items()}
+    prose = {name: tuple(each[::2]) for name, each in pieces.items()}
+    found = []
+    for each in IndexFolding(wording_of(automaton)).folded_texts(code, prose):
+        told = list(pieces[each.members[0]])
+        told[1::2] = each.conditions
+        over = "" if each.over is None else f"for {each.over}: "
+        found.append(ToldTogether(f"{over}{'`'.join(told)}", each.members))
+    return found
+
+
+def quoted(automaton: Automaton, expression: Expression) -> str:
+    """A condition in the words of the model, in backticks; of a long one the first words, since its place has all of
+    it.
+    """
+    return shortened(wording_of(automaton).in_words(expression))
+
+
+def shortened(text: str) -> str:
+    """A condition in backticks, of a long one the first words."""
     if len(text) <= LONGEST_QUOTED:
         return f"`{text}`"
     return f"`{text[:LONGEST_QUOTED].rpartition(' ')[0]} …`"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.report import Document, FindingDocument, error_document, findings_of
+from sequence_planner.analysis.guard_documents import Document
+from sequence_planner.analysis.report import FindingDocument, error_document, findings_of
 from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.cli.analysing import (
     USUAL_DEADLINE,
@@ -76,8 +77,10 @@ def check(
     specifications cannot be met, go to standard output, and the exit code is 1. Without either it is 0.
     A trace shows how something comes about, step by step; it is indented below the warning. Of one with more than ten
     steps only their number is printed without --runs.
-    With --json: {model, findings: [{severity, kind, file, line, column, message, trace}], summary}; a trace is
-    {initial, forbidden_by, steps: [{kind, names, finished, changes, forbidden_by, text}]}, or null.
+    What is said of several instances of one declaration is one finding, in the words of the model.
+    With --json: {model, findings: [{severity, kind, file, line, column, message, members, trace}], summary}; `members`
+    are the instances where a finding is about several, and a trace is {initial, forbidden_by, steps: [{kind, names,
+    finished, changes, forbidden_by, text}]}, or null.
     """
     limits = Limits(deadline, memory)
     told = _told_before(of := _key(model, emulator)) or _told(model, limits, of, emulator=emulator, json=json)

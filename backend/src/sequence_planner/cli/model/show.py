@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import typer
 
-from sequence_planner.analysis.report import GuardDocument
+from sequence_planner.analysis.lifted import guard_in_words
 from sequence_planner.automaton.automaton import (
     Ability,
     Automaton,
@@ -17,10 +18,11 @@ from sequence_planner.automaton.automaton import (
     Operation,
     VariableDeclaration,
 )
+from sequence_planner.automaton.lifting.wording import wording_of
 from sequence_planner.cli.analysing import Deadline, Limits, analysed, guarded
 from sequence_planner.cli.loading import LoadedModel, usable_automaton, usable_model
 from sequence_planner.cli.model.pipelines import chosen, pipeline_lines
-from sequence_planner.cli.model.synthesize import described_automaton, guard_lines
+from sequence_planner.cli.model.synthesize import Guards, added_lines, described_automaton
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.language.printer import print_assignment, print_expression, print_value
@@ -36,7 +38,8 @@ from sequence_planner.language.syntax import (
 from sequence_planner.model.sequences import SequencePart
 
 Lines = Iterator[str]
-Guards = Mapping[str, GuardDocument]  # by ability
+Added = Mapping[str, list[str]]  # the lines about what the supervisor adds to each ability
+Said = Callable[[Expression], str]  # a condition as it is told
 
 LONGEST = 30.0  # seconds that whoever wants to see a model waits for guards
 
@@ -50,6 +53,7 @@ def show(
         ),
     ] = None,
     pipelines: Annotated[bool, typer.Option("--pipelines", help="Show the pipelines of topics and flows.")] = False,
+    expanded: Annotated[bool, typer.Option("--expanded", help="Write out all that the model has a name for.")] = False,
     deadline: Deadline = LONGEST,
     memory: Memory = USUAL_MEMORY,
     json: AsJson = False,
@@ -60,7 +64,10 @@ def show(
     A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
     The guard that the supervisor adds to a start stands apart from those that are written, with where it comes from.
     The exit code is 1 when these could not be found out in the time or memory there is.
-    With --json also the transitions of each phase of the tick, with what they read and write.
+    Conditions are told in the words of the model, unless they are to be --expanded: predicates, sets and relations by
+    their names.
+    With --json also the transitions of each phase of the tick, with what they read and write; conditions are written
+    out there.
     With --pipelines instead the typed graph of each topic and flow, of which a NAME is also one: the fields on each
     edge, where a stage adds or changes some, and what becomes of them.
     """
@@ -88,7 +95,11 @@ def show(
         }
         print_json({**described, **sections})
     else:
-        typer.echo("\n".join(_lines(automaton, guards, wanted, declared)).strip("\n"))
+        told = guards if expanded else {name: guard_in_words(automaton, guard) for name, guard in guards.items()}
+        said = print_expression if expanded else wording_of(automaton).in_words
+        rest = "marked" if automaton.one_at_a_time else "rest"
+        added = {name: added_lines(guard, rest) for name, guard in told.items()}
+        typer.echo("\n".join(_lines(automaton, added, wanted, declared, said)).strip("\n"))
     if unfinished:
         raise typer.Exit(FINDINGS)
 
@@ -144,24 +155,26 @@ def _chosen(name: str, wanted: list[str]) -> bool:
     return not wanted or any(_bears(name, each) for each in wanted)
 
 
-def _lines(automaton: Automaton, guards: Guards, wanted: list[str], declared: Iterable[_DeclaredName]) -> Lines:
+def _lines(
+    automaton: Automaton, added: Added, wanted: list[str], declared: Iterable[_DeclaredName], said: Said
+) -> Lines:
     if not wanted:
         yield f"{automaton.title} ({automaton.name})"
     for resource, title in (*automaton.resources.items(), (None, "The station")):
         variables = [v for v in automaton.variables.values() if v.resource == resource and _chosen(v.name, wanted)]
         abilities, effects = _of_resource(automaton, resource)
-        shown = [*_variables(variables), *_abilities(abilities, effects, guards, wanted)]
+        shown = [*_variables(variables), *_abilities(abilities, effects, added, wanted, said)]
         if shown:
             yield from ("", title if resource is None else f"{title} ({resource})", *shown)
     if automaton.one_at_a_time:
-        yield from _transitions(automaton, guards, wanted)
+        yield from _transitions(automaton, added, wanted, said)
     for operation in automaton.operations.values():
         if _chosen(operation.name, wanted):
-            yield from ("", *_operation(operation))
+            yield from ("", *_operation(operation, said))
     for specification in automaton.specifications.values():
         if _chosen(specification.name, wanted):
             yield from ("", f"specification {specification.name}: {specification.title}")
-            yield f"  forbidden   {print_expression(specification.forbidden)}"
+            yield f"  forbidden   {said(specification.forbidden)}"
     for master in automaton.work_masters.values():
         if _chosen(master.name, wanted):
             yield from ("", f"work master {master.name}: {master.title}")
@@ -169,17 +182,17 @@ def _lines(automaton: Automaton, guards: Guards, wanted: list[str], declared: It
                 yield f"  {step}" + (f" after {', '.join(sorted(before))}" if before else "")
             for what, groups in (("one of", master.alternatives), ("one at a time", master.arbitrary)):
                 yield from (f"  {what}: {' | '.join(', '.join(sorted(each)) for each in group)}" for group in groups)
-            yield from _actions("brings", master.brings)
+            yield from _actions("brings", master.brings, said)
     for alarm in automaton.alarms.values():
         if _chosen(alarm.name, wanted):
             title = alarm.title.get("en") or next(iter(alarm.title.values()))
             after = f", for {alarm.delay:g} s" if alarm.delay else ""
             yield from ("", f"alarm {alarm.name}: {title} ({alarm.priority})")
-            yield f"  when        {print_expression(alarm.when)}{after}"
+            yield f"  when        {said(alarm.when)}{after}"
     for each in declared:
         yield from ("", *each.lines)
     if not wanted and automaton.rest is not None:
-        yield from ("", f"rest  {print_expression(automaton.rest)}")
+        yield from ("", f"rest  {said(automaton.rest)}")
 
 
 # Names for what is said more than once: they are in no automaton.
@@ -278,30 +291,32 @@ def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
                 yield f"  {kind.value:9}  {variable.name}: {variable.type}, initially {initial}"
 
 
-def _abilities(abilities: Iterable[Ability], effects: Iterable[Effect], guards: Guards, wanted: list[str]) -> Lines:
+def _abilities(
+    abilities: Iterable[Ability], effects: Iterable[Effect], added: Added, wanted: list[str], said: Said
+) -> Lines:
     left = {effect.name: effect for effect in effects}
     for ability in abilities:
         own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]
         shown = [effect for effect in own if _chosen(ability.name, wanted) or _chosen(effect.name, wanted)]
         if _chosen(ability.name, wanted):
-            yield from _ability(ability, guards.get(ability.name))
+            yield from _ability(ability, added.get(ability.name, ()), said)
         for effect in shown:
-            yield from _effect(effect)
+            yield from _effect(effect, said)
 
 
-def _ability(ability: Ability, guard: GuardDocument | None) -> Lines:
+def _ability(ability: Ability, added: Sequence[str], said: Said) -> Lines:
     restart = ", for restart mode only" if ability.restart else ""
     yield from ("", f"  ability {ability.name}: {ability.title}{restart}")
-    yield from _condition("enabled", ability.enabled, TRUE)
-    yield from _condition("start", ability.start_guard, TRUE)
-    yield from _added(guard)
-    yield from _actions("start", ability.start_actions, "    ")
-    yield from _condition("executing", ability.executing, FALSE)
-    yield from _condition("finished", ability.finished, FALSE)
+    yield from _condition("enabled", ability.enabled, TRUE, said)
+    yield from _condition("start", ability.start_guard, TRUE, said)
+    yield from _added(added)
+    yield from _actions("start", ability.start_actions, said, "    ")
+    yield from _condition("executing", ability.executing, FALSE, said)
+    yield from _condition("finished", ability.finished, FALSE, said)
     if ability.finish_guard is not None:
-        yield from _condition("finish", ability.finish_guard, None)
-        yield from _actions("finish", ability.finish_actions, "    ")
-    yield from _actions("cancel", ability.cancel_actions, "    ")
+        yield from _condition("finish", ability.finish_guard, None, said)
+        yield from _actions("finish", ability.finish_actions, said, "    ")
+    yield from _actions("cancel", ability.cancel_actions, said, "    ")
     if ability.human is not None:
         yield f"    person      {ability.human.text} (acknowledged by {ability.human.acknowledgement})"
     limits = {"react": ability.timeouts.react, "finish": ability.timeouts.finish}
@@ -316,55 +331,52 @@ def _ability(ability: Ability, guard: GuardDocument | None) -> Lines:
         yield f"    duration    {_seconds(*ability.duration)}"
 
 
-def _effect(effect: Effect) -> Lines:
+def _effect(effect: Effect, said: Said) -> Lines:
     fault = ", a fault" if effect.fault else ""
     yield f"    effect {effect.name} ({effect.kind}{fault}, {_seconds(effect.shortest, effect.longest)})"
-    yield f"      {'when':10}  {print_expression(effect.guard)}"
-    yield from _actions("do", effect.actions, "      ")
+    yield f"      {'when':10}  {said(effect.guard)}"
+    yield from _actions("do", effect.actions, said, "      ")
 
 
-def _transitions(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
+def _transitions(automaton: Automaton, added: Added, wanted: list[str], said: Said) -> Lines:
     """Those of a plain automaton."""
     for ability in automaton.abilities.values():
         if _chosen(ability.name, wanted):
             yield from ("", f"controllable {ability.name}")
-            yield from _condition("guard", ability.start_guard, TRUE)
-            yield from _added(guards.get(ability.name), rest="marked")
-            yield from _actions("set", ability.start_actions, "    ")
+            yield from _condition("guard", ability.start_guard, TRUE, said)
+            yield from _added(added.get(ability.name, ()))
+            yield from _actions("set", ability.start_actions, said, "    ")
     for effect in automaton.effects:
         if _chosen(effect.name, wanted):
             yield from ("", f"uncontrollable {effect.name}")
-            yield from _condition("guard", effect.guard, TRUE)
-            yield from _actions("set", effect.actions, "    ")
+            yield from _condition("guard", effect.guard, TRUE, said)
+            yield from _actions("set", effect.actions, said, "    ")
 
 
-def _operation(operation: Operation) -> Lines:
+def _operation(operation: Operation, said: Said) -> Lines:
     once = "" if operation.repeat else ", once until it is reset"
     yield f"operation {operation.name}: {operation.title}, priority {operation.priority}{once}"
-    yield f"  precondition  {print_expression(operation.precondition)}"
-    yield f"  goal          {print_expression(operation.goal)}"
+    yield f"  precondition  {said(operation.precondition)}"
+    yield f"  goal          {said(operation.goal)}"
     if operation.local is not None:
-        yield f"  local         {print_expression(operation.local)}"
+        yield f"  local         {said(operation.local)}"
 
 
-def _condition(name: str, condition: Expression, usual: Expression | None) -> Lines:
+def _condition(name: str, condition: Expression, usual: Expression | None, said: Said) -> Lines:
     """A condition, if it says more than the usual one."""
     if condition != usual:
-        yield f"    {name:10}  {print_expression(condition)}"
+        yield f"    {name:10}  {said(condition)}"
 
 
-def _added(guard: GuardDocument | None, rest: str = "rest") -> Lines:
-    """Say what the supervisor adds, and the specifications that this comes from."""
-    if guard is not None:
-        reasons = [*guard.specifications, *([rest] if guard.rest else [])]
-        lines = [*guard_lines(guard), f"(because of {', '.join(reasons)})"]
-        for name, line in zip(("supervisor", *([""] * (len(lines) - 1))), lines, strict=True):
-            yield f"    {name:10}  {line}"
+def _added(lines: Sequence[str]) -> Lines:
+    """What the supervisor adds."""
+    for name, line in zip_longest(("supervisor",) if lines else (), lines, fillvalue=""):
+        yield f"    {name:10}  {line}"
 
 
-def _actions(name: str, actions: Iterable[Assignment], margin: str = "  ") -> Lines:
+def _actions(name: str, actions: Iterable[Assignment], said: Said, margin: str = "  ") -> Lines:
     for action in actions:
-        yield f"{margin}{name:10}  {print_assignment(action)}"
+        yield f"{margin}{name:10}  {print_assignment(action, said)}"
 
 
 def _seconds(fewest: float, most: float) -> str:

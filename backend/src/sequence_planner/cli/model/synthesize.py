@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.analysis.lifted import LiftedGuard, lifted_guards
-from sequence_planner.analysis.report import AnalysisDocument, GuardDocument
+from sequence_planner.analysis.guard_documents import GuardDocument, LiftedGuard
+from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect
 from sequence_planner.automaton.plain.events import NUMBER_SIGN, event_of
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
@@ -32,9 +32,10 @@ from sequence_planner.language.syntax import TRUE, Assignment, Expression
 Json = dict[str, object]
 
 
-def described_automaton(
-    automaton: Automaton, guards: Mapping[str, GuardDocument], chosen: Callable[[str], bool]
-) -> Json:
+Guards = Mapping[str, GuardDocument]  # by ability
+
+
+def described_automaton(automaton: Automaton, guards: Guards, chosen: Callable[[str], bool]) -> Json:
     """Those parts whose names are chosen; `guards` are what the supervisor adds to the starts of abilities."""
     return {
         "name": automaton.name,
@@ -100,6 +101,11 @@ def guard_lines(guard: GuardDocument | LiftedGuard) -> list[str]:
     if not guard.blocked:
         return ["see the states: no short condition says when"]
     return ["no short condition says when; not, among others, where", *(f"  {each}" for each in guard.blocked)]
+
+
+def added_lines(guard: GuardDocument | LiftedGuard, rest: str = "rest") -> list[str]:
+    """Say when the supervisor allows a start, and for what that is; with `rest` as the name of the states of rest."""
+    return [*guard_lines(guard), f"(because of {', '.join(_reasons(guard, rest))})"]
 
 
 def _described_ability(ability: Ability, guard: GuardDocument | None) -> Json:
@@ -196,9 +202,7 @@ def _document(automaton: Automaton, found: Found) -> dict[str, object]:
         "supervised_at_most": document.supervised_at_most,
         "guards": guards,
         "origins": None if document.guards is None else {n: g.model_dump() for n, g in document.guards.items()},
-        "lifted": None
-        if document.guards is None
-        else [each.model_dump() for each in lifted_guards(automaton, document.guards)],
+        "lifted": None if document.lifted is None else [each.model_dump() for each in document.lifted],
         "findings": None if document.findings is None else [each.model_dump() for each in document.findings],
         "unfinished": found.unfinished,
     }
@@ -226,7 +230,7 @@ def _synthesis_lines(automaton: Automaton, found: Found, expanded: bool) -> Iter
     document = found.document
     yield f"{automaton.title}: {_counts(document)}"
     guards = document.guards or {}
-    told = guards.items() if expanded else ((_title(each), each) for each in lifted_guards(automaton, guards))
+    told = guards.items() if expanded else ((_title(each), each) for each in document.lifted or ())
     for title, guard in told:
         yield f"  {title}"
         yield from (f"    {line}" for line in guard_lines(guard))

@@ -70,10 +70,11 @@ class Assistance:
     async def inlay_hints(self, params: types.InlayHintParams) -> list[types.InlayHint] | None:
         """What the supervisor adds to the abilities in a range, as far as that is known."""
         file = self._server.stations.file(params.text_document.uri)
-        if file is None or not self._server.shows_guards or not file.station.guards:
+        if file is None or not self._server.shows_guards or file.station.analysis is None:
             return None
-        text, guards = self._server.text_of_file(file), file.station.guards
-        found = await self._at_once(lambda: list(guard_hints(ModelContent({file.name: text.text}), file.name, guards)))
+        text, analysis = self._server.text_of_file(file), file.station.analysis
+        content = ModelContent({file.name: text.text})
+        found = await self._at_once(lambda: list(guard_hints(content, file.name, analysis)))
         first, last = params.range.start.line, params.range.end.line
         return [
             types.InlayHint(

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from sequence_planner.analysis.report import GuardDocument
+from sequence_planner.analysis.guard_documents import LiftedGuard
+from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.automaton.findings import without_arguments
-from sequence_planner.core.numerals import counted
 from sequence_planner.editor.symbols.texts import ModelContent, entry, pairs
 from sequence_planner.model.paths import resource_of
 from sequence_planner.model.source import SourceText
@@ -23,50 +23,54 @@ class GuardHint(NamedTuple):
     about: str
 
 
-def guard_hints(content: ModelContent, file: str, guards: Mapping[str, GuardDocument]) -> Iterator[GuardHint]:
+def guard_hints(content: ModelContent, file: str, found: AnalysisDocument) -> Iterator[GuardHint]:
     """Yield the hints of a resource's document: each at the `start` of an ability, or at its name if it has none."""
     resource = resource_of(file)
     if resource is None:
         return
-    by_ability: dict[str, list[tuple[str, GuardDocument]]] = {}
-    for name, guard in guards.items():
-        for start in guard.starts or [name]:
-            by_ability.setdefault(without_arguments(start), []).append((start, guard))
+    by_ability: dict[str, list[LiftedGuard]] = {}
+    for guard in found.lifted or ():
+        for family in dict.fromkeys(map(without_arguments, guard.starts or [guard.name])):
+            by_ability.setdefault(family, []).append(guard)
+    written_out = {name: guard.guard for name, guard in (found.guards or {}).items()}
     for name, ability in pairs(entry(content.get(file), "abilities")):
-        if found := by_ability.get(f"{resource}.{name}"):
-            yield _hint(_line(name, ability), found)
+        if guards := by_ability.get(f"{resource}.{name}"):
+            yield _hint(_line(name, ability), guards, written_out)
 
 
 def _line(name: SourceText, ability: object) -> int:
     return next((key.place.line for key, _ in pairs(ability) if key == "start"), name.place.line)
 
 
-def _hint(line: int, found: list[tuple[str, GuardDocument]]) -> GuardHint:
-    texts = [_said(guard) for _, guard in found]
-    if len(set(texts)) == 1:
-        label = f"supervisor: {texts[0]}"
-    else:
-        label = f"supervisor: {counted(len(found), 'guard')}, as `{found[0][0]}`: {texts[0]}"
-    label = label if len(label) <= _LONGEST else f"{label[: _LONGEST - 1]}…"
-    return GuardHint(line, label, "\n\n".join(_about(start, guard) for start, guard in found))
+def _hint(line: int, guards: Sequence[LiftedGuard], written_out: Mapping[str, str | None]) -> GuardHint:
+    first = guards[0]
+    some = "" if len(guards) == 1 else f"{len(guards)} guards, as `{first.name}`: "
+    over = "" if first.index is None else f", for {first.index}"
+    text = _said(first)
+    most = _LONGEST - len(f"supervisor: {some}{over}")
+    label = f"supervisor: {some}{text if len(text) <= most else f'{text[: most - 1]}…'}{over}"
+    return GuardHint(line, label, "\n\n".join(_about(guard, written_out) for guard in guards))
 
 
-def _said(guard: GuardDocument) -> str:
+def _said(guard: LiftedGuard) -> str:
     if guard.guard is not None:
         return guard.guard
     return f"not {guard.blocked[0]} …" if guard.blocked else "it depends on the state"
 
 
-def _about(start: str, guard: GuardDocument) -> str:
-    lines = [f"The supervisor lets `{start}` start only while"]
+def _about(guard: LiftedGuard, written_out: Mapping[str, str | None]) -> str:
+    """What is said of a guard, and each that it stands for, written out."""
+    name = f"`{guard.name}`" if guard.index is None else f"`{guard.name}`, for {guard.index},"
+    lines = [f"The supervisor lets {name} start only while"]
     if guard.guard is not None:
         lines.append(f"`{guard.guard}`")
     else:
-        lines[0] = f"The supervisor does not let `{start}` start where"
+        lines[0] = f"The supervisor does not let {name} start where"
         lines += [f"- `{each}`" for each in guard.blocked]
     why = [f"`{each}`" for each in guard.specifications]
     if guard.rest:
         why.append("the states of rest, which must stay reachable")
     if why:
         lines.append("because of " + " and ".join(why))
-    return "\n\n".join(lines)
+    meant = {start: text for start in guard.starts if (text := written_out.get(start)) not in (None, guard.guard)}
+    return "\n\n".join([*lines, *(f"`{start}`: `{text}`" for start, text in meant.items())])

@@ -125,7 +125,6 @@ export const check = {
 	starts: 'Ability',
 	onlyWhen: 'May start only when',
 	because: 'Because of',
-	noShort: 'the states themselves say it; no short condition does',
-	blocked: 'Not, among others, where:',
+	over: (index: string): string => `for ${index}`,
 	rest: 'coming to rest again'
 };

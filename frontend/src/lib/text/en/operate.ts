@@ -188,6 +188,8 @@ export const operate = {
 		onlyWhen: 'only when',
 		noShort: 'no short condition says it',
 		blocked: 'Not, among others, where:',
+		expanded: 'Written out',
+		over: (index: string): string => `for ${index}`,
 		because: 'because of',
 		rest: 'coming to rest again',
 		none: 'There is no supervisor, so nothing is started.',

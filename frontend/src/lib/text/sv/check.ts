@@ -124,7 +124,6 @@ export const check: Text['check'] = {
 	starts: 'Förmåga',
 	onlyWhen: 'Får starta bara när',
 	because: 'På grund av',
-	noShort: 'det sägs av tillstånden själva; inget kort villkor säger det',
-	blocked: 'Inte, bland annat, där:',
+	over: (index) => `för ${index}`,
 	rest: 'att kunna komma till vila igen'
 };

@@ -187,6 +187,8 @@ export const operate: Text['operate'] = {
 		onlyWhen: 'bara när',
 		noShort: 'inget kort villkor säger det',
 		blocked: 'Inte, bland annat, där:',
+		expanded: 'Utskrivet',
+		over: (index) => `för ${index}`,
 		because: 'på grund av',
 		rest: 'att åter komma till vila',
 		none: 'Det finns ingen övervakare, så inget startas.',
