@@ -112,3 +112,20 @@ def test_another_name_follows_in_types_and_instances(
     after = {path: path.read_text(encoding="utf-8") for path in robots.rglob("*.yaml")}
     assert {path.name for path, text in after.items() if before.get(path) != text} == files
     editor.close(uri)
+
+
+def test_what_an_unused_parameter_is_given_is_a_name_of_the_model(editor: Editor, robots: Path) -> None:
+    for file, old, new in (
+        ("types/robot.yaml", "namespace: text", "namespace: text\n  other: resource"),
+        ("resources/robot_1.yaml", "arguments: {", "arguments: {other: robot_2, "),
+        ("resources/robot_2.yaml", "arguments: {", "arguments: {other: robot_1, "),
+    ):
+        path = robots / file
+        path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
+    uri = editor.open(robots / "resources" / "robot_2.yaml")
+    (place,) = editor.ask("textDocument/definition", **editor.at(uri, "other: robot_1", 9))
+    assert place["uri"].endswith("resources/robot_1.yaml")
+    assert editor.ask("textDocument/prepareRename", **editor.at(uri, "other: robot_1", 9))["placeholder"] == "robot_1"
+    editor.apply(editor.ask("textDocument/rename", **editor.at(uri, "other: robot_1", 9), newName="loader"))
+    assert "arguments: {other: loader, " in editor.text(uri)
+    editor.close(uri)

@@ -26,7 +26,8 @@ class ModelContent(Mapping[str, object]):
     """The things that the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
 
     `definitions` are those of types of messages, by their files. `whole` is what resources hold that are instances,
-    with all that they have of their types; `types` and `instances` are as they are written, by name and by file.
+    with all that they have of their types; `types` and `instances` are as they are written, by name and by file, and
+    `layers` are each instance with its types, by file.
     """
 
     def __init__(self, files: Mapping[str, str]) -> None:
@@ -41,7 +42,7 @@ class ModelContent(Mapping[str, object]):
                 self._read[file] = document
         made = WrittenOut(self._read)
         self.whole = {file: each.content for file, each in made.documents.items()}
-        self.types, self.instances = made.types, made.instances
+        self.types, self.instances, self.layers = made.types, made.instances, made.layers
         self._files_of = made.files_of
         self._paths: dict[str, dict[tuple[int, int], EntryPath]] = {}
 
