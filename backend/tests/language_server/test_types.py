@@ -64,6 +64,59 @@ def test_what_a_name_is_where_it_is_declared(
     editor.close(uri)
 
 
+_DRIVE = {
+    "station.yaml": """\
+name: drives
+enumerations: {mode: [manual, automatic], side: [left, right], piece: [none, part]}
+maps:
+  code_of: {from: mode, to: 0..9, values: {manual: 1, automatic: 4}}
+estimated:
+  pieces: {for: {where: side}, type: piece, initial: none}
+predicates:
+  has:
+    parameters: {where: side, what: piece}
+    when: pieces[where] == what
+""",
+    "resources/drive.yaml": """\
+topics:
+  /drive/command:
+    type: drive_msgs/msg/Drive
+    direction: out
+    pipeline:
+      - map: {field: code, variable: wanted, values: code_of}
+output:
+  wanted: {type: mode, initial: manual}
+""",
+    "operations.yaml": """\
+fill: {parameters: {where: side}, goal: "has(where, part)"}
+two_pieces: {title: Both sides, sequence: [fill(left), fill(right)]}
+""",
+    "messages/drive_msgs/msg/Drive.msg": "uint8 code\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("file", "mark", "offset", "said"),
+    [
+        ("station.yaml", "  has:", 3, "**predicate** `has(where, what)`"),
+        ("station.yaml", "  has:", 3, "is `pieces[where] == what`"),
+        ("resources/drive.yaml", "values: code_of", 10, "**map** `code_of`"),
+        ("resources/drive.yaml", "values: code_of", 10, "manual → 1, automatic → 4"),
+        ("operations.yaml", "two_pieces:", 3, "**sequence** `two_pieces`"),
+        ("operations.yaml", "fill:", 2, "**operation** `fill`"),
+    ],
+)
+def test_what_is_declared_is_told_in_its_own_words(
+    editor: Editor, tmp_path: Path, file: str, mark: str, offset: int, said: str
+) -> None:
+    for name, text in _DRIVE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    uri = editor.open(tmp_path / file)
+    assert said in told(editor, uri, mark, offset)
+    editor.close(uri)
+
+
 @pytest.mark.parametrize(
     ("file", "mark", "offset", "found"),
     [
