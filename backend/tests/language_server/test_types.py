@@ -87,8 +87,20 @@ topics:
 output:
   wanted: {type: mode, initial: manual}
 """,
+    "types/lamp.yaml": """\
+parameters: {namespace: text}
+topics:
+  /{namespace}/command:
+    type: drive_msgs/msg/Drive
+    direction: out
+    pipeline:
+      - map: {field: code, variable: shown, values: code_of}
+output:
+  shown: {type: mode, initial: manual}
+""",
+    "resources/lamp.yaml": "type: lamp\narguments: {namespace: lamp}\n",
     "operations.yaml": """\
-fill: {parameters: {where: side}, goal: "has(where, part)"}
+fill: {parameters: {where: side}, precondition: "not has(where, part)", goal: "has(where, part)"}
 two_pieces: {title: Both sides, sequence: [fill(left), fill(right)]}
 """,
     "messages/drive_msgs/msg/Drive.msg": "uint8 code\n",
@@ -102,6 +114,8 @@ two_pieces: {title: Both sides, sequence: [fill(left), fill(right)]}
         ("station.yaml", "  has:", 3, "is `pieces[where] == what`"),
         ("resources/drive.yaml", "values: code_of", 10, "**map** `code_of`"),
         ("resources/drive.yaml", "values: code_of", 10, "manual → 1, automatic → 4"),
+        ("types/lamp.yaml", "values: code_of", 10, "**map** `code_of`"),
+        ("types/lamp.yaml", "variable: shown", 12, "**output** `lamp.shown`"),
         ("operations.yaml", "two_pieces:", 3, "**sequence** `two_pieces`"),
         ("operations.yaml", "fill:", 2, "**operation** `fill`"),
     ],
