@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
 from sequence_planner.cli.main import app
 from support.editor import Editor
+from support.waiting import until
 
 from .test_names import named
 
@@ -195,4 +197,40 @@ def test_what_an_unused_parameter_is_given_is_a_name_of_the_model(editor: Editor
     assert editor.ask("textDocument/prepareRename", **editor.at(uri, "other: robot_1", 9))["placeholder"] == "robot_1"
     editor.apply(editor.ask("textDocument/rename", **editor.at(uri, "other: robot_1", 9), newName="loader"))
     assert "arguments: {other: loader, " in editor.text(uri)
+    editor.close(uri)
+
+
+@pytest.mark.parametrize(
+    ("specifications", "said", "about"),
+    [
+        (None, "supervisor: 2 guards, as `robot_1.move_to(buffer)`: parts_on_buffer <= 1 and ", ("robot_1", "robot_2")),
+        (
+            "one_way: {forbidden: robot_1.target == buffer and robot_2.close_gripper}\n",
+            "supervisor, in robot_1: parts_on_buffer <= 1 and not robot_2.close_gripper",
+            ("robot_1",),
+        ),
+    ],
+)
+def test_what_the_supervisor_adds_stands_in_the_type_with_the_instances_that_it_restricts(
+    editor: Editor, robots: Path, specifications: str | None, said: str, about: tuple[str, ...]
+) -> None:
+    if specifications is not None:
+        (robots / "specifications.yaml").write_text(specifications, encoding="utf-8")
+    uri = editor.open(robots / "types" / "robot.yaml")
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 999, "character": 0}}
+
+    def hints() -> list[dict[str, Any]]:
+        return editor.ask("textDocument/inlayHint", textDocument={"uri": uri}, range=whole) or []
+
+    until(hints, "hints of guards")
+    (hint,) = hints()
+    assert hint["label"].startswith(said)
+    lines = editor.text(uri).split("\n")
+    above = lines[: hint["position"]["line"] + 1]
+    assert above[-1].strip() == "start:"
+    assert [each for each in above if each.startswith("  ") and each[2] != " "][-1] == "  move_to:"
+    told_of = [
+        name for name in ("robot_1", "robot_2") if f"lets `{name}.move_to(buffer)` start" in str(hint["tooltip"])
+    ]
+    assert told_of == list(about)
     editor.close(uri)

@@ -9,7 +9,6 @@ from sequence_planner.analysis.report import GuardDocument
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.core.numerals import counted
 from sequence_planner.editor.symbols.texts import ModelContent, entry, pairs
-from sequence_planner.model.paths import resource_of
 from sequence_planner.model.source import SourceText
 
 _LONGEST = 120  # characters of a guard in a line; all of it is in what is shown with it
@@ -23,30 +22,40 @@ class GuardHint(NamedTuple):
     about: str
 
 
-def guard_hints(content: ModelContent, file: str, guards: Mapping[str, GuardDocument]) -> Iterator[GuardHint]:
-    """Yield the hints of a resource's document: each at the `start` of an ability, or at its name if it has none."""
-    resource = resource_of(file)
-    if resource is None:
-        return
+def guard_hints(
+    content: ModelContent, text: str, file: str, guards: Mapping[str, GuardDocument]
+) -> Iterator[GuardHint]:
+    """Yield the hints of the document of a resource or a type, which is `text`: each at the `start` of an ability, or
+    at its name if it has none. In a type they are those of all its instances.
+    """
     by_ability: dict[str, list[tuple[str, GuardDocument]]] = {}
     for name, guard in guards.items():
         for start in guard.starts or [name]:
             by_ability.setdefault(without_arguments(start), []).append((start, guard))
-    for name, ability in pairs(entry(content.get(file), "abilities")):
-        if found := by_ability.get(f"{resource}.{name}"):
-            yield _hint(_line(name, ability), found)
+    owners = [(resource, at) for resource, at, _ in content.resources() if content.is_made_of(at, file)]
+    for name, ability in pairs(entry(ModelContent({file: text}).get(file), "abilities")):
+        restricted: list[str] = []
+        found: list[tuple[str, GuardDocument]] = []
+        for resource, at in owners:
+            own = by_ability.get(f"{resource}.{content.made_path(at, file, ('abilities', str(name)))[-1]}", [])
+            restricted += [resource] if own else []
+            found += own
+        if found:
+            yield _hint(_line(name, ability), found, restricted if len(restricted) < len(owners) else [])
 
 
 def _line(name: SourceText, ability: object) -> int:
     return next((key.place.line for key, _ in pairs(ability) if key == "start"), name.place.line)
 
 
-def _hint(line: int, found: list[tuple[str, GuardDocument]]) -> GuardHint:
+def _hint(line: int, found: list[tuple[str, GuardDocument]], only: list[str]) -> GuardHint:
+    """The hint for these starts; `only` names the instances that are restricted where others are not."""
     texts = [_said(guard) for _, guard in found]
+    who = f"supervisor, in {' and '.join(only)}" if only else "supervisor"
     if len(set(texts)) == 1:
-        label = f"supervisor: {texts[0]}"
+        label = f"{who}: {texts[0]}"
     else:
-        label = f"supervisor: {counted(len(found), 'guard')}, as `{found[0][0]}`: {texts[0]}"
+        label = f"{who}: {counted(len(found), 'guard')}, as `{found[0][0]}`: {texts[0]}"
     label = label if len(label) <= _LONGEST else f"{label[: _LONGEST - 1]}…"
     return GuardHint(line, label, "\n\n".join(_about(start, guard) for start, guard in found))
 
