@@ -167,6 +167,22 @@ def test_parameters_stand_in_conditions_by_their_names_and_nowhere_else(tmp_path
     assert pickle.loads(pickle.dumps(enabled)).at.__self__ == enabled
 
 
+def test_an_argument_that_is_wrong_wherever_the_type_uses_it_is_told_once_at_the_argument(robots: Path) -> None:
+    replace(robots, TYPE, "namespace: text", "namespace: text\n  travel: {kind: number, default: 1}")
+    replace(robots, TYPE, "takes: [1, 2]", "takes: travel")
+    replace(robots, TYPE, "react: 2,", "react: travel,")
+    [first] = replace(robots, ONE, "{namespace: robot_1", "{travel: ‹-1, namespace: robot_1")
+    used = f"{robots / TYPE}:23:23"
+    message = "expected a number of at least 0, found `-1`"
+    assert findings(robots) == [f"{first}: {message}: {used} and another place use it"]
+    replace(robots, TYPE, "takes: [0.2, 0.4]", "takes: travel")
+    [second] = replace(robots, TWO, "{namespace: robot_2", "{travel: ‹-2, namespace: robot_2")
+    assert findings(robots) == [
+        f"{first}: {message}: {used} and 2 other places use it",
+        f"{second}: {message.replace('1', '2')}: {used} and 2 other places use it",
+    ]
+
+
 # Robots of a type that uses what it declares: one waits with its part until the other is away.
 _LIFT = {
     "station.yaml": "name: lifts\nenumerations:\n  level: [down, up]\n",
