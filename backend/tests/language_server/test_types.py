@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
 
 from sequence_planner.cli.main import app
 from support.editor import Editor
+from support.waiting import until
 
 from .test_names import named
 
@@ -64,6 +66,73 @@ def test_what_a_name_is_where_it_is_declared(
     editor.close(uri)
 
 
+_DRIVE = {
+    "station.yaml": """\
+name: drives
+enumerations: {mode: [manual, automatic], side: [left, right], piece: [none, part]}
+maps:
+  code_of: {from: mode, to: 0..9, values: {manual: 1, automatic: 4}}
+estimated:
+  pieces: {for: {where: side}, type: piece, initial: none}
+predicates:
+  has:
+    parameters: {where: side, what: piece}
+    when: pieces[where] == what
+""",
+    "resources/drive.yaml": """\
+topics:
+  /drive/command:
+    type: drive_msgs/msg/Drive
+    direction: out
+    pipeline:
+      - map: {field: code, variable: wanted, values: code_of}
+output:
+  wanted: {type: mode, initial: manual}
+""",
+    "types/lamp.yaml": """\
+parameters: {namespace: text}
+topics:
+  /{namespace}/command:
+    type: drive_msgs/msg/Drive
+    direction: out
+    pipeline:
+      - map: {field: code, variable: shown, values: code_of}
+output:
+  shown: {type: mode, initial: manual}
+""",
+    "resources/lamp.yaml": "type: lamp\narguments: {namespace: lamp}\n",
+    "operations.yaml": """\
+fill: {parameters: {where: side}, precondition: "not has(where, part)", goal: "has(where, part)"}
+two_pieces: {title: Both sides, sequence: [fill(left), fill(right)]}
+""",
+    "messages/drive_msgs/msg/Drive.msg": "uint8 code\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("file", "mark", "offset", "said"),
+    [
+        ("station.yaml", "  has:", 3, "**predicate** `has(where, what)`"),
+        ("station.yaml", "  has:", 3, "is `pieces[where] == what`"),
+        ("resources/drive.yaml", "values: code_of", 10, "**map** `code_of`"),
+        ("resources/drive.yaml", "values: code_of", 10, "manual → 1, automatic → 4"),
+        ("types/lamp.yaml", "values: code_of", 10, "**map** `code_of`"),
+        ("types/lamp.yaml", "variable: shown", 12, "**output** `lamp.shown`"),
+        ("operations.yaml", "two_pieces:", 3, "**sequence** `two_pieces`"),
+        ("operations.yaml", "fill:", 2, "**operation** `fill`"),
+    ],
+)
+def test_what_is_declared_is_told_in_its_own_words(
+    editor: Editor, tmp_path: Path, file: str, mark: str, offset: int, said: str
+) -> None:
+    for name, text in _DRIVE.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    uri = editor.open(tmp_path / file)
+    assert said in told(editor, uri, mark, offset)
+    editor.close(uri)
+
+
 @pytest.mark.parametrize(
     ("file", "mark", "offset", "found"),
     [
@@ -111,4 +180,57 @@ def test_another_name_follows_in_types_and_instances(
     assert checked.exit_code == 0, checked.output
     after = {path: path.read_text(encoding="utf-8") for path in robots.rglob("*.yaml")}
     assert {path.name for path, text in after.items() if before.get(path) != text} == files
+    editor.close(uri)
+
+
+def test_what_an_unused_parameter_is_given_is_a_name_of_the_model(editor: Editor, robots: Path) -> None:
+    for file, old, new in (
+        ("types/robot.yaml", "namespace: text", "namespace: text\n  other: resource"),
+        ("resources/robot_1.yaml", "arguments: {", "arguments: {other: robot_2, "),
+        ("resources/robot_2.yaml", "arguments: {", "arguments: {other: robot_1, "),
+    ):
+        path = robots / file
+        path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
+    uri = editor.open(robots / "resources" / "robot_2.yaml")
+    (place,) = editor.ask("textDocument/definition", **editor.at(uri, "other: robot_1", 9))
+    assert place["uri"].endswith("resources/robot_1.yaml")
+    assert editor.ask("textDocument/prepareRename", **editor.at(uri, "other: robot_1", 9))["placeholder"] == "robot_1"
+    editor.apply(editor.ask("textDocument/rename", **editor.at(uri, "other: robot_1", 9), newName="loader"))
+    assert "arguments: {other: loader, " in editor.text(uri)
+    editor.close(uri)
+
+
+@pytest.mark.parametrize(
+    ("specifications", "said", "about"),
+    [
+        (None, "supervisor: 2 guards, as `robot_1.move_to(buffer)`: parts_on_buffer <= 1 and ", ("robot_1", "robot_2")),
+        (
+            "one_way: {forbidden: robot_1.target == buffer and robot_2.close_gripper}\n",
+            "supervisor, in robot_1: parts_on_buffer <= 1 and not robot_2.close_gripper",
+            ("robot_1",),
+        ),
+    ],
+)
+def test_what_the_supervisor_adds_stands_in_the_type_with_the_instances_that_it_restricts(
+    editor: Editor, robots: Path, specifications: str | None, said: str, about: tuple[str, ...]
+) -> None:
+    if specifications is not None:
+        (robots / "specifications.yaml").write_text(specifications, encoding="utf-8")
+    uri = editor.open(robots / "types" / "robot.yaml")
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 999, "character": 0}}
+
+    def hints() -> list[dict[str, Any]]:
+        return editor.ask("textDocument/inlayHint", textDocument={"uri": uri}, range=whole) or []
+
+    until(hints, "hints of guards")
+    (hint,) = hints()
+    assert hint["label"].startswith(said)
+    lines = editor.text(uri).split("\n")
+    above = lines[: hint["position"]["line"] + 1]
+    assert above[-1].strip() == "start:"
+    assert [each for each in above if each.startswith("  ") and each[2] != " "][-1] == "  move_to:"
+    told_of = [
+        name for name in ("robot_1", "robot_2") if f"lets `{name}.move_to(buffer)` start" in str(hint["tooltip"])
+    ]
+    assert told_of == list(about)
     editor.close(uri)

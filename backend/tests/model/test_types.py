@@ -167,6 +167,87 @@ def test_parameters_stand_in_conditions_by_their_names_and_nowhere_else(tmp_path
     assert pickle.loads(pickle.dumps(enabled)).at.__self__ == enabled
 
 
+def test_an_argument_that_is_wrong_wherever_the_type_uses_it_is_told_once_at_the_argument(robots: Path) -> None:
+    replace(robots, TYPE, "namespace: text", "namespace: text\n  travel: {kind: number, default: 1}")
+    replace(robots, TYPE, "takes: [1, 2]", "takes: travel")
+    replace(robots, TYPE, "react: 2,", "react: travel,")
+    [first] = replace(robots, ONE, "{namespace: robot_1", "{travel: ‹-1, namespace: robot_1")
+    used = f"{robots / TYPE}:23:23"
+    message = "expected a number of at least 0, found `-1`"
+    assert findings(robots) == [f"{first}: {message}: {used} and another place use it"]
+    replace(robots, TYPE, "takes: [0.2, 0.4]", "takes: travel")
+    [second] = replace(robots, TWO, "{namespace: robot_2", "{travel: ‹-2, namespace: robot_2")
+    assert findings(robots) == [
+        f"{first}: {message}: {used} and 2 other places use it",
+        f"{second}: {message.replace('1', '2')}: {used} and 2 other places use it",
+    ]
+
+
+# Robots of a type that uses what it declares: one waits with its part until the other is away.
+_LIFT = {
+    "station.yaml": "name: lifts\nenumerations:\n  level: [down, up]\n",
+    "types/lift.yaml": """\
+parameters: {other: resource}
+output:
+  target: {type: level, initial: down}
+estimated:
+  at: {type: level, initial: down}
+predicates:
+  rests: target == at
+abilities:
+  rise:
+    enabled: target == down and rests
+    start:
+      do: [target := up]
+    executing: target == up
+    finish:
+      when: target == up
+      do: [at := up]
+  lower:
+    enabled: not rise.executing and at == up
+    start:
+      do: [at := down]
+""",
+    "resources/lift_l.yaml": "type: lift\narguments: {other: lift_r}\n",
+    "resources/lift_r.yaml": "type: lift\narguments: {other: lift_l}\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("removed", "first", "others"),
+    [
+        ("output.target", "7:10", " and 4 other places use it: remove these as well, or keep it"),
+        ("predicates.rests", "10:33", " uses it: remove that as well, or keep it"),
+        ("abilities.rise", "18:18", " uses it: remove that as well, or keep it"),
+    ],
+)
+def test_what_a_type_uses_and_an_instance_removes_is_told_once_where_it_is_removed(
+    tmp_path: Path, removed: str, first: str, others: str
+) -> None:
+    for file, text in _LIFT.items():
+        write(tmp_path, file, text)
+    assert automaton(tmp_path).abilities
+    [place] = write(tmp_path, "resources/lift_r.yaml", f"{_LIFT['resources/lift_r.yaml']}remove: [‹{removed}]\n")
+    word = removed.rpartition(".")[2]
+    used = f"{tmp_path / 'types' / 'lift.yaml'}:{first}"
+    assert findings(tmp_path) == [f"{place}: `{word}` is removed here, and {used}{others}"]
+
+
+def test_what_is_removed_is_told_elsewhere_without_proposing_what_another_resource_has(tmp_path: Path) -> None:
+    for file, text in _LIFT.items():
+        write(tmp_path, file, text)
+    [entry] = write(tmp_path, "resources/lift_r.yaml", f"{_LIFT['resources/lift_r.yaml']}remove: [‹abilities.lower]\n")
+    [place, second] = write(
+        tmp_path,
+        "specifications.yaml",
+        "one: {forbidden: '‹lift_r.lower.executing'}\ntwo: {exclusive: [lift_l.lower, ‹lift_r.lower]}\n",
+    )
+    assert findings(tmp_path) == [
+        f"{place}: `lower` is removed at {entry}: keep it there, or write something else here",
+        f"{second}: there is no ability `lift_r.lower`: it is removed at {entry}",
+    ]
+
+
 def test_an_instance_changes_adds_and_removes(robots: Path) -> None:
     write(
         robots,

@@ -34,6 +34,7 @@ from sequence_planner.model import fields
 from sequence_planner.model.documents import AbilityDocument, EnumerationDocument, Parameters, VariableDocument
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
+from sequence_planner.model.paths import parse_path
 from sequence_planner.model.source import Finding, SourceText
 
 FLAGS = fields.FLAGS
@@ -49,7 +50,8 @@ class Declarations:
     """The names of a station. `types` has the type of everything an expression can read.
 
     `broken` are names that are declared, but of no usable type, and `unusable` those of enumerations, sets, relations,
-    maps and predicates that mean nothing: their uses are not wrong as well.
+    maps and predicates that mean nothing: their uses are not wrong as well. `removed` are those that instances do not
+    have of their types, each with the entry that says so.
     """
 
     def __init__(self, station: Station, findings: Findings) -> None:
@@ -61,6 +63,7 @@ class Declarations:
         self.places: dict[str, Place] = {}
         self.broken: set[str] = set()
         self.unusable: set[str] = set()
+        self.removed = dict(_removed(station))
         self._check_resources()
         self._read_enumerations()
         self._read_variables()
@@ -85,6 +88,7 @@ class Declarations:
             list(self.enumerations.items()),
             frozenset(self.broken | self.unusable),
             self.vocabulary.declared(),
+            self.removed,
         )
 
     def written_abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument]]:
@@ -342,6 +346,24 @@ class Declarations:
 
 
 # What abilities meant when they were ground before, for as long as the names in them mean the same.
+
+_NAMED_SECTIONS = (*(kind.value for kind in _KINDS), "abilities", "predicates", "relations", "maps")
+
+
+def _removed(station: Station) -> Iterator[tuple[str, Place]]:
+    """The full names that instances do not have of their types, each with where it is removed."""
+    for resource, layers in station.layers.items():
+        document, kind = station.resources.get(resource), layers[0].written.head.type
+        if document is None or kind is None:
+            continue
+        for layer in layers[:-1]:
+            for text in layer.written.head.remove:
+                section, *rest = parse_path(text)
+                is_name = section in _NAMED_SECTIONS and len(rest) == 1
+                if is_name and rest[0] not in getattr(document, str(section)):
+                    own = "" if layer is layers[0] else f"{resource} ({kind.place})"
+                    yield f"{resource}.{rest[0]}", text.place._replace(instance=own)
+
 
 _WORD = re.compile(r"\w+")
 

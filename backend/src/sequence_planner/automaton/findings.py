@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import EnumerationType, Place
@@ -26,6 +27,32 @@ class Findings:
     def add_within(self, text: SourceText, span: Span, message: str) -> None:
         """Note what is wrong at a part of `text`."""
         self.all.append(Finding(text.at(span), message))
+
+
+@dataclass(frozen=True, order=True)
+class UseOfRemoved(Finding):
+    """Something in a type uses what an instance removes, by its entry at `removed`."""
+
+    word: str
+    removed: Place
+
+
+def told_where_removed(findings: Iterable[Finding]) -> list[Finding]:
+    """The same, with one for each entry that is removed and used in the type, at that entry."""
+    others: list[Finding] = []
+    uses: dict[tuple[Place, str], set[Place]] = {}
+    for finding in findings:
+        if isinstance(finding, UseOfRemoved):
+            uses.setdefault((finding.removed, finding.word), set()).add(finding.place._replace(instance=""))
+        else:
+            others.append(finding)
+    for (removed, word), places in uses.items():
+        first, count = min(places), len(places) - 1
+        beside = f" and {count} other place{'s' if count > 1 else ''}" if count else ""
+        use, these = ("use", "these") if count else ("uses", "that")
+        advice = f"remove {these} as well, or keep it"
+        others.append(Finding(removed, f"`{word}` is removed here, and {first}{beside} {use} it: {advice}"))
+    return others
 
 
 def instance_name(name: str, binding: Binding, indexed: bool = False) -> str:

@@ -27,7 +27,15 @@ from sequence_planner.automaton.automaton import (
 )
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations, GroundAbility, GroundBefore
 from sequence_planner.automaton.dependencies import ordered_flags
-from sequence_planner.automaton.findings import Binding, Findings, instance_name, readable, without_arguments
+from sequence_planner.automaton.findings import (
+    Binding,
+    Findings,
+    UseOfRemoved,
+    instance_name,
+    readable,
+    told_where_removed,
+    without_arguments,
+)
 from sequence_planner.automaton.sequences.expansion import StationSequences, Steps
 from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
@@ -191,9 +199,20 @@ class Meaning:
             return  # what is wrong is told where the predicate is declared
         name = without_arguments(text[error.span.start : error.span.end])
         owner = name.rpartition(".")[0]  # of a flag
-        broken = self.declarations.broken
-        if not any(prefix + one in broken for prefix in (*scope.prefixes, "") for one in (name, owner)):
+        known = [prefix + one for prefix in (*scope.prefixes, "") for one in (name, owner)]
+        if any(each in self.declarations.broken for each in known):
+            return
+        removed = next((each for each in known if each in self.declarations.removed), None)
+        if removed is None or removed in self.declarations.variables:
             self.findings.add_within(text, error.span, error.message)
+        else:
+            self._uses_removed(text.at(error.span), removed)
+
+    def _uses_removed(self, place: Place, full: str) -> None:
+        word, entry = full.rpartition(".")[2], self.declarations.removed[full]
+        said = f"`{word}` is removed at {entry}: keep it there, or write something else here"
+        in_type = bool(place.instance)
+        self.findings.all.append(UseOfRemoved(place, said, word, entry) if in_type else Finding(place, said))
 
 
 # Predicates, which are written out where they are used.
@@ -603,6 +622,8 @@ def _executing(meaning: Meaning, text: SourceText, scope: NameScope) -> Expressi
         if not found:
             abilities = {each for flag in flags for each in (flag, without_arguments(flag))}
             near = suggestion(name, sorted(each.removesuffix(".executing") for each in abilities))
+            if (entry := meaning.declarations.removed.get(name)) is not None:
+                near = f": it is removed at {entry}"
             raise ExpressionError(f"there is no ability `{name}`{near}", named.span)
     except ExpressionError as error:
         if without_arguments(str(text)) not in meaning.declarations.broken:
@@ -700,7 +721,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
         indices=declarations.indices(),
     )
     if findings.all:
-        raise ModelError(findings.all)
+        raise ModelError(told_where_removed(findings.all))
     return automaton
 
 

@@ -97,8 +97,8 @@ def test_what_is_declared_is_explained_at_its_declaration(lexicon: Lexicon) -> N
     short = draft("shorthand").lexicon
     predicate = hover_of_part(short, "predicate", "is_done")
     assert predicate is not None and predicate.definition is not None
-    assert predicate.definition.startswith("bolts[a] == tight and (a == p1 or")
-    assert predicate.expansion == "a = p1: bolts[p1] == tight"
+    assert predicate.definition.startswith("bolts[which] == tight and (which == p1 or")
+    assert predicate.expansion == "which = p1: bolts[p1] == tight"
     for kind, name in (("set", "free"), ("relation", "near"), ("map", "grip_for"), ("value", "spot.home")):
         found = hover_of_part(short, kind, name)
         assert found is not None and str(found.kind) == kind, name

@@ -14,7 +14,7 @@ from sequence_planner.model.paths import EditError
 from sequence_planner.pipelines.builder import load_messages
 from support.places import MODELS
 
-from .stations import write
+from .stations import changed, write
 
 ROBOTS = MODELS / "robots_with_buffer"
 FILES = read_files(ROBOTS)
@@ -23,14 +23,14 @@ TYPE = "types/robot.yaml"
 
 
 def test_an_ability_of_a_type_is_renamed_there_and_wherever_an_instance_has_it() -> None:
-    changed = renamed(FILES, parse_part("ability:robot_1.open_gripper"), "let_go", MESSAGES)
-    assert changed.keys() == {TYPE}
-    assert changed[TYPE] == FILES[TYPE].replace("open_gripper:", "let_go:")
+    changes = renamed(FILES, parse_part("ability:robot_1.open_gripper"), "let_go", MESSAGES)
+    assert changes.keys() == {TYPE}
+    assert changes[TYPE] == FILES[TYPE].replace("open_gripper:", "let_go:")
 
 
 def test_what_instances_say_of_it_themselves_follows() -> None:
-    changed = renamed(FILES, parse_part("ability:robot_2.move_to"), "go_to", MESSAGES)
-    assert changed == {
+    changes = renamed(FILES, parse_part("ability:robot_2.move_to"), "go_to", MESSAGES)
+    assert changes == {
         file: FILES[file].replace("move_to:", "go_to:")
         for file in (TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml")
     }
@@ -52,20 +52,73 @@ def test_usages_are_where_they_are_written() -> None:
 
 @pytest.mark.parametrize(("name", "new"), [("stops", "goals"), ("conveyor", "belt"), ("namespace", "prefix")])
 def test_a_parameter_is_renamed_in_the_type_and_in_the_arguments(name: str, new: str, tmp_path: Path) -> None:
-    changed = renamed(FILES, parse_part(f"parameter:type:robot.{name}"), new, MESSAGES)
-    assert changed.keys() == {TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml"}
-    now = {**FILES, **{file: text for file, text in changed.items() if text is not None}}
+    changes = renamed(FILES, parse_part(f"parameter:type:robot.{name}"), new, MESSAGES)
+    assert changes.keys() == {TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml"}
+    now = {**FILES, **{file: text for file, text in changes.items() if text is not None}}
     write(now, tmp_path)
     assert load_station(tmp_path).resources == load_station(ROBOTS).resources
     back = renamed(now, parse_part(f"parameter:type:robot.{new}"), name, MESSAGES)
-    assert back == {file: FILES[file] for file in changed}
+    assert back == {file: FILES[file] for file in changes}
+
+
+# Nothing in the types uses what they are given, and `small_press` passes on what it is given itself.
+_UNUSED = {
+    "station.yaml": "name: line\nenumerations:\n  load: [none, blank]\n  side: [left, right]\n",
+    "types/press.yaml": """\
+parameters:
+  other: resource
+  loads: enumeration
+  nothing: {kind: value, of: loads}
+  where: {kind: value, of: side, default: left}
+estimated:
+  busy: {type: bool, initial: false}
+""",
+    "types/small_press.yaml": """\
+parameters: {beside: resource}
+type: press
+arguments: {other: beside, loads: load, nothing: none}
+""",
+    "resources/press_l.yaml": "type: press\narguments: {other: press_r, loads: load, nothing: none, where: right}\n",
+    "resources/press_r.yaml": "type: small_press\narguments: {beside: press_l}\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("part", "new", "files"),
+    [
+        ("resource:press_l", "press_one", {f"resources/press_{each}.yaml" for each in ("l", "r", "one")}),
+        ("resource:press_r", "press_two", {f"resources/press_{each}.yaml" for each in ("l", "r", "two")}),
+        ("enumeration:load", "cargo", {"station.yaml", "resources/press_l.yaml", "types/small_press.yaml"}),
+        ("value:load.none", "empty", {"station.yaml", "resources/press_l.yaml", "types/small_press.yaml"}),
+        ("value:side.right", "east", {"station.yaml", "resources/press_l.yaml"}),
+        ("value:side.left", "west", {"station.yaml", "types/press.yaml"}),
+        ("enumeration:side", "edge", {"station.yaml", "types/press.yaml"}),
+    ],
+)
+def test_what_an_unused_parameter_is_given_follows(part: str, new: str, files: set[str], tmp_path: Path) -> None:
+    changes = renamed(_UNUSED, parse_part(part), new)
+    assert changes.keys() == files
+    now = changed(_UNUSED, changes)
+    write(now, tmp_path)
+    load_station(tmp_path)
+    old = parse_part(part)
+    back = renamed(now, old._replace(name=new), old.name)
+    assert changed(now, back) == _UNUSED
+
+
+def test_an_argument_is_a_usage_of_what_it_names_whether_used_or_not() -> None:
+    found = usages(_UNUSED, parse_part("resource:press_l")).found
+    assert [(each.file, each.line, each.column, each.declares) for each in found] == [
+        ("resources/press_l.yaml", 1, 1, True),
+        ("resources/press_r.yaml", 2, 21, False),
+    ]
 
 
 def test_a_type_takes_its_file_along(tmp_path: Path) -> None:
-    changed = renamed(FILES, parse_part("type:robot"), "arm", MESSAGES)
-    assert changed[TYPE] is None
-    assert changed["types/arm.yaml"] == FILES[TYPE]
-    write({file: text for file, text in {**FILES, **changed}.items() if text is not None}, tmp_path)
+    changes = renamed(FILES, parse_part("type:robot"), "arm", MESSAGES)
+    assert changes[TYPE] is None
+    assert changes["types/arm.yaml"] == FILES[TYPE]
+    write({file: text for file, text in {**FILES, **changes}.items() if text is not None}, tmp_path)
     assert load_station(tmp_path).resources == load_station(ROBOTS).resources
 
 

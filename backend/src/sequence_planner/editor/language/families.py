@@ -17,6 +17,7 @@ from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
 from sequence_planner.model.documents import AbilityDocument, Parameters, PredicateDocument, VariableDocument
+from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.types.expansion import Expansion, GivenArgument
@@ -145,11 +146,16 @@ def _short(station: Station, declarations: Declarations) -> Iterator[Family]:
                 yield Family(f"{end}({domain})", NameKind.KEYWORD, type_, Place("", 1, 1))
 
 
-def definition_of(station: Station, family: Family, arguments: tuple[str, ...]) -> str:
-    """The condition of a predicate as it is written, with arguments in the place of its parameters."""
+def predicate_of(station: Station, family: Family) -> tuple[SourceText, Parameters, Predicate]:
+    """The name of a predicate as it is written, its parameters, and its condition."""
     owner = station.station if family.owner is None else station.resources[family.owner]
     key = next(each for each in owner.predicates if f"{family.step}{each}" == family.name)
-    parameters, condition = parts_of(owner.predicates[key])
+    return key, *parts_of(owner.predicates[key])
+
+
+def definition_of(station: Station, family: Family, arguments: tuple[str, ...]) -> str:
+    """The condition of a predicate as it is written, with arguments in the place of its parameters."""
+    key, parameters, condition = predicate_of(station, family)
     if not isinstance(condition, SourceText):
         return print_value(condition)
     given = {

@@ -258,12 +258,13 @@ class PipelineCollector:
 
     def read(self, only: str | None = None) -> None:
         """All of them, flows behind their sources; or those that matter to what is named in a file."""
-        if only is not None and all(where.file != only for _, where, _ in self._flows.values()):
+        flows = (where.file for _, where, _ in self._flows.values())
+        if only is not None and not any(self._content.is_made_of(each, only) for each in flows):
             self._flows.clear()
         else:
             only = None
         for resource, file, found in self._content.resources():
-            if only not in (None, file):
+            if only is not None and not self._content.is_made_of(file, only):
                 continue
             for kind in ("topic", "service", "action"):
                 for name, document in pairs(entry(found, f"{kind}s")):

@@ -10,6 +10,7 @@ from sequence_planner.model.paths import resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
 from sequence_planner.model.stages.registry import KINDS
+from sequence_planner.model.types.expansion import Expansion
 from sequence_planner.model.types.layers import WrittenOut
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text
 
@@ -26,7 +27,8 @@ class ModelContent(Mapping[str, object]):
     """The things that the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
 
     `definitions` are those of types of messages, by their files. `whole` is what resources hold that are instances,
-    with all that they have of their types; `types` and `instances` are as they are written, by name and by file.
+    with all that they have of their types; `types` and `instances` are as they are written, by name and by file, and
+    `layers` are each instance with its types, by file.
     """
 
     def __init__(self, files: Mapping[str, str]) -> None:
@@ -41,7 +43,7 @@ class ModelContent(Mapping[str, object]):
                 self._read[file] = document
         made = WrittenOut(self._read)
         self.whole = {file: each.content for file, each in made.documents.items()}
-        self.types, self.instances = made.types, made.instances
+        self.types, self.instances, self.layers = made.types, made.instances, made.layers
         self._files_of = made.files_of
         self._paths: dict[str, dict[tuple[int, int], EntryPath]] = {}
 
@@ -63,6 +65,13 @@ class ModelContent(Mapping[str, object]):
     def is_made_of(self, resource_file: str, file: str) -> bool:
         """Return whether what the file of a resource holds stands in a file: in itself, or in one of its types."""
         return file == resource_file or file in self._files_of.get(resource_file, ())
+
+    def made_path(self, resource_file: str, file: str, path: EntryPath) -> EntryPath:
+        """Return where an entry of a file stands in a resource that is made of it."""
+        for layer in self.layers.get(resource_file, ())[1:]:
+            if layer.written.document.file == file:
+                return Expansion(resource_file, layer.arguments).made_path(path)
+        return path
 
     def path_of(self, text: SourceText) -> EntryPath:
         """Return where a text stands in its file: at the entry that it is the name or the value of."""

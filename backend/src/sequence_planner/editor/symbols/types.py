@@ -12,7 +12,7 @@ from sequence_planner.model.paths import resource_of
 from sequence_planner.model.source import ExpandedText, SourceText
 from sequence_planner.model.types.documents import ParameterDocument
 from sequence_planner.model.types.expansion import Expansion, GivenArgument
-from sequence_planner.model.types.layers import WrittenInstance
+from sequence_planner.model.types.layers import Layer, WrittenInstance
 from sequence_planner.model.yaml.reader import EntryPath
 
 _NOTHING = SourceText("_", Place("", 1, 1), "_")
@@ -42,9 +42,12 @@ class TypeCollector:
             if file in (None, at):
                 self._type(part, written)
         for at, written in self._content.instances.items():
+            where = Where(at, (), f"resource {resource_of(at)}", 0)
             if file in (None, at):
-                where = Where(at, (), f"resource {resource_of(at)}", 0)
                 self._head(written, where, None)
+            if file is None or self._content.is_made_of(at, file):
+                for layer in self._content.layers[at][1:]:
+                    self._given(layer, where)
 
     def _type(self, part: ModelPart, written: WrittenInstance) -> None:
         document, none = written.document, Span(0, 0)
@@ -88,6 +91,23 @@ class TypeCollector:
                 for parameter, span in expansion.parameters_given(value):
                     at = where.to("arguments", name)
                     self._gathered.add(ModelPart("parameter", own.id, parameter), at, value, span)
+
+    def _given(self, layer: Layer, where: Where) -> None:
+        """The things that the arguments of a type name for one instance, also where nothing in the type uses them."""
+        for name, parameter in layer.written.parameters.items():
+            given = layer.arguments.get(str(name))
+            if given is None or given.source is None or given.kind != parameter.kind:
+                continue
+            at = where.to("arguments", name)
+            if parameter.kind == "resource" and given.text in self._declared.resources:
+                self._gathered.add(ModelPart("resource", None, given.text), at, given.source)
+            elif parameter.kind == "enumeration" and given.text in self._declared.homes:
+                self._gathered.add(self._declared.domain(given.text), at, given.source)
+            elif parameter.kind == "value":
+                of = layer.arguments.get(str(parameter.of))
+                domain = str(parameter.of) if of is None else of.text
+                if given.text in self._declared.homes.get(domain, ()):
+                    self._gathered.add(self._declared.value(domain, given.text), at, given.source)
 
 
 def _named(written: WrittenInstance) -> Iterator[tuple[str, ParameterDocument]]:

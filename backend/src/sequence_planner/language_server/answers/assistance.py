@@ -6,7 +6,6 @@ from lsprotocol import types
 
 from sequence_planner.editor.language.completion import MOST_OPTIONS
 from sequence_planner.editor.language.schemas import NameKind
-from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.language_server.answers.completing import Proposal, proposals
 from sequence_planner.language_server.answers.hints import guard_hints
 from sequence_planner.language_server.answers.hovering import explanation
@@ -73,8 +72,8 @@ class Assistance:
         if file is None or not self._server.shows_guards or file.station.analysis is None:
             return None
         text, analysis = self._server.text_of_file(file), file.station.analysis
-        content = ModelContent({file.name: text.text})
-        found = await self._at_once(lambda: list(guard_hints(content, file.name, analysis)))
+        content = (await file.station.snapshot()).content
+        found = await self._at_once(lambda: list(guard_hints(content, text.text, file.name, analysis)))
         first, last = params.range.start.line, params.range.end.line
         return [
             types.InlayHint(

@@ -9,7 +9,6 @@ from sequence_planner.analysis.guard_documents import LiftedGuard
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.editor.symbols.texts import ModelContent, entry, pairs
-from sequence_planner.model.paths import resource_of
 from sequence_planner.model.source import SourceText
 
 _LONGEST = 120  # characters of a guard in a line; all of it is in what is shown with it
@@ -23,32 +22,43 @@ class GuardHint(NamedTuple):
     about: str
 
 
-def guard_hints(content: ModelContent, file: str, found: AnalysisDocument) -> Iterator[GuardHint]:
-    """Yield the hints of a resource's document: each at the `start` of an ability, or at its name if it has none."""
-    resource = resource_of(file)
-    if resource is None:
-        return
+def guard_hints(content: ModelContent, text: str, file: str, analysis: AnalysisDocument) -> Iterator[GuardHint]:
+    """Yield the hints of the document of a resource or a type, which is `text`: each at the `start` of an ability, or
+    at its name if it has none. In a type they are those of all its instances.
+    """
     by_ability: dict[str, list[LiftedGuard]] = {}
-    for guard in found.lifted or ():
+    for guard in analysis.lifted or ():
         for family in dict.fromkeys(map(without_arguments, guard.starts or [guard.name])):
             by_ability.setdefault(family, []).append(guard)
-    written_out = {name: guard.guard for name, guard in (found.guards or {}).items()}
-    for name, ability in pairs(entry(content.get(file), "abilities")):
-        if guards := by_ability.get(f"{resource}.{name}"):
-            yield _hint(_line(name, ability), guards, written_out)
+    written_out = {name: guard.guard for name, guard in (analysis.guards or {}).items()}
+    owners = [(resource, at) for resource, at, _ in content.resources() if content.is_made_of(at, file)]
+    for name, ability in pairs(entry(ModelContent({file: text}).get(file), "abilities")):
+        restricted: list[str] = []
+        found: list[LiftedGuard] = []
+        for resource, at in owners:
+            own = by_ability.get(f"{resource}.{content.made_path(at, file, ('abilities', str(name)))[-1]}", [])
+            restricted += [resource] if own else []
+            found += own
+        if found:
+            only = restricted if len(restricted) < len(owners) else []
+            yield _hint(_line(name, ability), found, only, written_out)
 
 
 def _line(name: SourceText, ability: object) -> int:
     return next((key.place.line for key, _ in pairs(ability) if key == "start"), name.place.line)
 
 
-def _hint(line: int, guards: Sequence[LiftedGuard], written_out: Mapping[str, str | None]) -> GuardHint:
+def _hint(
+    line: int, guards: Sequence[LiftedGuard], only: Sequence[str], written_out: Mapping[str, str | None]
+) -> GuardHint:
+    """The hint for these guards; `only` names the instances that are restricted where others are not."""
     first = guards[0]
-    some = "" if len(guards) == 1 else f"{len(guards)} guards, as `{first.name}`: "
-    over = "" if first.index is None else f", for {first.index}"
     text = _said(first)
-    most = _LONGEST - len(f"supervisor: {some}{over}")
-    label = f"supervisor: {some}{text if len(text) <= most else f'{text[: most - 1]}…'}{over}"
+    who = f"supervisor, in {' and '.join(only)}" if only else "supervisor"
+    some = "" if {_said(each) for each in guards} == {text} else f"{len(guards)} guards, as `{first.name}`: "
+    over = "" if first.index is None else f", for {first.index}"
+    most = _LONGEST - len(f"{who}: {some}{over}")
+    label = f"{who}: {some}{text if len(text) <= most else f'{text[: most - 1]}…'}{over}"
     return GuardHint(line, label, "\n\n".join(_about(guard, written_out) for guard in guards))
 
 

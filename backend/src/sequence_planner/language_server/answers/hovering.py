@@ -63,6 +63,8 @@ def _declared(snapshot: StationSnapshot, usage: Usage, text: str) -> Explanation
 
 def _told(found: Hover) -> str:
     kind = found.kind.value if found.kind is not NameKind.ACTIVITY else "operation"
+    if (found.part or "").startswith("sequence:"):
+        kind = "sequence"
     head = f"**{kind}** `{found.pattern}`"
     if found.type is not None:
         head += f": `{found.type}`"

@@ -12,7 +12,7 @@ from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import ResourceDocument, StationDocument
 from sequence_planner.model.fields import FLAGS
-from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.model.source import Finding, SourceText, with_given_at
 from sequence_planner.model.types.documents import ParameterDocument
 from sequence_planner.model.types.expansion import GivenArgument
 from sequence_planner.model.types.layers import Layer, WrittenInstance, content_of, document_of, layers_of
@@ -189,5 +189,23 @@ def _made(instance: str, layers: list[Layer], found: list[Finding]) -> ResourceD
     try:
         return ResourceDocument.model_validate(content)
     except ValidationError as error:
-        found += findings_of(error, document_of(instance, layers), (), ResourceDocument)
+        found += _told_at_arguments(findings_of(error, document_of(instance, layers), (), ResourceDocument), layers)
         return None
+
+
+def _told_at_arguments(findings: list[Finding], layers: list[Layer]) -> list[Finding]:
+    """The same, with one at an argument for what is wrong wherever the type uses that."""
+    places = {given.place for layer in layers[1:] for given in layer.arguments.values() if given.place is not None}
+    told: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        told.setdefault((finding.place.instance, finding.message), []).append(finding)
+    return [each for (where, _), alike in told.items() for each in _told_at_argument(where, alike, places)]
+
+
+def _told_at_argument(where: str, alike: list[Finding], places: Collection[Place]) -> list[Finding]:
+    given = next((each for each in places if where and with_given_at(where, each) == where), None)
+    if given is None or len(alike) == 1:
+        return alike
+    first, count = min(each.place._replace(instance="") for each in alike), len(alike) - 1
+    others = "another place use" if count == 1 else f"{count} other places use"
+    return [Finding(given, f"{alike[0].message}: {first} and {others} it")]

@@ -248,8 +248,8 @@ def _in_words(parameter: ParameterDocument) -> str:
 class WrittenOut:
     """The files of a station with its instances written out, as far as that can be done: `documents`.
 
-    `types` are those that can be read, by their names, `instances` those by their files, and `files_of` has for each
-    the files that it is made of.
+    `types` are those that can be read, by their names, `instances` those by their files. `files_of` has for each
+    the files that it is made of, and `layers` itself with its types and what these are given.
     """
 
     def __init__(self, documents: Mapping[str, YamlDocument]) -> None:
@@ -264,6 +264,7 @@ class WrittenOut:
         self.documents = dict(documents)
         self.instances: dict[str, WrittenInstance] = {}
         self.files_of: dict[str, frozenset[str]] = {}
+        self.layers: dict[str, list[Layer]] = {}
         for file, document in documents.items():
             if (resource := resource_of(file)) is None or not isinstance(document.content, dict):
                 continue
@@ -272,5 +273,6 @@ class WrittenOut:
                 instance = f"{resource} ({written.head.type.place})"
                 layers = layers_of(instance, written, names)[0]
                 self.instances[file] = written
+                self.layers[file] = layers
                 self.files_of[file] = frozenset(each.written.document.file for each in layers)
                 self.documents[file] = document_of(instance, layers)

@@ -17,7 +17,8 @@ from sequence_planner.editor.language.completion import (
     option,
     word_at,
 )
-from sequence_planner.editor.language.field import FieldKind, TextField, condition, placed
+from sequence_planner.editor.language.families import predicate_of
+from sequence_planner.editor.language.field import FieldKind, TextField, condition
 from sequence_planner.editor.language.hover import Hover, hover
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.scope import Lexicon
@@ -81,10 +82,9 @@ def hover_of_part(lexicon: Lexicon, kind: str, full: str) -> Hover | None:
         case "variable" | "relation" | "map":
             field = TextField(FieldKind.CONDITION, condition)
         case "predicate" if full in lexicon.short:
-            words = [chr(ord("a") + index) for index in range(len(lexicon.short[full].arguments))]
-            parameters = zip(map(placed, words), map(placed, lexicon.short[full].arguments), strict=True)
-            field = TextField(FieldKind.CONDITION, condition, dict(parameters))
-            text = f"{full}({', '.join(words)})" if words else full
+            parameters = predicate_of(lexicon.station, lexicon.short[full])[1]
+            field = TextField(FieldKind.CONDITION, condition, parameters)
+            text = f"{full}({', '.join(parameters)})" if parameters else full
         case "ability":
             field = TextField(FieldKind.ABILITY, condition)
         case "operation" | "sequence":
