@@ -75,13 +75,16 @@ LIGHT = (
     "stations/test_faults_at_the_dock.py",
     "stations/test_taking_over.py",
 )
+# What takes longest: begun at last, it would keep one processor busy when there is nothing left for the others.
+LONGEST = ("server/test_schemathesis.py",)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests that are heavy."""
+    """Mark the tests that are heavy, and let those that take longest begin first."""
     for item in items:
         if is_heavy(item.path):
             item.add_marker(pytest.mark.heavy)
+    items.sort(key=lambda item: not _is_in(item.path, LONGEST))
 
 
 @cache
