@@ -4,9 +4,11 @@
  */
 import { common } from './en/common.ts';
 import { door } from './en/door.ts';
-import messages from './en/front.json';
 import { pages } from './en/pages.ts';
 import { watch } from './en/watch.ts';
+
+/** A refusal says itself in English what it says: its texts need not be brought along for that. */
+const messages: Readonly<Record<string, string>> = {};
 
 export const front = {
 	/** For numbers and dates. */

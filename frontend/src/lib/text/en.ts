@@ -2,6 +2,7 @@
 import { front } from './en-front.ts';
 import { ability } from './en/ability.ts';
 import { account } from './en/account.ts';
+import refusals from './en/front.json';
 import messages from './en/messages.json';
 import { alarms } from './en/alarms.ts';
 import { backups } from './en/backups.ts';
@@ -21,4 +22,4 @@ import { storage } from './en/storage.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, messages: { ...front.messages, ...messages }, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const en = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
