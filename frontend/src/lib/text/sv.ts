@@ -2,6 +2,7 @@
 import { front } from './sv-front.ts';
 import { ability } from './sv/ability.ts';
 import { account } from './sv/account.ts';
+import refusals from './sv/front.json';
 import messages from './sv/messages.json';
 import { alarms } from './sv/alarms.ts';
 import { backups } from './sv/backups.ts';
@@ -22,4 +23,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, messages: { ...front.messages, ...messages }, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
