@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sequence_planner.analysis.checks.warning import ModelWarning
+from sequence_planner.analysis.checks.warning import ModelWarning, shortened
 from sequence_planner.automaton.declarations import Declarations
 from sequence_planner.automaton.findings import Binding, Findings, instance_name
 from sequence_planner.automaton.shorthand import RESERVED
@@ -21,8 +21,6 @@ from sequence_planner.language.types import Place
 from sequence_planner.model.documents import AbilityDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
-
-_LONGEST = 160  # characters of a condition in a message
 
 
 class _Condition(NamedTuple):
@@ -52,8 +50,9 @@ def check_folded(station: Station) -> Iterator[ModelWarning]:
     for place, (written, truths) in sorted(found.items()):
         if truths in ({True}, {False}):
             holds, advice = ("always", "leave it out, or write") if truths == {True} else ("never", "write")
-            shown = written if len(written) <= _LONGEST else f"{written[:_LONGEST].rpartition(' ')[0]} …"
-            message = f"`{shown}` {holds} holds, whatever the values of its variables: {advice} what was meant"
+            message = (
+                f"{shortened(written)} {holds} holds, whatever the values of its variables: {advice} what was meant"
+            )
             yield ModelWarning(place, f"{holds}-holds", message)
 
 
