@@ -9,7 +9,6 @@ test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bol
 const STATION = 'station.yaml';
 const ROBOT = 'resources/robot.yaml';
 const at = (...steps: string[]): string => `/model?${new URLSearchParams({ entry: steps.join('#') })}`;
-const row = (page: Page, ...steps: string[]): Locator => page.locator(`[role="treeitem"][data-id="${steps.join('#')}"]`);
 const form = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
 const field = (page: Page, name: string): Locator => form(page).locator(`[data-path="${name}"]`).first();
 /** What is written at a place of a field, by its label. */
@@ -30,7 +29,9 @@ async function add(page: Page, what: string, name: string, given: Readonly<Recor
 	await expect(form(page).getByRole('heading').first()).toContainText(name);
 }
 
-const sound = async (page: Page): Promise<void> => {
+/** What was typed last is in the draft, which was checked without an error. */
+const sound = async (page: Page, typed: string): Promise<void> => {
+	await expect(file(page)).toContainText(typed);
 	await expect(problems(page).getByRole('status')).toHaveText(/^Checked/, { timeout: 60_000 });
 	await expect(problems(page).getByRole('status')).not.toContainText('error');
 };
@@ -39,6 +40,8 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	browse,
 	complaints
 }) => {
+	// The model is checked after each of its steps, beside other stations.
+	test.setTimeout(240_000);
 	const page = await browse(INA, at(STATION));
 	await expect(form(page).getByRole('heading').first()).toBeVisible();
 
@@ -51,8 +54,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await expect(field(page, 'values').getByRole('listitem').filter({ hasText: 'bolt_pair_22' }).last()).toContainText('bolt_pair_2');
 	await cell(page, 'values', 'Values, 3').fill('bolt_pair_2');
 	await cell(page, 'values', 'Values, 3').press('Tab');
-	await expect(file(page)).toContainText('bolt_pair_2');
-	await sound(page);
+	await sound(page, 'bolt_pair_2');
 
 	await add(page, 'Relation: Relations', 'adjacent', {
 		'First enumeration or set': 'pose',
@@ -78,11 +80,11 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 		await cell(page, 'values', `Values, ${pair}`).fill(pair);
 		await cell(page, 'values', `Values, ${pair}`).press('Tab');
 	}
-	await sound(page);
+	await sound(page, 'bolt_pair_3: bolt_pair_3');
 	expect(await findings(page)).toEqual([]);
 
-	await row(page, STATION).click();
 	await page.goto(at(ROBOT));
+	await expect(form(page).getByRole('heading').first()).toContainText('robot');
 	await add(page, 'Predicate: Predicates of robot', 'can_go');
 	await form(page).getByRole('button', { name: 'Add an entry: Parameters' }).click();
 	await cell(page, 'parameters', 'Parameters, name 1').fill('to');
@@ -91,7 +93,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await expect(file(page)).toContainText('to: named_pose');
 	await expression(page, 'When').fill('pose in at_engine and adjacent(pose, to)');
 	await page.keyboard.press('Escape');
-	await sound(page);
+	await sound(page, 'pose in at_engine and adjacent(pose, to)');
 
 	// In a guard, with a wrong name first.
 	await page.goto(at(ROBOT, 'abilities', 'move_to_previous'));
@@ -139,7 +141,7 @@ test('an enumeration comes to include others and to have an order', async ({ bro
 	await expect(field(page, 'values').getByRole('textbox').first()).toHaveValue('empty');
 	await field(page, 'ordered').getByRole('checkbox').check();
 	await expect(file(page)).toContainText('ordered: true');
-	await sound(page);
+	await sound(page, 'ordered: true');
 	await field(page, 'includes').getByRole('button', { name: 'Add an entry: Includes' }).click();
 	await cell(page, 'includes', 'Includes, 1').fill('bolt_par');
 	await cell(page, 'includes', 'Includes, 1').press('Tab');
