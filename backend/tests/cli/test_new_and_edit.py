@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from shutil import copytree
 
 import httpx
 import pytest
@@ -20,13 +21,20 @@ from support.network import DOMAIN
 from support.station import signed_in
 
 
-@pytest.fixture
-def gate(tmp_path: Path) -> Path:
-    folder = tmp_path / "north gate"
+@pytest.fixture(scope="module")
+def new(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A station as `new` has written it."""
+    folder = tmp_path_factory.mktemp("new") / "north gate"
     code, out, err = command("new", folder)
     assert (code, err) == (0, "")
     assert f"{folder}/resources/gate.yaml" in out.splitlines()
     return folder
+
+
+@pytest.fixture
+def gate(new: Path, tmp_path: Path) -> Path:
+    """A station of the test's own."""
+    return copytree(new, tmp_path / new.name)
 
 
 def test_a_new_station_is_fine(gate: Path) -> None:

@@ -25,9 +25,15 @@ from support.server import Server
 COMMITTED = REPOSITORY / "frontend" / "openapi.json"
 
 
-@pytest.fixture
-def described() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(document())
+@pytest.fixture(scope="module")
+def printed() -> str:
+    """The document, which takes some seconds to make."""
+    return document()
+
+
+@pytest.fixture(scope="module")
+def described(printed: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(printed)
     return found
 
 
@@ -55,8 +61,8 @@ def test_tags_servers_and_webhooks_are_described(described: dict[str, Any]) -> N
     assert event["requestBody"]["content"]["application/json"]["schema"]["$ref"].endswith("/JobEvent")
 
 
-def test_every_reference_leads_somewhere(described: dict[str, Any]) -> None:
-    for part in document().split('"$ref": "')[1:]:
+def test_every_reference_leads_somewhere(printed: str, described: dict[str, Any]) -> None:
+    for part in printed.split('"$ref": "')[1:]:
         _, _, kind, name = part.partition('"')[0].split("/")
         assert name in described["components"][kind]
 
@@ -89,8 +95,8 @@ def test_each_operation_says_with_which_status_it_refuses(described: dict[str, A
     assert list(described["components"]["responses"]["Problem429"]["headers"]) == ["Retry-After"]
 
 
-def test_the_printed_document_is_the_served_one_and_always_the_same(client: httpx.Client) -> None:
-    printed = [
+def test_the_printed_document_is_the_served_one_and_always_the_same(printed: str, client: httpx.Client) -> None:
+    by_seed = [
         subprocess.run(
             [sys.executable, "-m", "sequence_planner.server.openapi"],
             env={**os.environ, "PYTHONHASHSEED": seed},
@@ -100,12 +106,12 @@ def test_the_printed_document_is_the_served_one_and_always_the_same(client: http
         ).stdout
         for seed in ("1", "2")
     ]
-    assert printed[0] == printed[1] == document()
-    assert json.loads(printed[0]) == client.get("/api/v1/openapi.json").json()
+    assert by_seed == [printed, printed]
+    assert json.loads(printed) == client.get("/api/v1/openapi.json").json()
 
 
 def test_nobody_waits_while_the_document_is_made(
-    server: Server, client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+    server: Server, client: httpx.Client, described: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It takes more than a second of a processor, in a server that has to take a stop at any time."""
     begun, answered = threading.Event(), threading.Event()
@@ -123,11 +129,11 @@ def test_nobody_waits_while_the_document_is_made(
             assert client.get("/api/v1/session", timeout=15).status_code == 200
         finally:
             answered.set()
-        assert [each.result().json() for each in reading] == [json.loads(document())] * 2
+        assert [each.result().json() for each in reading] == [described] * 2
 
 
-def test_the_page_is_made_from_this_document() -> None:
-    assert COMMITTED.read_text() == document(), "run `make types`"
+def test_the_page_is_made_from_this_document(printed: str) -> None:
+    assert COMMITTED.read_text() == printed, "run `make types`"
 
 
 def test_no_viewer_is_served_that_needs_the_network(client: httpx.Client) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+from collections.abc import Collection
 from pathlib import Path
 
 import pytest
@@ -55,11 +57,17 @@ def roles(server: Server) -> dict[str, str]:
     return {f"{verb.upper()} {path}": each["x-role"] for path, verbs in paths.items() for verb, each in verbs.items()}
 
 
+def edges_of(operations: Collection[str]) -> set[str]:
+    """The operations whose edges are asked for: a part of those with something in their path outside campaigns."""
+    return {each for each in operations if SHARE >= 1 or "{" not in each or zlib.crc32(each.encode()) % 3 == 0}
+
+
 def test_an_administrator_finds_every_answer_as_it_is_described(tmp_path: Path) -> None:
     with station(tmp_path) as (server, _):
-        found = fuzz(server, Role.ADMINISTRATOR, examples=1)
+        operations = roles(server).keys()
+        found = fuzz(server, Role.ADMINISTRATOR, examples=1, without_edges=operations - edges_of(operations))
         assert found.wrong.keys() <= WITHOUT_MODEL, found.wrong
-        assert found.statuses.keys() == roles(server).keys()
+        assert found.statuses.keys() == operations
     undone = {operation for operation, seen in found.statuses.items() if min(seen) >= 300 and "{" not in operation}
     assert {operation for operation in undone if OF_THE_MODEL not in operation} <= NOT_GUESSED
 
