@@ -17,7 +17,7 @@ const ROOT = resolve(import.meta.dirname, '../..');
 const PYTHON = join(ROOT, 'backend/.venv/bin/python');
 const GENERATOR = join(ROOT, 'backend/benchmarks/stations/several.py');
 const SIZES = (process.env['SIZES'] ?? '1 2 4').split(' ').map(Number);
-const LIVE = { selector: '[data-testid="live-age"]', text: 'live' };
+const LIVE = { selector: '[data-testid="strip"][data-live="true"]', text: '' };
 /** What shows that a page has what it is for. */
 const PAGES = [
 	['/', LIVE],

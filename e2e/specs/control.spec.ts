@@ -27,7 +27,7 @@ test('one person has control: it is taken, taken over and given up in the sight 
 		await expect(control(adam)).toHaveAttribute('data-holder', 'another', SOON);
 		await expect(control(adam)).toContainText('Eva');
 		await button(eva, 'Start production').click();
-		for (const page of [eva, adam]) await expect(mode(page)).toContainText('production started');
+		for (const page of [eva, adam]) await expect(mode(page)).toHaveAttribute('data-production', 'started');
 	});
 
 	await test.step('anybody pauses; only who has it goes on', async () => {

@@ -132,10 +132,10 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	await expect.poll(async () => new Map(await station.values()).get('robot.tool_is_attached')).toBe('false');
 	await expect(page).toHaveTitle(/^Bolt tightening station ·/);
 	await page.getByRole('link', { name: 'To Operate' }).click();
-	await expect(page.getByTestId('mode')).toContainText('waits for the start of production');
+	await expect(page.getByTestId('mode')).toHaveAttribute('data-production', 'waiting');
 	// Control is kept, and there is nothing to decide: this is all that a start takes.
 	await page.getByRole('button', { name: 'Start production' }).click();
-	await expect(page.getByTestId('mode')).not.toContainText('waits for the start of production');
+	await expect(page.getByTestId('mode')).not.toHaveAttribute('data-production', 'waiting');
 	expect(complaints).toEqual([]);
 });
 

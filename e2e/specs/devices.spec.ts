@@ -19,7 +19,7 @@ test('silent devices make values unknown and name the topics awaited; when they 
 	await expect(done(watch)).toHaveCount(0);
 	await takeControl(operate);
 	await start.click();
-	await expect(operate.getByTestId('mode')).toContainText('production started');
+	await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'started');
 	await expect(start).toBeHidden();
 	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 30_000 });
 

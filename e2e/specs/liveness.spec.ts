@@ -14,7 +14,7 @@ test('a view that is no longer live says so within 2 s, on either page @theme', 
 			expect(watch.getByTestId('not-live')).toBeVisible({ timeout: 2000 })
 		]);
 		await expect(variable(operate, 'robot.pose')).toContainText('old');
-		await expect(operate.getByTestId('live-age')).toContainText('not live');
+		await expect(operate.getByTestId('stale')).toContainText('Not live');
 		await picture(operate, 'operate-old');
 		await picture(watch, 'watch-old');
 		expect(await findings(operate)).toEqual([]);
@@ -59,7 +59,7 @@ test.describe('when a part of the station dies', () => {
 
 		// What the new one says replaces all that the old one said: no value of before is left among those of now.
 		await expect(operate.getByTestId('not-live')).toBeHidden({ timeout: 30_000 });
-		await expect(operate.getByTestId('mode')).toContainText('waits for the start of production', { timeout: 30_000 });
+		await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'waiting', { timeout: 30_000 });
 		await expect(variable(operate, 'robot.pose')).not.toHaveAttribute('data-value', 'unknown');
 		await expect(operate.getByText('old', { exact: true })).toHaveCount(0);
 		// Some topics are heard later than others, so the values are asked for again until page and station agree.

@@ -2,11 +2,23 @@ import { findings, overflow } from '../station/barriers.ts';
 import { picture, restsOnPerson } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 
-test('mode, alarms, next start and task are read from afar, beside Pause, the operations and the plan', async ({
-	operate,
-	watch
-}) => {
+test('mode, alarms, task and plan are in sight at once, beside Pause and Hold', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
+	for (const each of [operate.getByTestId('mode'), operate.getByTestId('alarm-count')])
+		await expect(each).toBeInViewport({ ratio: 1 });
+	for (const name of ['Pause', 'Hold'])
+		await expect(operate.getByRole('button', { name, exact: true })).toBeInViewport({ ratio: 1 });
+	await expect(operate.getByRole('button', { name: /^Done: Place bolt pair/ })).toBeInViewport({ ratio: 1 });
+	await expect(operate.locator('[data-operation]').first()).toBeInViewport({ ratio: 1 });
+	const lanes = operate.getByRole('group', { name: 'Plan as lanes' }).getByRole('group');
+	await expect(lanes).toHaveCount(4);
+	// Its name is as high as the lane, of which only a part is in sight sideways.
+	for (const lane of await lanes.all()) await expect(lane.locator('.name')).toBeInViewport({ ratio: 1 });
+});
+
+test('on the wall mode, alarms, next start and task are read from afar', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.getByRole('link', { name: 'Wall view' }).click();
 	const far = operate.locator('[data-glance]');
 	await expect(far).toHaveCount(4);
 	for (const each of await far.all()) {
@@ -14,21 +26,10 @@ test('mode, alarms, next start and task are read from afar, beside Pause, the op
 		const size = await each.evaluate((element) => parseFloat(getComputedStyle(element).fontSize));
 		expect(size, `pixels of ${await each.getAttribute('data-glance')}`).toBeGreaterThanOrEqual(40);
 	}
-	await expect(operate.locator('[data-glance="mode"]')).toHaveCSS('text-transform', 'uppercase');
 	await expect(operate.locator('[data-glance="task"]')).toContainText('Place bolt pair');
-	for (const name of ['Pause', 'Hold'])
-		await expect(operate.getByRole('button', { name, exact: true })).toBeInViewport({ ratio: 1 });
-	await expect(operate.locator('[data-operation]').last()).toBeInViewport({ ratio: 1 });
-	const lanes = operate.getByRole('group', { name: 'Plan as lanes' }).getByRole('group');
-	await expect(lanes).toHaveCount(4);
-	// Its name is as high as the lane, of which only a part is in sight sideways.
-	for (const lane of await lanes.all()) await expect(lane.locator('.name')).toBeInViewport({ ratio: 1 });
-	// What is said in large letters is not repeated above it, but where it is not in sight.
-	const repeated = operate.getByTestId('next');
-	await expect(repeated).toBeHidden();
-	await operate.evaluate(() => window.scrollTo(0, document.documentElement.scrollHeight));
-	// Where other tests have left one pair to be placed nothing comes after it.
-	await expect(repeated).toContainText(/Place bolt pair|what runs is waited for/);
+	// Nobody touches it: there is no rail, and still Pause and Hold.
+	await expect(operate.getByRole('navigation', { name: 'Pages' })).toHaveCount(0);
+	await expect(operate.getByRole('button', { name: 'Hold', exact: true })).toBeInViewport({ ratio: 1 });
 });
 
 test('what runs ends at the present or after it, what is planned lies after it, and the present stays', async ({

@@ -74,7 +74,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 	await test.step('the first is worked; interrupted it begins nothing, resumed it goes on', async () => {
 		await eva.goto(new URL('/', eva.url()).href);
 		await eva.getByRole('button', { name: 'Start production' }).click();
-		await expect(eva.getByTestId('mode')).toContainText('production started');
+		await expect(eva.getByTestId('mode')).toHaveAttribute('data-production', 'started');
 		await eva.goto(new URL('/orders', eva.url()).href);
 		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Running');
 		await expect(row('Engine 4711')).toContainText('Engine 4712 is being worked');

@@ -13,7 +13,7 @@ const SCREENS = [
 /** Where text of twice the size must fit: on 320 pixels it would be that of a page enlarged eight times. */
 const ENLARGED = SCREENS.filter(([width]) => width > 320);
 
-const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/ros', '/station', '/pipelines', '/account', '/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
+const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/wall', '/ros', '/station', '/pipelines', '/account', '/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
 
 /** Doubles the size of all text. */
 async function enlarge(page: Page): Promise<void> {
@@ -32,13 +32,12 @@ test('the pages fit their screens @theme', async ({ operate, watch }) => {
 	expect(await outsideCircle(watch)).toEqual([]);
 });
 
-test('mode, age, alarms and Pause stay in sight wherever the page is scrolled to', async ({ operate, watch }) => {
+test('mode, alarms and Pause stay in sight wherever the page is scrolled to', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
 	for (const [width, height] of [...SCREENS, [640, 320] as const]) {
 		await operate.setViewportSize({ width, height });
 		await operate.evaluate(() => window.scrollTo(0, document.documentElement.scrollHeight));
 		await expect(operate.getByTestId('mode')).toBeInViewport({ ratio: 1 });
-		await expect(operate.getByTestId('live-age')).toBeInViewport({ ratio: 1 });
 		await expect(operate.getByTestId('alarm-count')).toBeInViewport({ ratio: 1 });
 		await expect(operate.getByRole('button', { name: 'Pause' })).toBeInViewport({ ratio: 1 });
 	}
@@ -67,20 +66,20 @@ test('no dialog covers mode, alarms, Pause and Hold, and the menu leads to the p
 	await operate.keyboard.press('Escape');
 	await expect(dialog).toBeHidden();
 
-	const menu = operate.getByRole('button', { name: /^Menu/ });
-	await expect(menu).toHaveAttribute('aria-expanded', 'false');
-	await menu.press('Enter');
-	await expect(menu).toHaveAttribute('aria-expanded', 'true');
+	await operate.setViewportSize({ width: 390, height: 844 });
+	const more = operate.getByRole('button', { name: 'More' });
+	await more.press('Enter');
+	const pages = operate.getByRole('dialog', { name: 'Pages' });
 	await operate.keyboard.press('Tab');
-	await expect(operate.getByRole('link', { name: 'Operate' })).toBeFocused();
+	await expect(pages.getByRole('link', { name: 'Operate' })).toBeFocused();
 	await operate.keyboard.press('Escape');
-	await expect(menu).toBeFocused();
-	await expect(operate.getByRole('link', { name: 'State' })).toBeHidden();
-	await menu.press('Enter');
-	await operate.getByRole('link', { name: 'State' }).press('Enter');
-	await expect(operate.getByRole('heading', { name: 'State', level: 1 })).toBeAttached();
-	await expect(menu).toHaveText(/State/);
-	await expect(menu).toHaveAttribute('aria-expanded', 'false');
+	await expect(more).toBeFocused();
+	await expect(pages).toBeHidden();
+	await more.press('Enter');
+	await pages.getByRole('link', { name: 'Pipelines' }).press('Enter');
+	await expect(operate.getByRole('heading', { name: 'Pipelines', level: 1 })).toBeAttached();
+	await expect(pages).toBeHidden();
+	await expect(operate.getByRole('button', { name: 'Pipelines, More' })).toBeVisible();
 });
 
 test('text of twice the size is still all there where much is shown', async ({ operate, watch }) => {
@@ -103,7 +102,7 @@ test.describe('every page', () => {
 			const page = await browse(ADA, '/', { ...DESK, locale });
 			for (const path of PAGES) {
 				await page.goto(path);
-				await expect(page.getByTestId('live-age')).toContainText('●');
+				await expect(page.getByTestId('strip')).toHaveAttribute('data-live', 'true');
 				await expect(page.getByRole('heading', { level: 1 })).toBeAttached();
 				for (const [width, height] of SCREENS) {
 					await page.setViewportSize({ width, height });

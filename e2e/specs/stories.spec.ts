@@ -157,7 +157,7 @@ for (const plant of PLANTS)
 		for (const { name, strike, hands } of STORIES.filter((each) => each.name.includes(NAMED)))
 			test(`${name}, and the page leads back to production @long`, async ({ operate, watch, station }) => {
 				test.setTimeout(600_000);
-				await expect(operate.getByTestId('mode')).toContainText('production started', { timeout: 120_000 });
+				await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'started', { timeout: 120_000 });
 				await takeControl(operate);
 				const restart = await operate.context().newPage();
 				restart.setDefaultTimeout(15_000);

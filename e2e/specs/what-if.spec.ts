@@ -13,7 +13,6 @@ test('how the station would go on is simulated from now and from a record, and n
 	await restsOnPerson(operate, watch);
 	const requested = operate.locator('[data-variable="operator.requested_pair"]');
 	const before = await requested.getAttribute('data-value');
-	await operate.getByRole('button', { name: 'Engineering' }).click();
 	await operate.getByRole('link', { name: 'What-if' }).click();
 	const main = operate.locator('main');
 

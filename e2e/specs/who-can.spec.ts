@@ -29,7 +29,7 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	browse
 }) => {
 	test.setTimeout(480_000);
-	await expect(operate.getByTestId('mode')).toContainText('production started', { timeout: 120_000 });
+	await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'started', { timeout: 120_000 });
 	await takeControl(operate);
 	await order(operate, station.url);
 	const tightened = operate.locator('[data-variable^="bolts["][data-value="tightened"]');

@@ -18,14 +18,18 @@ export async function findings(page: Page, rules?: string[]): Promise<string[]> 
 	return violations.flatMap(({ id, help, nodes }) => nodes.map((node) => `${id}: ${help}: ${node.target.join(' ')}`));
 }
 
-/** Whatever can be pressed and is smaller than 44 px in one direction; a box to tick can be pressed at its words. */
+/**
+ * Whatever can be pressed and is smaller in one direction than a finger asks for (44 px), or a mouse (24 px); a box to tick can
+ * be pressed at its words.
+ */
 export async function smallTargets(page: Page): Promise<string[]> {
-	return page.evaluate(() =>
-		[...document.querySelectorAll('button, a, input:not(.unseen), select, textarea, summary')].flatMap((element) => {
+	return page.evaluate(() => {
+		const least = matchMedia('(pointer: coarse)').matches ? 44 : 24;
+		return [...document.querySelectorAll('button, a, input:not(.unseen), select, textarea, summary')].flatMap((element) => {
 			const { width, height } = (element.closest('label') ?? element).getBoundingClientRect();
-			return width >= 44 && height >= 44 ? [] : [`${element.textContent.trim()}: ${width} × ${height}`];
-		})
-	);
+			return width >= least && height >= least ? [] : [`${element.textContent.trim()}: ${width} × ${height}`];
+		});
+	});
 }
 
 /** How many pixels of the page lie to the right of the screen. */

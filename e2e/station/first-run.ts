@@ -9,9 +9,8 @@ import { EXECUTABLE, ROOT } from './station.ts';
 
 const REVISION = 'First model';
 
-/** Goes to a page of the group Engineering by its menu. */
+/** Goes to a page by the rail. */
 async function goTo({ page, hand }: Builder, title: string): Promise<void> {
-	await hand.press(page.getByRole('button', { name: /^Engineering/ }));
 	await hand.press(page.getByRole('link', { name: title, exact: true }));
 	await expect(page.getByRole('heading', { name: title, level: 1 })).toBeVisible();
 }

@@ -57,7 +57,7 @@ export async function startProduction(page: Page): Promise<void> {
 	await takeControl(page);
 	const start = page.getByRole('button', { name: 'Start production' });
 	if (await start.isVisible()) await start.click();
-	await expect(page.getByTestId('mode')).toContainText('production started');
+	await expect(page.getByTestId('mode')).toHaveAttribute('data-production', 'started');
 }
 
 /** Signs in on the page that asks for it. */

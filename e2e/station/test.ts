@@ -100,7 +100,7 @@ export const test = base.extend<Given, { bench: Bench }>({
 		listen(page, complaints);
 		if (!byItself) await enter(page.context(), station, EVA);
 		await page.goto(`${station.url}/`);
-		await expect(page.getByTestId('live-age')).toContainText('live');
+		await expect(page.getByTestId('strip')).toHaveAttribute('data-live', 'true');
 		await expect(page.getByTestId('not-live')).toBeHidden();
 		await use(page);
 	},

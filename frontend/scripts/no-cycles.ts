@@ -26,7 +26,10 @@ export function noCycles(): Plugin {
 			const done = new Set<string>();
 			for (const file of imports.keys()) {
 				const found = circle(file, imports, done);
-				if (found) this.error(`Scripts import one another in a circle: ${found.join(' → ')}. See codeSplitting in vite.config.ts.`);
+				if (!found) continue;
+				const of = new Map(files.map((each) => [each.fileName, each.moduleIds.map((id) => id.replace(/^.*\/(src|node_modules)\//, ''))]));
+				const said = found.slice(1).map((each) => `\n${each}: ${(of.get(each) ?? []).join(', ')}`);
+				this.error(`Scripts import one another in a circle: ${found.join(' → ')}. See codeSplitting in vite.config.ts.${said.join('')}`);
 			}
 		}
 	};

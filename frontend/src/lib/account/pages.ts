@@ -1,7 +1,7 @@
 /** The pages that a person can go to, in groups, and from which role on. */
 import type { Role } from '#lib/contract.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
-import { ACCOUNT, HOME, WATCH } from './way.ts';
+import { ACCOUNT, HOME, WALL, WATCH } from './way.ts';
 
 export interface Page {
 	readonly address: string;
@@ -13,14 +13,14 @@ export interface Page {
 
 export interface Group {
 	/** What it is called, in the catalogue. */
-	readonly title: keyof Text['header']['groups'];
+	readonly title: keyof Text['frame']['groups'];
 	readonly pages: readonly Page[];
 }
 
-/** Those of the header: the operator's, which are links where there is room, and further groups, each behind a button. */
-export const GROUPS: readonly [Group, ...Group[]] = [
+/** Those of the rail: an operator's, an engineer's, and an administrator's. */
+export const GROUPS: readonly Group[] = [
 	{
-		title: 'operation',
+		title: 'operate',
 		pages: [
 			{ address: HOME, title: 'operate', role: 'viewer' },
 			{ address: '/restart', title: 'restart', role: 'viewer' },
@@ -28,19 +28,32 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 			{ address: '/alarms', title: 'alarms', role: 'viewer' },
 			{ address: '/history', title: 'history', role: 'operator' },
 			{ address: '/orders', title: 'orders', role: 'viewer' },
-			{ address: '/ros', title: 'ros', role: 'viewer' }
+			{ address: WALL, title: 'wall', role: 'viewer' }
 		]
 	},
 	{
-		title: 'engineering',
+		title: 'engineer',
 		pages: [
 			{ address: '/model', title: 'model', role: 'viewer' },
 			{ address: '/station', title: 'station', role: 'viewer' },
 			{ address: '/pipelines', title: 'pipelines', role: 'viewer' },
+			{ address: '/ros', title: 'ros', role: 'viewer' },
 			{ address: '/abilities', title: 'ability', role: 'viewer' },
 			{ address: '/check', title: 'check', role: 'viewer' },
 			{ address: '/what-if', title: 'whatIf', role: 'engineer' },
 			{ address: '/deploy', title: 'deploy', role: 'viewer' }
+		]
+	},
+	{
+		title: 'plant',
+		pages: [
+			{ address: '/journal', title: 'journal', role: 'operator' },
+			{ address: '/wearables', title: 'watches', role: 'operator' },
+			{ address: '/users', title: 'people', role: 'administrator' },
+			{ address: '/api-keys', title: 'keys', role: 'administrator' },
+			{ address: '/webhooks', title: 'webhooks', role: 'administrator' },
+			{ address: '/backups', title: 'backups', role: 'administrator' },
+			{ address: '/storage', title: 'storage', role: 'administrator' }
 		]
 	}
 ];
@@ -48,14 +61,7 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 /** Those below the name of who is signed in. */
 export const MENU: readonly Page[] = [
 	{ address: ACCOUNT, title: 'account', role: 'viewer' },
-	{ address: WATCH, title: 'watch', role: 'viewer' },
-	{ address: '/journal', title: 'journal', role: 'operator' },
-	{ address: '/wearables', title: 'watches', role: 'operator' },
-	{ address: '/users', title: 'people', role: 'administrator' },
-	{ address: '/api-keys', title: 'keys', role: 'administrator' },
-	{ address: '/webhooks', title: 'webhooks', role: 'administrator' },
-	{ address: '/backups', title: 'backups', role: 'administrator' },
-	{ address: '/storage', title: 'storage', role: 'administrator' }
+	{ address: WATCH, title: 'watch', role: 'viewer' }
 ];
 
 const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU];

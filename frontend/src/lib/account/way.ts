@@ -12,6 +12,8 @@ export const SIGN_IN = '/sign-in';
 export const FROM_PROVIDER = '/sign-in/provider';
 export const FIRST_START = '/setup';
 export const ACCOUNT = '/account';
+/** Shown on a screen that nobody touches. */
+export const WALL = '/wall';
 /** The watch has a credential of its own, and pairs itself where it has none. */
 export const WATCH = '/operator';
 

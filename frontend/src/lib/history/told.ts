@@ -199,7 +199,7 @@ export function anyValue(value: unknown): string {
 
 export function modeText(mode: unknown): string {
 	const name = textOf(mode);
-	const names = say().header.mode;
+	const names = say().frame.mode;
 	return Object.hasOwn(names, name) ? names[name as keyof typeof names] : name;
 }
 

@@ -16,47 +16,47 @@ import type { Completion, Hover, Wrong } from './language.ts';
 
 const THEME = EditorView.theme({
 	'&': {
-		minHeight: 'var(--target)',
+		minHeight: 'var(--ctl-h)',
 		border: '1px solid var(--edge)',
-		borderRadius: 'var(--round)',
+		borderRadius: 'var(--r-2)',
 		background: 'var(--raised)',
 		color: 'var(--ink)',
-		fontSize: 'var(--body)'
+		fontSize: 'var(--t-base)'
 	},
 	'&.cm-focused': { outline: '3px solid var(--ink)', outlineOffset: '2px' },
 	'.cm-scroller': { fontFamily: 'var(--mono)', lineHeight: '1.5' },
 	'.cm-content': { padding: '0.55rem 0', caretColor: 'var(--ink)' },
 	'.cm-line': { padding: '0 0.75rem' },
-	'.cm-gutters': { background: 'var(--sunken)', color: 'var(--muted)', borderRight: '1px solid var(--line)' },
+	'.cm-gutters': { background: 'var(--sunken)', color: 'var(--ink-2)', borderRight: '1px solid var(--line)' },
 	'.cm-tooltip': {
 		zIndex: '20',
 		maxWidth: 'min(32rem, 90vw)',
 		border: '1px solid var(--edge)',
-		borderRadius: 'var(--round)',
+		borderRadius: 'var(--r-2)',
 		background: 'var(--surface)',
 		color: 'var(--ink)',
-		font: 'var(--small) / 1.4 var(--sans)'
+		font: 'var(--t-small) / 1.4 var(--sans)'
 	},
 	'.cm-tooltip-hover, .cm-tooltip-lint': { padding: '0.25rem 0.5rem' },
 	'.cm-tooltip p': { margin: '0' },
 	'.cm-tooltip.cm-tooltip-autocomplete > ul': { fontFamily: 'var(--mono)', maxHeight: '16em' },
 	'.cm-tooltip.cm-tooltip-autocomplete > ul > li': { padding: '0.35rem 0.6rem' },
-	'.cm-tooltip-autocomplete ul li[aria-selected]': { background: 'var(--shade)', color: 'var(--ink)' },
-	'.cm-completionDetail': { color: 'var(--muted)', fontStyle: 'normal', fontFamily: 'var(--sans)' },
+	'.cm-tooltip-autocomplete ul li[aria-selected]': { background: 'var(--press)', color: 'var(--ink)' },
+	'.cm-completionDetail': { color: 'var(--ink-2)', fontStyle: 'normal', fontFamily: 'var(--sans)' },
 	'.cm-completionMatchedText': { fontWeight: '700' },
 	'.cm-diagnostic': { borderLeft: '4px solid var(--high)', padding: '0.25rem 0.5rem' },
 	'.cm-diagnostic-warning': { borderLeftColor: 'var(--medium)' },
 	'.cm-lintRange-error': { backgroundImage: 'none', borderBottom: '3px double var(--high)' },
 	'.cm-lintRange-warning': { backgroundImage: 'none', borderBottom: '3px dotted var(--medium)' },
-	'.cm-chosen': { background: 'var(--shade)' },
+	'.cm-chosen': { background: 'var(--press)' },
 	'.unseen': { position: 'absolute', clipPath: 'inset(50%)', width: '1px', height: '1px', overflow: 'hidden' }
 });
 
 /** Grey as the pages are: words by their weight, what is only for the reader by being quieter. */
 const STYLE = HighlightStyle.define([
 	{ tag: [tags.keyword, tags.operatorKeyword, tags.propertyName, tags.definition(tags.propertyName)], fontWeight: '700' },
-	{ tag: [tags.comment, tags.meta], color: 'var(--muted)', fontStyle: 'italic' },
-	{ tag: [tags.separator, tags.squareBracket, tags.brace, tags.punctuation], color: 'var(--muted)' }
+	{ tag: [tags.comment, tags.meta], color: 'var(--ink-2)', fontStyle: 'italic' },
+	{ tag: [tags.separator, tags.squareBracket, tags.brace, tags.punctuation], color: 'var(--ink-2)' }
 ]);
 
 const EXPRESSIONS = StreamLanguage.define<null>({

@@ -11,7 +11,7 @@ export function nextSteps(plan: Plan): PlanStep[] {
 }
 
 /** Why there is no next start. */
-export function nothingNext(view: StationView): keyof Text['header']['nothingNext'] {
+export function nothingNext(view: StationView): keyof Text['frame']['nothingNext'] {
 	const { plan, mode, errand } = view;
 	if (view.production !== 'started') return 'production';
 	if (plan.status === 'broken' || plan.status === 'none' || plan.status === 'planning') return plan.status;

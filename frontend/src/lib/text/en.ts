@@ -8,7 +8,7 @@ import { alarms } from './en/alarms.ts';
 import { backups } from './en/backups.ts';
 import { check } from './en/check.ts';
 import { deploy } from './en/deploy.ts';
-import { header } from './en/header.ts';
+import { frame } from './en/frame.ts';
 import { history } from './en/history.ts';
 import { model } from './en/model.ts';
 import { operate } from './en/operate.ts';
@@ -22,4 +22,4 @@ import { storage } from './en/storage.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const en = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, frame, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

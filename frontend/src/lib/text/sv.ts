@@ -8,7 +8,7 @@ import { alarms } from './sv/alarms.ts';
 import { backups } from './sv/backups.ts';
 import { check } from './sv/check.ts';
 import { deploy } from './sv/deploy.ts';
-import { header } from './sv/header.ts';
+import { frame } from './sv/frame.ts';
 import { history } from './sv/history.ts';
 import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
@@ -23,4 +23,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, frame, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

@@ -4,7 +4,7 @@ import { say } from '#lib/text/text.svelte.ts';
 
 /** What happens next, and what does not. */
 export function modeMeaning({ mode, production }: Pick<StationView, 'mode' | 'production'>): string {
-	const { meaning, nothingSent } = say().header;
+	const { meaning, nothingSent } = say().frame;
 	if (production === 'started') return meaning[mode];
 	return mode === 'automatic' ? nothingSent : `${meaning[mode]} ${nothingSent}`;
 }

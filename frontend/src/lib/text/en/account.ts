@@ -44,11 +44,14 @@ export const account = {
 		change: 'Change password'
 	},
 	demonstration: {
-		word: 'Demonstration:',
-		means: 'anyone who opens this page may act. The devices are emulated; nothing real moves.'
+		word: 'Demonstration',
+		means: 'Anyone who opens this page may act. The devices are emulated; nothing real moves.'
 	},
 	control: {
 		label: 'Control',
+		mine: 'In control',
+		held: (name: string): string => `${name} has control`,
+		free: 'Nobody has control',
 		nobody: 'nobody',
 		you: 'you',
 		elsewhere: 'you, in another browser',

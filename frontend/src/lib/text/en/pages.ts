@@ -6,6 +6,7 @@ export const pages = {
 	alarms: 'Alarms',
 	history: 'History',
 	orders: 'Orders',
+	wall: 'Wall view',
 	model: 'Model',
 	pipelines: 'Pipelines',
 	ros: 'ROS network',

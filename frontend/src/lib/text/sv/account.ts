@@ -44,11 +44,14 @@ export const account: Text['account'] = {
 		change: 'Ändra lösenordet'
 	},
 	demonstration: {
-		word: 'Demonstration:',
-		means: 'den som öppnar sidan får styra. Enheterna är emulerade; inget verkligt rör sig.'
+		word: 'Demonstration',
+		means: 'Den som öppnar sidan får styra. Enheterna är emulerade; inget verkligt rör sig.'
 	},
 	control: {
 		label: 'Kontroll',
+		mine: 'Har kontrollen',
+		held: (name) => `${name} har kontrollen`,
+		free: 'Ingen har kontrollen',
 		nobody: 'ingen',
 		you: 'du',
 		elsewhere: 'du, i en annan webbläsare',

@@ -7,6 +7,7 @@ export const pages: Text['pages'] = {
 	alarms: 'Larm',
 	history: 'Historik',
 	orders: 'Order',
+	wall: 'Väggvy',
 	model: 'Modell',
 	pipelines: 'Pipelines',
 	ros: 'ROS-nätverk',

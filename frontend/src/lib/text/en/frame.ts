@@ -1,12 +1,16 @@
 import type { Standby } from '#lib/contract.ts';
 
-/** The header: what is said of the station as a whole, on every page. */
-export const header = {
+/** The frame of the pages: what is said of the station as a whole, on every page. */
+export const frame = {
 	pages: 'Pages',
-	menu: 'Menu',
 	/** Groups of pages. */
-	groups: { operation: 'Operation', engineering: 'Engineering' },
-	emulated: 'emulated devices',
+	groups: { operate: 'Operate', engineer: 'Engineer', plant: 'Plant admin' },
+	skip: 'Skip to the page',
+	collapse: 'Collapse',
+	expand: 'Expand',
+	morePages: 'More',
+	emulated: 'Emulated',
+	emulatedMeans: 'The devices are emulated.',
 	mode: {
 		automatic: 'Automatic',
 		paused: 'Paused',
@@ -16,15 +20,15 @@ export const header = {
 	/** What a mode means for what happens next, once production is started. */
 	meaning: {
 		automatic: 'Operations are carried out.',
-		paused: 'What runs may finish; nothing is started.',
-		hold: 'Nothing is started, and what ran was called off where that is possible.',
-		restart: 'Operations wait. Nothing is started but what a person has looked at and taken.'
+		paused: 'Running steps finish. Nothing new starts.',
+		hold: 'Nothing starts. What could be stopped has stopped.',
+		restart: 'Operations wait. Only what you approve starts.'
 	},
-	nothingSent: 'Nothing is sent to the devices until production is started.',
+	nothingSent: 'Devices get no commands before production starts.',
 	production: {
-		preparing: 'preparing: nothing moves yet',
-		waiting: 'waits for the start of production',
-		started: 'production started'
+		preparing: 'Getting ready. Nothing moves.',
+		waiting: 'Ready. Production is not started.',
+		started: 'Production is started.'
 	},
 	preparing: 'The controller only listens, and asks the network whether somebody else commands these devices. No command is taken until that is known.',
 	/** Of several stations for the same devices: what this one does, and what keeps it from that. */
@@ -47,8 +51,7 @@ export const header = {
 		aborted: 'Aborted',
 		clearing: 'Clearing'
 	},
-	stepByStep: 'step by step',
-	control: (who: string): string => `control: ${who}`,
+	stepByStep: 'Step by step',
 	pause: 'Pause',
 	hold: 'Hold',
 	holdMeans: 'Pause, and call off what runs',
@@ -58,22 +61,23 @@ export const header = {
 	takeControlFirst: 'Take control first',
 	lookOn: (role: string): string => `You look on as ${role}; an operator acts.`,
 	alarms: (n: number): string => (n === 1 ? '1 alarm' : `${n} alarms`),
-	noAlarms: 'no alarms',
+	noAlarms: 'No alarms',
+	alarmsWhenHeard: (n: number): string => (n === 0 ? 'no alarms when last heard' : n === 1 ? '1 alarm when last heard' : `${n} alarms when last heard`),
+	moreAlarms: (n: number): string => `+${n}`,
 	alarmsOver: (n: number): string => `${n} over, not acknowledged`,
 	notAcknowledged: (n: number): string => `${n} not acknowledged`,
-	liveAgo: (age: string): string => `live ${age} ago`,
-	notLive: 'not live',
-	notLiveFor: (age: string): string => `not live, ${age} old`,
-	connecting: 'connecting',
+	notLive: 'Not live',
+	notLiveFor: (age: string): string => `Not live · ${age} old`,
+	connecting: 'Connecting',
 	notLiveStrong: 'Not live.',
-	lastHeard: (age: string): string => `What is shown is old: last heard ${age} ago.`,
+	lastHeard: (age: string): string => `This view is ${age} old. The station may have moved on.`,
 	notUnderstood: (what: string): string => `The server did not understand this page: ${what}`,
 	/** Why a view is old. */
 	causes: {
 		connecting: 'Connecting to the station.',
 		closed: 'The connection to the server is lost. Trying again.',
 		controller: 'The server does not hear the controller.',
-		gap: 'A message was lost on the way. A new picture has been asked for.',
+		gap: 'A message was lost. Loading again.',
 		silent: 'Nothing new has come from the server.'
 	},
 	carriedOut: 'Carried out',
@@ -95,5 +99,19 @@ export const header = {
 		paused: 'nothing is started in this mode',
 		production: 'nothing is started before production is'
 	},
-	release: 'Release'
+	release: 'Release',
+	notices: 'Notices',
+	search: 'Search or act',
+	/** Said of Pause or Hold pressed while the view was old: it arrived. */
+	arrived: {
+		paused: 'Pause has arrived at the station. This view is still old.',
+		hold: 'Hold has arrived at the station. This view is still old.'
+	},
+	palette: {
+		title: 'Search or act',
+		hint: 'A page, variable, ability, operation or act',
+		nothing: (typed: string): string => `Nothing is called “${typed}”.`,
+		why: (operation: string): string => `Why does “${operation}” wait?`,
+		groups: { act: 'Possible now', page: 'Pages', alarm: 'Alarms', operation: 'Operations', ability: 'Abilities', variable: 'Variables' }
+	}
 };

@@ -1,11 +1,15 @@
 import type { Text } from '../text.svelte.ts';
 
-export const header: Text['header'] = {
+export const frame: Text['frame'] = {
 	pages: 'Sidor',
-	menu: 'Meny',
 	/** Groups of pages. */
-	groups: { operation: 'Drift', engineering: 'Teknik' },
-	emulated: 'emulerade enheter',
+	groups: { operate: 'Drift', engineer: 'Teknik', plant: 'Anläggning' },
+	skip: 'Hoppa till sidan',
+	collapse: 'Fäll ihop',
+	expand: 'Fäll ut',
+	morePages: 'Mer',
+	emulated: 'Emulerad',
+	emulatedMeans: 'Enheterna är emulerade.',
 	mode: {
 		automatic: 'Automatik',
 		paused: 'Pausad',
@@ -14,15 +18,15 @@ export const header: Text['header'] = {
 	},
 	meaning: {
 		automatic: 'Operationer utförs.',
-		paused: 'Det som pågår får bli klart; inget startas.',
-		hold: 'Inget startas, och det som pågick har avbrutits där det går.',
-		restart: 'Operationerna väntar. Inget startas utom det som en person har sett på och valt.'
+		paused: 'Pågående steg blir klara. Inget nytt startar.',
+		hold: 'Inget startar. Det som kunde stoppas har stoppats.',
+		restart: 'Operationerna väntar. Bara det du godkänner startar.'
 	},
-	nothingSent: 'Inget skickas till enheterna förrän produktionen är startad.',
+	nothingSent: 'Enheterna får inga kommandon innan produktionen startar.',
 	production: {
-		preparing: 'förbereds: inget rör sig än',
-		waiting: 'väntar på att produktionen startas',
-		started: 'produktionen är startad'
+		preparing: 'Förbereder. Inget rör sig.',
+		waiting: 'Redo. Produktionen är inte startad.',
+		started: 'Produktionen är startad.'
 	},
 	preparing: 'Styrningen lyssnar bara, och frågar nätet om någon annan styr samma enheter. Inga kommandon tas emot innan det är känt.',
 	standby: ({ active, holder, trouble }) => {
@@ -43,8 +47,7 @@ export const header: Text['header'] = {
 		aborted: 'Aborted',
 		clearing: 'Clearing'
 	},
-	stepByStep: 'steg för steg',
-	control: (who) => `kontroll: ${who}`,
+	stepByStep: 'Steg för steg',
 	pause: 'Pausa',
 	hold: 'Stanna',
 	holdMeans: 'Pausa, och avbryt det som pågår',
@@ -54,21 +57,22 @@ export const header: Text['header'] = {
 	takeControlFirst: 'Ta kontrollen först',
 	lookOn: (role) => `Du ser på som ${role}; en operatör agerar.`,
 	alarms: (n) => `${n} larm`,
-	noAlarms: 'inga larm',
+	noAlarms: 'Inga larm',
+	alarmsWhenHeard: (n) => (n === 0 ? 'inga larm när den senast hördes' : `${n} larm när den senast hördes`),
+	moreAlarms: (n) => `+${n}`,
 	alarmsOver: (n) => `${n} över, inte kvitterade`,
 	notAcknowledged: (n) => `${n} okvitterade`,
-	liveAgo: (age) => `direkt för ${age} sedan`,
-	notLive: 'inte direkt',
-	notLiveFor: (age) => `inte direkt, ${age} gammalt`,
-	connecting: 'ansluter',
+	notLive: 'Inte direkt',
+	notLiveFor: (age) => `Inte direkt · ${age} gammalt`,
+	connecting: 'Ansluter',
 	notLiveStrong: 'Inte direkt.',
-	lastHeard: (age) => `Det som visas är gammalt: senast hört för ${age} sedan.`,
+	lastHeard: (age) => `Det som visas är ${age} gammalt. Stationen kan ha gått vidare.`,
 	notUnderstood: (what) => `Servern förstod inte den här sidan: ${what}`,
 	causes: {
 		connecting: 'Ansluter till stationen.',
 		closed: 'Förbindelsen med servern är bruten. Försöker igen.',
 		controller: 'Servern hör inte styrningen.',
-		gap: 'Ett meddelande gick förlorat på vägen. En ny bild har begärts.',
+		gap: 'Ett meddelande gick förlorat. Läser in igen.',
 		silent: 'Inget nytt har kommit från servern.'
 	},
 	carriedOut: 'Utförs',
@@ -89,5 +93,18 @@ export const header: Text['header'] = {
 		paused: 'inget startas i detta läge',
 		production: 'inget startas innan produktionen är startad'
 	},
-	release: 'Släpp'
+	release: 'Släpp',
+	notices: 'Meddelanden',
+	search: 'Sök eller agera',
+	arrived: {
+		paused: 'Paus har nått stationen. Det som visas är fortfarande gammalt.',
+		hold: 'Stanna har nått stationen. Det som visas är fortfarande gammalt.'
+	},
+	palette: {
+		title: 'Sök eller agera',
+		hint: 'En sida, variabel, förmåga, operation eller åtgärd',
+		nothing: (typed) => `Inget heter ”${typed}”.`,
+		why: (operation) => `Varför väntar ”${operation}”?`,
+		groups: { act: 'Möjligt nu', page: 'Sidor', alarm: 'Larm', operation: 'Operationer', ability: 'Förmågor', variable: 'Variabler' }
+	}
 };

@@ -1,0 +1,36 @@
+/** What is said beside the name of a page: how many alarms stand, and that a restart needs somebody. */
+import { byUrgency, isOver } from '#lib/alarm/priority.ts';
+import type { Page } from '#lib/account/pages.ts';
+import { wantedFor } from '#lib/restart/shown.ts';
+import { useStation, type Station } from '#lib/stream/station.svelte.ts';
+import { say } from '#lib/text/text.svelte.ts';
+
+export interface Badge {
+	readonly text: string;
+	/** In words. */
+	readonly means: string;
+	readonly high: boolean;
+}
+
+class Badges {
+	readonly #station: Station;
+	readonly #alarms = $derived.by(() => byUrgency(this.#station.view?.alarms ?? {}).filter(([, alarm]) => !isOver(alarm)));
+	readonly #wanted = $derived.by(() => (this.#station.view ? wantedFor(this.#station.view).length > 0 : false));
+
+	constructor(station: Station) {
+		this.#station = station;
+	}
+
+	/** What is said beside the name of `page`; null for nothing, and while nothing is heard. */
+	of(page: Page['title']): Badge | null {
+		if (!this.#station.live) return null;
+		if (page === 'alarms' && this.#alarms.length > 0) {
+			const high = this.#alarms[0]?.[1].priority === 'high';
+			return { text: String(this.#alarms.length), means: say().frame.alarms(this.#alarms.length), high };
+		}
+		return page === 'restart' && this.#wanted ? { text: '!', means: say().restart.notice.wanted, high: false } : null;
+	}
+}
+
+/** Those of the station that the component which asks is about. */
+export const badges = (): Badges => new Badges(useStation());
