@@ -25,7 +25,7 @@ const player = (page: Page): Locator => page.getByTestId('trace');
 test('a specification that cannot be met is found, with a run that plays', async ({ drafting, browse, complaints }) => {
 	const page = await browse(ERIK, '/check');
 	await verdict(page, 'good');
-	await expect(page.getByTestId('check')).toContainText('It is checked, and can be deployed. 0 errors, 0 warnings.');
+	await expect(page.getByTestId('check')).toContainText('Checked. Ready to deploy. 0 errors, 0 warnings.');
 	await expect(page.getByText('Nothing was found.')).toBeVisible();
 	const guards = page.getByRole('region', { name: 'What the supervisor adds' });
 	await expect(guards).toContainText('It adds to the guards of 6 abilities');

@@ -67,7 +67,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await eva.getByRole('button', { name: 'Work by order' }).click();
 		await dialog.getByLabel('Reason').fill('The MES orders from now on');
 		await dialog.getByRole('button', { name: 'Work by order' }).click();
-		await expect(eva.getByTestId('by-order')).toContainText('It works by order');
+		await expect(eva.getByTestId('by-order')).toContainText('By order');
 		await examine(eva, 'orders-waiting');
 	});
 

@@ -68,7 +68,7 @@ export class Back {
 				await this.hands.mend();
 				// What is brought back is noticed by itself; of what is moved by hand a person says so.
 				if ((await this.restart.locator('[data-physical]').count()) > 0)
-					await this.restart.getByRole('button', { name: 'I have done it' }).first().click();
+					await this.restart.getByRole('button', { name: 'Done, check again' }).first().click();
 				return true;
 			case 'take':
 			case 'check':
@@ -122,7 +122,7 @@ export class Back {
 			const { truth = '' } = this.hands;
 			const corrected = question.getByRole('button', { name: `It is ${truth}`, exact: true });
 			const corrects = (await corrected.count()) > 0;
-			await (corrects ? corrected : question.getByRole('button', { name: /^It is so/ })).click();
+			await (corrects ? corrected : question.getByRole('button', { name: /^Yes, / })).click();
 			return corrects ? this.#correct() : this.#send('Confirm');
 		}
 		await this.restart.getByRole('button', { name: 'All of it is so' }).click();

@@ -7,6 +7,8 @@ class Room {
 	rem = $state(16);
 	/** There is none for the rail; in rem, so that enlarged text counts. */
 	readonly small: boolean = $derived(this.width < 64 * this.rem);
+	/** There is some for what must be in sight only. */
+	readonly narrow: boolean = $derived(this.width < 35 * this.rem);
 
 	constructor() {
 		if (typeof window !== 'undefined') this.width = window.innerWidth;

@@ -66,8 +66,8 @@ test('values are said in words', () => {
 
 test('no mode is said to carry anything out before production is started', () => {
 	expect(modeMeaning({ mode: 'automatic', production: 'started' })).toBe('Operations are carried out.');
-	expect(modeMeaning({ mode: 'automatic', production: 'waiting' })).toMatch(/^Nothing is sent/);
-	expect(modeMeaning({ mode: 'restart', production: 'waiting' })).toMatch(/^Operations wait.* until production is started/);
+	expect(modeMeaning({ mode: 'automatic', production: 'waiting' })).toMatch(/^Devices get no commands/);
+	expect(modeMeaning({ mode: 'restart', production: 'waiting' })).toMatch(/^Operations wait.* before production starts/);
 });
 
 test('the time of the planner keeps two figures or so', () => {

@@ -19,7 +19,7 @@ export const alarms = {
 	by: (name: string): string => `by ${name}`,
 	until: (when: string): string => `until ${when}`,
 	causeOver: 'its cause is over',
-	parts: (n: number): string => `${n} more from the same cause`,
+	parts: (n: number): string => `+${n} from this cause`,
 	none: 'None',
 	noneWhenHeard: 'None when last heard',
 	noneOfThese: 'None of these',
@@ -50,7 +50,7 @@ export const alarms = {
 	shelve: {
 		button: 'Shelve',
 		title: 'Shelve this alarm?',
-		means: 'Nobody is told of it for that long. Its cause stays as it is. If it becomes high, it is told at once.',
+		means: 'Silent for that long. If it becomes high, you are told.',
 		how: 'For how long',
 		span: (minutes: number): string =>
 			minutes < 60 ? `${minutes} minutes` : minutes === 60 ? '1 hour' : `${minutes / 60} hours`,

@@ -18,7 +18,7 @@ export const check = {
 		failed: 'It could not be checked.',
 		unusable: 'It cannot be used.',
 		unmeetable: 'It has no supervisor: nothing of it could be started.',
-		good: 'It is checked, and can be deployed.'
+		good: 'Checked. Ready to deploy.'
 	},
 	again: 'Change the model, and it is checked again.',
 	stages: 'What it looks for',

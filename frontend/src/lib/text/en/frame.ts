@@ -93,14 +93,15 @@ export const frame = {
 		idle: 'nothing to plan',
 		planning: 'a plan is being looked for',
 		followed: 'nothing more to start',
-		waits: 'nothing to start: what runs is waited for',
-		broken: 'the station departed from the plan; a new one is being looked for',
+		waits: 'waits for the running steps',
+		broken: 'the plan no longer fits; planning again',
 		none: 'no plan was found',
-		paused: 'nothing is started in this mode',
-		production: 'nothing is started before production is'
+		paused: 'nothing starts in this mode',
+		production: 'nothing starts before production does'
 	},
 	release: 'Release',
 	notices: 'Notices',
+	about: (page: string): string => `What is the page “${page}” for?`,
 	search: 'Search or act',
 	/** Said of Pause or Hold pressed while the view was old: it arrived. */
 	arrived: {

@@ -29,7 +29,7 @@ export const operate = {
 			idle: 'Nothing to plan',
 			planning: 'Planning',
 			followed: 'Followed',
-			broken: 'The station departed from the plan; a new one is being looked for',
+			broken: 'The plan no longer fits. Planning again.',
 			none: 'No plan was found'
 		},
 		replanned: (n: number): string => `re-planned ${n}×`,
@@ -123,7 +123,7 @@ export const operate = {
 			done: (job: string): string => `done for ${job}`,
 			skipped: (job: string): string => `not needed for ${job}`
 		} as Readonly<Record<'none' | 'later' | 'now' | 'done' | 'skipped', (job: string) => string>>,
-		leftOut: 'left out of the plan'
+		leftOut: 'not in the plan'
 	},
 	resources: {
 		title: 'Resources',
@@ -186,7 +186,7 @@ export const operate = {
 		computed: (what: string): string => `Being computed: ${what}.`,
 		guards: (n: number): string => (n === 1 ? '1 guard added by it' : `${n} guards added by it`),
 		onlyWhen: 'only when',
-		noShort: 'no short condition says it',
+		noShort: 'no short rule; show the states',
 		blocked: 'Not, among others, where:',
 		expanded: 'Written out',
 		over: (index: string): string => `for ${index}`,
@@ -208,7 +208,7 @@ export const operate = {
 	problem: {
 		more: 'More about it (if you like)',
 		title: (task: string): string => `What keeps you from “${task}”?`,
-		means: 'It raises an alarm, so that somebody comes. Nothing is stopped by it, and the task stays.',
+		means: 'Somebody comes. The task stays yours; nothing stops.',
 		tell: 'Tell the station'
 	}
 };

@@ -2,7 +2,7 @@
 export const orders = {
 	about: 'What is to be made, in the order in which it is to begin, and what each order waits for.',
 	work: 'How the station works',
-	byOrder: 'It works by order: operations of work masters are carried out for an order alone.',
+	byOrder: 'By order: operations of work masters run for an order alone.',
 	freely: 'It works freely: operations become active whenever they can, and orders wait.',
 	workByOrder: 'Work by order',
 	workFreely: 'Work freely',

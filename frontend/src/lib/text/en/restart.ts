@@ -2,12 +2,12 @@ import { count } from '../count.ts';
 
 /** Restart. */
 export const restart = {
-	about: 'From what happened back to production, from top to bottom. Each act is one of its own: none implies another.',
+	about: 'What happened, what is true, the ways back to production. Each act is its own: none implies another.',
 
 	/** The short notice on Operate. */
 	notice: {
 		title: 'Restart',
-		wanted: 'A person is wanted here:',
+		wanted: 'Needs you:',
 		go: 'To Restart',
 		reasons: {
 			restart: 'The station is in restart mode.',
@@ -17,7 +17,7 @@ export const restart = {
 			questions: (n: number): string => `${count(n, 'question', 'questions')}: what is believed does not fit what is measured.`,
 			unconfirmed: 'Nobody has confirmed yet what the station believes since it started.',
 			outside: 'The station is outside its safe states.',
-			unsure: 'Whether the station is safe is not known.',
+			unsure: 'Safety unknown.',
 			noPlan: 'There is no plan for what is to be done.',
 			outOfService: (what: string): string => `Out of service: ${what}.`,
 			alarm: (n: number): string => `${count(n, 'alarm lasts', 'alarms last')}.`,
@@ -39,7 +39,7 @@ export const restart = {
 		physical: 'Do what the first way back asks of a person.',
 		take: 'Take a way back.',
 		check: 'Check the product: what is left to propose only says what is true of it.',
-		leave: 'Leave restart mode: the station can go on as it is.',
+		leave: 'Ready to go on: leave restart mode.',
 		continue: 'Continue.',
 		stuck: 'No way back is known: see why, and put right what is in the way.',
 		looking: 'Wait for the ways back.',
@@ -55,7 +55,7 @@ export const restart = {
 		alarms: 'Alarms',
 		plan: 'Plan',
 		outside: 'Outside the safe states',
-		unsure: 'Whether it is safe is not known',
+		unsure: 'Safety unknown',
 		violated: 'Violated:',
 		threatened: 'Could come about without any start:',
 		safe: 'In the nearest safe state:',
@@ -83,10 +83,10 @@ export const restart = {
 
 	believed: {
 		title: 'Believed and measured',
-		agree: 'What is believed fits what is measured, as far as that can be told.',
+		agree: 'The state fits every measurement.',
 		ask: (name: string, value: string): string => `Look: is ${name} really ${value}?`,
 		why: 'The station believes so, but it does not go together with what is measured.',
-		so: (value: string): string => `It is so: ${value}`,
+		so: (value: string): string => `Yes, ${value}`,
 		other: (value: string): string => `It is ${value}`,
 		more: (n: number): string => `Then ${count(n, 'more question', 'more questions')}. With each answer there may be fewer.`,
 		answered: (name: string, value: string, by: string, at: string): string =>
@@ -112,7 +112,7 @@ export const restart = {
 
 	ways: {
 		title: 'Ways back',
-		about: 'Each proven from the state as it was when it was asked for; what devices or people do before what is only said, then the least effort first.',
+		about: 'Each proven from the state at that moment, least effort first.',
 		asked: (revision: number): string => `Asked at state ${revision}.`,
 		looking: 'Looking.',
 		again: 'The station has moved since: looking again.',
@@ -123,7 +123,7 @@ export const restart = {
 		working: 'The station works by itself: nothing is looked for.',
 		during: 'While something is carried out nothing else is offered.',
 		operator: 'An operator is shown the ways back.',
-		incomplete: 'There was too little time to look for everything: there may be other ways.',
+		incomplete: 'The search ended early; there may be more ways.',
 		none: 'There is no way back from this state.',
 		noneFound: 'No way back was found in the time there is; that there is none is not proven.',
 		noneToDo: 'Nothing that devices or people could do from here is known to lead back.',
@@ -167,7 +167,7 @@ export const restart = {
 		to: (name: string, now: string, then: string): string => `${name}: ${now} → ${then}`,
 		breaks: 'On its way this is violated, which is not now:',
 		leftOut: 'Gives up:',
-		done: 'I have done it: look again',
+		done: 'Done, check again',
 		take: 'Take…',
 		showPlan: 'Show plan',
 		showEffects: 'Show effects',
@@ -207,7 +207,7 @@ export const restart = {
 		mayWait: 'It may be waited for.',
 		haveSeen: (name: string, then: string): string => `I have looked: ${name} is ${then}.`,
 		confirm: 'Confirm each start and each correction.',
-		moved: 'The station has moved since this was offered, so it cannot be taken any more.',
+		moved: 'The station has changed. Check the ways again.',
 		fresh: 'Back to fresh offers',
 		word: 'Take it'
 	},

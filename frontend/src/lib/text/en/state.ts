@@ -34,7 +34,7 @@ export const state = {
 	},
 	standing: { unknown: 'unknown', unconfirmed: 'not confirmed', forced: 'forced', doubted: 'in doubt' },
 	tags: { unconfirmed: 'not confirmed', forced: 'forced', doubted: 'in doubt' },
-	held: 'The order waits while you point at the list.',
+	held: 'Sorting waits while you point.',
 	arrangeNow: 'Sort now',
 	awaits: 'awaits',
 	units: { s: 's', min: 'min', h: 'h', days: 'days' },
@@ -54,7 +54,7 @@ export const state = {
 		title: 'Is this so?',
 		titles: 'Is all of this so?',
 		word: 'Confirm',
-		about: 'Say so only if you have looked. Nothing is changed by it.',
+		about: 'Confirm only what you have seen. Nothing changes by it.',
 		done: (names: string): string => `Confirmed: ${names}`
 	},
 	details: {
@@ -181,7 +181,7 @@ export const state = {
 		plan: 'In automatic mode then',
 		noStarts: 'nothing has to be started',
 		leftOut: 'Given up',
-		itself: 'A correction starts nothing by itself.',
+		itself: 'Nothing starts by a correction.',
 		word: 'Correct…',
 		undoWord: 'Take back…',
 		sure: 'Correct this?',

@@ -95,6 +95,7 @@ export const frame: Text['frame'] = {
 	},
 	release: 'Släpp',
 	notices: 'Meddelanden',
+	about: (page) => `Vad är sidan ”${page}” till för?`,
 	search: 'Sök eller agera',
 	arrived: {
 		paused: 'Paus har nått stationen. Det som visas är fortfarande gammalt.',
