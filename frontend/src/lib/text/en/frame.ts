@@ -100,6 +100,19 @@ export const frame = {
 		production: 'nothing starts before production does'
 	},
 	release: 'Release',
+	/** What is pressed, and what it does. */
+	keys: {
+		title: 'Keys',
+		all: [
+			['Ctrl K', 'Search or act'],
+			['?', 'These keys'],
+			['Tab, Shift Tab', 'To the next part of the page, or the one before'],
+			['Arrow keys', 'Within a list, a tree, the time line, the plan or the picture of the station'],
+			['Escape', 'Puts a dialog or a menu away; what was typed in a field stays'],
+			['Ctrl Space', 'In a condition: what could stand there'],
+			['F12, Shift F12', 'In a condition: to where a name is declared, and where it is used']
+		] as readonly (readonly [string, string])[]
+	},
 	notices: 'Notices',
 	about: (page: string): string => `What is the page “${page}” for?`,
 	search: 'Search or act',
