@@ -22,7 +22,7 @@ WIDTH: Final = 872.0
 _MARGIN, _GAP = 22.0, 14.0
 _CARD, _TRACK, _NARROWEST = 44.0, 48.0, 150.0
 # Of a thing with many stops: its height, the width of its card, and where in it the line and the branches end.
-_BAND, _CHIP, _LINE, _LEAF = 164.0, 156.0, 84.0, 132.0
+_BAND, _CHIP, _LINE, _LEAF = 164.0, 200.0, 84.0, 132.0
 _FEW_STOPS = 4  # of what moves within its card
 _LETTER = 6.0  # wide, at most
 _PRODUCT, _EDGE, _CELL, _LOOSE = 300.0, 24.0, 39.0, 140.0
@@ -134,7 +134,7 @@ class _Layout:
         for number, motion in enumerate(self._bands):
             fan = self._fan(motion) if number == len(self._bands) - 1 else ()
             symbols.append(self._band(motion, number * _BAND, product, fan))
-        height = max([200.0, *(each.box.y + each.box.height for each in symbols)]) + 16
+        height = max([100.0, *(each.box.y + each.box.height for each in symbols)]) + 16
         return MimicView(made_from="model", width=WIDTH, height=height, symbols=symbols, findings=[])
 
     # The product.

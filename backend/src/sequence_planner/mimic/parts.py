@@ -5,16 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from sequence_planner.language.types import Type, Value
+from sequence_planner.language.types import IntegerRange, Type, Value
 from sequence_planner.model.mimic.documents import Look
 
 
 def looks_of(of: Type) -> dict[str, Look]:
-    """The look of each value: with the first it is empty, with the last done, and placed in between."""
+    """The look of each value: with the first it is empty, with the last done, and placed in between. A number is
+    never done."""
     values = [text_of_value(each) for each in of.domain]
     looks: dict[str, Look] = dict.fromkeys(values, "placed")
     looks[values[0]] = "empty"
-    if len(values) > 1:
+    if len(values) > 1 and not isinstance(of, IntegerRange):
         looks[values[-1]] = "done"
     return looks
 

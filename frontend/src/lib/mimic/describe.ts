@@ -3,7 +3,7 @@ import type { MimicSymbol, MimicTrack, StationView } from '#lib/contract.ts';
 import type { Doing } from '#lib/resource/doing.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain, valueText, variableName } from '#lib/wording/values.ts';
-import { holds, inLanguage, saidOf, valueOf, whereabouts, type Variables } from './live.ts';
+import { holds, inLanguage, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 
 export interface Now {
 	readonly text: string;
@@ -53,10 +53,14 @@ function whereNow(track: MimicTrack, variables: Variables, active: boolean, lang
 	const texts = say().mimic;
 	const at = whereabouts(track, variables, null);
 	if (valueOf(variables, track.position) === null) return { text: texts.unknownPlace, tone: 'doubt' };
-	if (at === null || (at.kind === 'moving' && at.from === at.to)) return { text: texts.between, tone: 'active' };
-	const stop = stopName(track, at.to, language);
-	if (at.kind === 'moving') return { text: texts.towards(stop), tone: 'active' };
-	return { text: texts.at(stop), tone: active ? 'active' : 'rests' };
+	const target = sentTo(track, variables);
+	if (at === null || (at.kind === 'moving' && target === null)) return { text: texts.between, tone: 'active' };
+	const stop = capitalised(stopName(track, at.kind === 'moving' ? (target ?? at.to) : at.to, language));
+	return at.kind === 'moving' ? { text: texts.towards(stop), tone: 'active' } : { text: stop, tone: active ? 'active' : 'rests' };
+}
+
+function capitalised(text: string): string {
+	return text.slice(0, 1).toUpperCase() + text.slice(1);
 }
 
 /** The variable that says most of a resource: the first that is measured and more than yes or no. */

@@ -198,9 +198,3 @@ export function isWithin(box: Box, around: Box): boolean {
 		box.y + box.height <= around.y + around.height
 	);
 }
-
-/** A text in so much room; what is left out is told by an ellipsis. */
-export function fit(text: string, room: number, letter: number): string {
-	const most = Math.max(1, Math.floor(room / letter));
-	return text.length <= most ? text : `${text.slice(0, Math.max(1, most - 1)).trimEnd()}…`;
-}

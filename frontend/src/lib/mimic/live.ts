@@ -59,11 +59,17 @@ export function whereabouts(track: MimicTrack, variables: Variables, last: strin
 	const target = track.target === null ? null : valueOf(variables, track.target);
 	const previous = track.previous === null ? null : valueOf(variables, track.previous);
 	if (isStop(position)) return { from: position, to: position, kind: 'there' };
-	const from = isStop(previous) ? previous : last;
 	const to = isStop(target) ? target : null;
+	const from = isStop(previous) ? previous : (last ?? onlyNeighbour(track, to));
 	if (from === null && to === null) return null;
 	const kind = position === null ? 'doubt' : 'moving';
 	return { from: from ?? to ?? '', to: kind === 'doubt' ? (from ?? to ?? '') : (to ?? from ?? ''), kind };
+}
+
+/** The stop from which alone another is reached. */
+function onlyNeighbour(track: MimicTrack, stop: string | null): string | null {
+	const found = track.ways.filter((way) => stop !== null && way.includes(stop)).map(([a, b]) => (a === stop ? b : a));
+	return found.length === 1 ? (found[0] ?? null) : null;
 }
 
 /** The stop to which it was sent and where it is not yet; null where it is there. */

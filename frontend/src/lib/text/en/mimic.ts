@@ -2,7 +2,6 @@
 export const mimic = {
 	title: 'Station',
 	asTable: 'as table',
-	asPicture: 'as picture',
 	picture: (station: string): string => `Live picture of ${station}`,
 	keys: 'Arrow keys go from one thing to the next, Enter shows it.',
 	waits: 'The picture is being loaded.',
@@ -10,8 +9,7 @@ export const mimic = {
 	product: 'Product',
 	columns: { thing: 'Thing', now: 'Now', alarm: 'Alarm' },
 	looks: { empty: 'empty', placed: 'placed', done: 'done', doubt: 'unknown' },
-	at: (stop: string): string => `At ${stop}`,
-	towards: (stop: string): string => `On its way to ${stop}`,
+	towards: (stop: string): string => `On its way · ${stop}`,
 	unknownPlace: 'Nobody knows where it is',
 	between: 'Between two places',
 	notHeard: 'Nothing is heard of it',

@@ -2,7 +2,6 @@
 export const mimic = {
 	title: 'Station',
 	asTable: 'som tabell',
-	asPicture: 'som bild',
 	picture: (station: string): string => `Levande bild av ${station}`,
 	keys: 'Piltangenterna går från sak till sak, Enter visar den.',
 	waits: 'Bilden laddas.',
@@ -10,8 +9,7 @@ export const mimic = {
 	product: 'Produkt',
 	columns: { thing: 'Sak', now: 'Nu', alarm: 'Larm' },
 	looks: { empty: 'tom', placed: 'placerad', done: 'klar', doubt: 'okänd' },
-	at: (stop: string): string => `Vid ${stop}`,
-	towards: (stop: string): string => `På väg till ${stop}`,
+	towards: (stop: string): string => `På väg · ${stop}`,
 	unknownPlace: 'Ingen vet var den är',
 	between: 'Mellan två platser',
 	notHeard: 'Inget hörs från den',
