@@ -1,7 +1,7 @@
 /** The live picture of the station. */
 export const mimic = {
 	title: 'Station',
-	asTable: 'as table',
+	inWords: 'in words',
 	picture: (station: string): string => `Live picture of ${station}`,
 	keys: 'Arrow keys go from one thing to the next, Enter shows it.',
 	waits: 'The picture is being loaded.',

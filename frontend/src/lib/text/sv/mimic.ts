@@ -1,7 +1,7 @@
 /** Den levande bilden av stationen. */
 export const mimic = {
 	title: 'Station',
-	asTable: 'som tabell',
+	inWords: 'i ord',
 	picture: (station: string): string => `Levande bild av ${station}`,
 	keys: 'Piltangenterna går från sak till sak, Enter visar den.',
 	waits: 'Bilden laddas.',
