@@ -26,6 +26,7 @@ LAYERS = (
     "language",
     "model",
     "automaton",
+    "mimic",
     "ros",
     "pipelines",
     "synthesis",

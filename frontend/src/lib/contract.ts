@@ -205,3 +205,11 @@ export type Flows = Schemas['FlowsView'];
 export type EdgeFlow = Schemas['EdgeFlowView'];
 export type FlowsMessage = Schemas['FlowsStreamMessage'];
 export type Attachment = Schemas['AttachmentAnswer'];
+
+export type Mimic = Schemas['MimicView'];
+export type MimicSymbol = Schemas['MimicSymbol'];
+export type MimicTrack = Schemas['MimicTrack'];
+export type MimicStop = Schemas['MimicStop'];
+export type MimicPart = Schemas['MimicPart'];
+export type MimicTest = Schemas['MimicTest'];
+export type MimicText = Schemas['MimicText'];

@@ -19,6 +19,7 @@ from sequence_planner.language.shorthand.misuse import decided_by_number
 from sequence_planner.language.shorthand.vocabulary import Vocabulary
 from sequence_planner.language.syntax import Assignment, Expression, ExpressionError, Quantified, children
 from sequence_planner.language.types import Place
+from sequence_planner.mimic.picture import undrawn_of
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
 from sequence_planner.pipelines.graph import StationPipelines
@@ -41,6 +42,8 @@ def suspicious_in(station: Station | None, automaton: Automaton, pipelines: Stat
         yield from said
         places = {each.place for each in said}
         yield from (each for each in check_folded(station) if each.place not in places)
+        for finding in undrawn_of(automaton, station):
+            yield ModelWarning(finding.place, "undrawn", finding.message)
     yield from check_never_given(automaton, pipelines)
 
 

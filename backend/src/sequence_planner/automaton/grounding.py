@@ -71,7 +71,7 @@ from sequence_planner.model.documents import (
     OperationDocument,
     SpecificationDocument,
     TimeoutsDocument,
-    Words,
+    by_language,
 )
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
@@ -649,9 +649,9 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
                 resource,
                 alarm_condition(meaning, document.when, scope),
                 document.priority,
-                _by_language(document.title) or {"": readable(None, name, {}).capitalize()},
-                _by_language(document.consequence),
-                _by_language(document.action),
+                by_language(document.title) or {"": readable(None, name, {}).capitalize()},
+                by_language(document.consequence),
+                by_language(document.action),
                 document.delay,
                 document.when.place if isinstance(document.when, SourceText) else name.place,
             )
@@ -668,16 +668,6 @@ def alarm_condition(meaning: Meaning, text: Predicate, scope: NameScope) -> Expr
                 message = "an alarm reads variables and the flags of abilities: write what the operation waits for"
                 meaning.findings.add_within(text, seen.span, message)
     return when
-
-
-def _by_language(text: Words | None) -> dict[str, str]:
-    if text is None:
-        return {}
-    if isinstance(text, SourceText):
-        return {"": str(text)}
-    return {
-        language: str(said) for language in type(text).model_fields if (said := getattr(text, language)) is not None
-    }
 
 
 # The automaton of a station, put together from its parts.

@@ -22,7 +22,7 @@ from sequence_planner.controller.features.variables import KIND as BELIEFS
 from sequence_planner.controller.features.variables import Beliefs, Variables
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.ticks import Ticker
-from sequence_planner.controller.io.traffic import PipelineTraffic
+from sequence_planner.controller.io.traffic import LivePicture, PipelineTraffic
 from sequence_planner.controller.metrics import Figures
 from sequence_planner.controller.planner_client import AdvisorClient, PlannerQuestions
 from sequence_planner.controller.recovery.build import build_recovery
@@ -127,6 +127,7 @@ def build_controller(
         approvals,
         in_control,
         PipelineTraffic(station.pipelines, devices),
+        LivePicture(station),
         devices,
         devices.overrides,
         Figures(

@@ -19,6 +19,7 @@ from sequence_planner.editor.symbols.index import (
 )
 from sequence_planner.editor.symbols.rename import Usage, homes_of, usage_of
 from sequence_planner.editor.symbols.texts import (
+    MIMIC,
     OPERATIONS,
     SPECIFICATIONS,
     STATION,
@@ -159,6 +160,8 @@ def _ties(declared: Declared, gathered: Gathered) -> tuple[ModelEdge, ...]:
     homes = homes_of(gathered)
     for each in gathered.occurrences:
         if each.declares or each.text is None or each.part.kind == "word":
+            continue
+        if each.where.file == MIMIC:  # a picture shows the station, and is no part of what it does
             continue
         place, where = each.text.at(each.span), each.where
         by = user(where)

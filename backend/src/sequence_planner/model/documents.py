@@ -366,6 +366,16 @@ Words = Annotated[
 ]
 
 
+def by_language(text: Words | None) -> dict[str, str]:
+    """The text of each language; one of no language in particular under "", and none where nothing is written."""
+    if text is None:
+        return {}
+    if isinstance(text, SourceText):
+        return {"": str(text)}
+    said = {language: getattr(text, language) for language in WordsDocument.model_fields}
+    return {language: str(each) for language, each in said.items() if each is not None}
+
+
 class AlarmDocument(DocumentPart):
     """An alarm that people are told while a condition holds. It changes nothing of what the station does."""
 

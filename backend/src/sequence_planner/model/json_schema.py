@@ -31,6 +31,7 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.efa_document import PlainDocument
 from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.mimic.documents import MimicDocument
 from sequence_planner.model.sequences import KINDS, SequenceDocument, SequencePart
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
@@ -46,6 +47,7 @@ FILES: Mapping[str, tuple[Any, str]] = {
     "operations": (dict[str, OperationDocument | SequenceDocument], "operations.yaml"),
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
+    "mimic": (MimicDocument, "mimic.yaml"),
     "efa": (PlainDocument, "*.efa.json"),
 }
 

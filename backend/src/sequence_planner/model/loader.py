@@ -1,6 +1,6 @@
 """A station's folder, brought together.
 
-station.yaml  resources/*.yaml  types/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml
+station.yaml  resources/*.yaml  types/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  mimic.yaml
 messages/<package>/msg/*.msg  messages/<package>/srv/*.srv  messages/<package>/action/*.action
 """
 
@@ -31,6 +31,7 @@ from sequence_planner.model.validation import findings_of, shown
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_text, text_of
 
 if TYPE_CHECKING:
+    from sequence_planner.model.mimic.documents import MimicDocument
     from sequence_planner.model.types.instances import InstancesBefore
     from sequence_planner.model.types.layers import Layer, WrittenInstance
 
@@ -41,7 +42,8 @@ D = TypeVar("D", bound=BaseModel)
 class Station:
     """A station as written. `messages` is the folder of its message definitions; `empty` are the places of files of
     entries that are there and have none. `sequences` stand among the operations. `layers` are
-    each instance and its types.
+    each instance and its types. `mimic` is its picture, and `undrawn` what keeps it from being drawn: no station stands
+    still because of that.
     """
 
     folder: Path
@@ -53,6 +55,8 @@ class Station:
     empty: tuple[Place, ...] = ()
     sequences: dict[SourceText, SequenceDocument] = field(default_factory=dict)
     layers: Mapping[str, Sequence[Layer]] = field(default_factory=dict, compare=False, repr=False)
+    mimic: MimicDocument | None = None
+    undrawn: tuple[Finding, ...] = ()
 
     @property
     def messages(self) -> Path:
@@ -112,12 +116,23 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     sequences = {name: each for name, each in entries.items() if isinstance(each, SequenceDocument)}
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
+    mimic, undrawn = reader.mimic()
     reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
     empty = tuple(reader.empty)
     return Station(
-        folder, station, resources, operations, specifications, work_masters, empty, sequences, reader.layers
+        folder,
+        station,
+        resources,
+        operations,
+        specifications,
+        work_masters,
+        empty,
+        sequences,
+        reader.layers,
+        mimic,
+        undrawn,
     )
 
 
@@ -171,6 +186,18 @@ class _FolderReader:
         """A file that is one document."""
         found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
         return cast("D | None", found)
+
+    def mimic(self) -> tuple[MimicDocument | None, tuple[Finding, ...]]:
+        """The picture, and what is wrong with its form."""
+        if not (self._folder / "mimic.yaml").exists():
+            return None, ()
+        from sequence_planner.model.mimic.documents import MimicDocument  # noqa: PLC0415 (few stations have one)
+
+        before = len(self.findings)
+        document = self.whole("mimic.yaml", MimicDocument)
+        undrawn = tuple(self.findings[before:])
+        del self.findings[before:]
+        return document, undrawn
 
     def packaged(
         self, station: StationDocument | None

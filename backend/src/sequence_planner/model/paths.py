@@ -16,7 +16,7 @@ FOLDERS = ("resources", "types", "messages", "stages", "packages")
 # What files below `messages` define, by what their names end with.
 DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
 # The documents of a station beside its resources.
-FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
+FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml", "mimic.yaml")
 
 
 _RESOURCE = re.compile(r"resources/([^/]+)\.yaml")

@@ -10,6 +10,7 @@ import { check } from './en/check.ts';
 import { deploy } from './en/deploy.ts';
 import { frame } from './en/frame.ts';
 import { history } from './en/history.ts';
+import { mimic } from './en/mimic.ts';
 import { model } from './en/model.ts';
 import { operate } from './en/operate.ts';
 import { orders } from './en/orders.ts';
@@ -22,4 +23,4 @@ import { storage } from './en/storage.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, frame, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const en = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, frame, history, mimic, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

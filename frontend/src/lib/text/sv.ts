@@ -10,6 +10,7 @@ import { check } from './sv/check.ts';
 import { deploy } from './sv/deploy.ts';
 import { frame } from './sv/frame.ts';
 import { history } from './sv/history.ts';
+import { mimic } from './sv/mimic.ts';
 import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
 import { orders } from './sv/orders.ts';
@@ -23,4 +24,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, frame, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, messages: { ...refusals, ...messages }, backups, check, deploy, frame, history, mimic, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

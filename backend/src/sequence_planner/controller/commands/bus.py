@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
 from sequence_planner.controller.commands.command import HANDLES, Command, CommandRefused, Query
-from sequence_planner.controller.views.part import View
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.texts.message import joined, message
 
 Handler = Callable[..., Any]
@@ -86,8 +86,8 @@ class QueryBus:
     def __init__(self, features: Iterable[object], queries: Iterable[type[Query[Any]]]) -> None:
         self._handlers = complete(features, queries)
 
-    async def answer(self, query: Query[Any]) -> View:
+    async def answer(self, query: Query[Any]) -> DataModel:
         """The document that answers it. Raises `CommandRefused`."""
         answer = self._handlers[type(query)](query)
-        found: View = await answer if inspect.isawaitable(answer) else answer
+        found: DataModel = await answer if inspect.isawaitable(answer) else answer
         return found

@@ -13,7 +13,6 @@ from typing import Annotated, Any, ClassVar, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StrictStr
 
-from sequence_planner.controller.views.part import View
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.data_models import DataModel
@@ -25,7 +24,7 @@ LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader 
 Why = Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
 Revision = Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
 GivenValue = StrictBool | StrictInt | StrictStr
-Answer = TypeVar("Answer", bound=View)
+Answer = TypeVar("Answer", bound=DataModel)
 GivenValues = Annotated[dict[str, GivenValue], Field(min_length=1, max_length=200)]
 
 
@@ -147,7 +146,7 @@ class CommandRefused(Refused):
 
 Given = TypeVar("Given", bound=Command)
 Asked = TypeVar("Asked", bound=Query[Any])
-Told = TypeVar("Told", bound=View | Awaitable[View])
+Told = TypeVar("Told", bound=DataModel | Awaitable[DataModel])
 Feature = TypeVar("Feature")
 HANDLES = "_handles"  # of a function: the command that it handles, or the query that it answers
 

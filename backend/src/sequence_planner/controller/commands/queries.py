@@ -16,6 +16,7 @@ from sequence_planner.controller.views.details import (
 from sequence_planner.controller.views.metrics import FiguresView
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView, RecordView
 from sequence_planner.controller.views.proposals import AdviceView, OfferView
+from sequence_planner.mimic.views import MimicView
 
 TOLD_WITHIN = 1.0  # seconds: who watches over the station asks again soon
 ADVISED_WITHIN = 15.0  # seconds: the advisor answers one after the other
@@ -31,6 +32,17 @@ class AboutPipelines(Query[PipelinesView]):
 
     routes = (Route("GET", "/pipelines", "pipelines", tag="pipelines", role="viewer", refusals=(504,)),)
     kind: Literal["about-pipelines"] = "about-pipelines"
+
+
+class AboutMimic(Query[MimicView]):
+    """The live picture of the station: what is drawn where, and the variables by which each thing moves and changes.
+
+    It is that of `mimic.yaml`; without one, or where that cannot be read, it is made from the model. `findings` say
+    what of the file is not drawn, and why.
+    """
+
+    routes = (Route("GET", "/mimic", "mimic", tag="station", role="viewer", refusals=(504,)),)
+    kind: Literal["about-mimic"] = "about-mimic"
 
 
 class AboutFlows(Query[FlowsView]):

@@ -1,15 +1,18 @@
-"""What passes the pipelines of a running station, for who asks."""
+"""What passes the pipelines of a running station, and its picture, for who asks."""
 
 from __future__ import annotations
 
 from sequence_planner.controller.commands.command import CommandRefused, answers
-from sequence_planner.controller.commands.queries import AboutFlows, AboutPipelines, AskRecord
+from sequence_planner.controller.commands.queries import AboutFlows, AboutMimic, AboutPipelines, AskRecord
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.monitor import Observing, record_view
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView, RecordView
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.mimic.picture import picture_of
+from sequence_planner.mimic.views import MimicView
 from sequence_planner.pipelines.graph import StationPipelines
+from sequence_planner.station import ReadyStation
 from sequence_planner.texts.message import message
 
 
@@ -46,3 +49,17 @@ class PipelineTraffic:
         if record is None:
             raise CommandRefused("no-record", message("refused.no-record.pipeline", pipeline=pipeline), 409)
         return record
+
+
+class LivePicture:
+    """Answers how a station is drawn. That is found out when somebody asks, and then kept: the model stays the same."""
+
+    def __init__(self, station: ReadyStation) -> None:
+        self._station = station
+        self._known: MimicView | None = None
+
+    @answers(AboutMimic)
+    def mimic(self, query: AboutMimic) -> MimicView:
+        """The picture."""
+        self._known = self._known or picture_of(self._station.automaton, self._station.written)
+        return self._known

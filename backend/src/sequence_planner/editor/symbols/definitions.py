@@ -22,8 +22,10 @@ from sequence_planner.editor.symbols.index import (
     value_of,
     variable_of,
 )
+from sequence_planner.editor.symbols.mimic import MimicCollector
 from sequence_planner.editor.symbols.pipelines import PipelineCollector, read_definitions
 from sequence_planner.editor.symbols.texts import (
+    MIMIC,
     OPERATIONS,
     SPECIFICATIONS,
     STATION,
@@ -168,7 +170,8 @@ def gather(
     gathered = Gathered(content)
     declared = Declared(content, messages)
     naming = Naming(declared, gathered)
-    walk = _Walk(naming, Expressions(naming, word))
+    expressions = Expressions(naming, word)
+    walk = _Walk(naming, expressions)
     if file in (None, STATION):
         walk.station(content.get(STATION))
     for resource, at, found in content.resources():
@@ -183,6 +186,8 @@ def gather(
         walk.specifications(content.get(SPECIFICATIONS))
     if file in (None, WORK_MASTERS):
         walk.work_masters(content.get(WORK_MASTERS))
+    if file in (None, MIMIC):
+        MimicCollector(naming, expressions).collect(content.get(MIMIC))
     if file is None or file in content.definitions:
         read_definitions(content, gathered)
     return declared, gathered

@@ -18,6 +18,7 @@ STATION = "station.yaml"
 OPERATIONS = "operations.yaml"
 SPECIFICATIONS = "specifications.yaml"
 WORK_MASTERS = "work_masters.yaml"
+MIMIC = "mimic.yaml"
 _RESOURCES = "resources/"
 _YAML = ".yaml"
 _DEFINITION = re.compile(r"messages/(\w+/(msg|srv|action)/\w+)\.\2")
@@ -99,7 +100,8 @@ def message_of(file: str) -> str | None:
 
 def _is_read(file: str) -> bool:
     return (
-        file in (STATION, OPERATIONS, SPECIFICATIONS, WORK_MASTERS) or (resource_of(file) or type_of(file)) is not None
+        file in (STATION, OPERATIONS, SPECIFICATIONS, WORK_MASTERS, MIMIC)
+        or (resource_of(file) or type_of(file)) is not None
     )
 
 

@@ -11,6 +11,7 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.mimic.documents import MimicDocument
 from sequence_planner.model.paths import type_of
 from sequence_planner.model.sequences import SequenceDocument
 from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
@@ -21,6 +22,7 @@ _FILES: dict[str, object] = {
     "operations.yaml": dict[str, OperationDocument | SequenceDocument],
     "specifications.yaml": dict[str, SpecificationDocument],
     "work_masters.yaml": dict[str, WorkMasterDocument],
+    "mimic.yaml": MimicDocument,
 }
 
 

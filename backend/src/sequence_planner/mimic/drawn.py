@@ -1,0 +1,238 @@
+"""A picture drawn by hand: what `mimic.yaml` binds is looked up, what is not there is told, and the rest is drawn."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from typing import Final
+
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.findings import Findings, without_arguments
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import IntegerRange, Value
+from sequence_planner.mimic.motion import motions
+from sequence_planner.mimic.parts import labels_of, looks_of, text_of_value
+from sequence_planner.mimic.views import (
+    Box,
+    MimicFinding,
+    MimicLevel,
+    MimicPart,
+    MimicSlot,
+    MimicStop,
+    MimicSymbol,
+    MimicTest,
+    MimicText,
+    MimicTrack,
+    MimicView,
+)
+from sequence_planner.model.documents import Words, by_language
+from sequence_planner.model.mimic.documents import (
+    MimicDocument,
+    PartDocument,
+    SlotDocument,
+    SymbolDocument,
+    TrackDocument,
+    Values,
+)
+from sequence_planner.model.source import SourceText
+
+_ROOM: Final = 120.0  # for the title of a stop
+_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
+
+
+def drawn(automaton: Automaton, document: MimicDocument, findings: Findings) -> MimicView:
+    """The picture of `document`; what it binds that is not there is noted in `findings` and left out."""
+    drawing = _Drawing(automaton, document, findings)
+    symbols = [drawing.symbol(name, each) for name, each in document.symbols.items()]
+    width, height = document.size
+    return MimicView(made_from="file", width=width, height=height, symbols=symbols, findings=as_shown(findings))
+
+
+def as_shown(findings: Findings) -> list[MimicFinding]:
+    """The findings as they are shown."""
+    return [
+        MimicFinding(file=each.place.file, line=each.place.line, column=each.place.column, message=each.message)
+        for each in sorted(set(findings.all))
+    ]
+
+
+class _Drawing:
+    def __init__(self, automaton: Automaton, document: MimicDocument, findings: Findings) -> None:
+        self._automaton, self._findings = automaton, findings
+        self._size = document.size
+        self._families: dict[str, list[str]] = {}
+        for name in automaton.variables:
+            self._families.setdefault(without_arguments(name), []).append(name)
+
+    def symbol(self, name: SourceText, document: SymbolDocument) -> MimicSymbol:
+        """A thing, with all that it binds and that is there."""
+        resource = document.resource
+        if resource is not None and not self._known(resource, self._automaton.resources, "resource"):
+            resource = None
+        box = _box(document.at, document.size)
+        if min(box.x, box.y) < 0 or box.x + box.width > self._size[0] or box.y + box.height > self._size[1]:
+            width, height = self._size
+            self._findings.add(name, f"`{name}` lies outside the drawing, which is {width:g} wide and {height:g} high")
+        return MimicSymbol(
+            name=str(name),
+            symbol=document.symbol,
+            resource=None if resource is None else str(resource),
+            title=by_language(document.title) or ({"": name.replace("_", " ")} if resource is None else {}),
+            box=box,
+            texts=[
+                MimicText(text=self._text(each.say), when=tests)
+                for each in document.text
+                if (tests := self._tests(each.when)) is not None
+            ],
+            active=self._tests(document.active) or [],
+            visible=self._tests(document.visible) or [],
+            level=None if document.level is None else self._level(document.level),
+            track=None if document.track is None else self._track(document.track),
+            slots=[slot for each in document.slots if (slot := self._slot(each)) is not None],
+            parts=[part for each in document.parts for part in self._parts(each)],
+        )
+
+    # Names and values.
+
+    def _known(self, name: SourceText, among: Collection[str], what: str) -> bool:
+        if name in among:
+            return True
+        self._findings.add(name, f"there is no {what} `{name}`{suggestion(name, among)}")
+        return False
+
+    def _variable(self, name: SourceText) -> str | None:
+        return str(name) if self._known(name, self._automaton.variables, "variable") else None
+
+    def _value(self, variable: str, value: Value, near: SourceText) -> Value | None:
+        """The value, where the variable can have it; None where it never has."""
+        domain = self._automaton.variables[variable].type.domain
+        plain = str(value) if isinstance(value, str) else value
+        if any(each == plain and type(each) is type(plain) for each in domain):
+            return plain
+        where = value if isinstance(value, SourceText) else near
+        shown = text_of_value(value)
+        self._findings.add(
+            where, f"`{variable}` is never `{shown}`{suggestion(shown, list(map(text_of_value, domain)))}"
+        )
+        return None
+
+    def _tests(self, values: Values) -> list[MimicTest] | None:
+        """The tests; None where one of them asks for what is not there."""
+        tests: list[MimicTest] = []
+        is_whole = True
+        for name, wanted in values.items():
+            variable = self._variable(name)
+            if variable is None:
+                is_whole = False
+                continue
+            found = [self._value(variable, each, name) for each in (wanted if isinstance(wanted, list) else [wanted])]
+            is_whole = is_whole and None not in found
+            tests.append(MimicTest(variable=variable, values=[each for each in found if each is not None]))
+        return tests if is_whole else None
+
+    def _text(self, words: Words) -> dict[str, str]:
+        """The text by language; the variables in it are looked up."""
+        said = [words] if isinstance(words, SourceText) else [words.en, words.sv]
+        for each in said:
+            for found in _PLACEHOLDER.finditer(each or ""):
+                assert each is not None
+                if found[1] not in self._automaton.variables:
+                    near = suggestion(found[1], self._automaton.variables)
+                    self._findings.add(each, f"there is no variable `{found[1]}`{near}")
+        return by_language(words)
+
+    # Parts of a symbol.
+
+    def _level(self, name: SourceText) -> MimicLevel | None:
+        variable = self._variable(name)
+        if variable is None:
+            return None
+        of = self._automaton.variables[variable].type
+        if not isinstance(of, IntegerRange):
+            self._findings.add(name, f"a level shows a number, and `{name}` is {of}")
+            return None
+        return MimicLevel(variable=variable, lowest=of.minimum, highest=of.maximum)
+
+    def _track(self, document: TrackDocument) -> MimicTrack | None:
+        position = self._variable(document.of)
+        others = [None if name is None else self._variable(name) for name in (document.to, document.previous)]
+        if position is None:
+            return None
+        stops = [
+            MimicStop(
+                value=str(value),
+                title=by_language(stop.title),
+                x=stop.at[0],
+                y=stop.at[1],
+                label=stop.label,
+                room=_ROOM,
+                branch=stop.branch,
+            )
+            for value, stop in document.stops.items()
+            if self._value(position, value, value) is not None
+        ]
+        names = {each.value for each in stops}
+        if document.ways is None:
+            every = [way for each in motions(self._automaton) if each.position == position for way in each.ways]
+            ways = [(start, end) for start, end in every if start in names and end in names]
+        else:
+            ways = [
+                (str(start), str(end))
+                for start, end in document.ways
+                if all(self._known(each, names, "stop") for each in (start, end))
+            ]
+        return MimicTrack(position=position, target=others[0], previous=others[1], stops=stops, ways=ways)
+
+    def _slot(self, document: SlotDocument) -> MimicSlot | None:
+        holds = self._tests(document.holds)
+        if holds is None:
+            return None
+        box = _box(document.at, document.size)
+        return MimicSlot(box=box, title=by_language(document.title), symbol=document.symbol, holds=holds)
+
+    def _parts(self, document: PartDocument) -> list[MimicPart]:
+        """The part; of an indexed variable one for each of its values."""
+        members = self._families.get(str(document.of), [])
+        if document.of in self._automaton.variables:
+            members = [str(document.of)]
+        if not members:
+            self._findings.add(
+                document.of, f"there is no variable `{document.of}`{suggestion(document.of, self._families)}"
+            )
+            return []
+        of = self._automaton.variables[members[0]].type
+        looks = looks_of(of)
+        for value, look in document.looks.items():
+            if text_of_value(value) in looks:
+                looks[str(value)] = look
+            else:
+                self._findings.add(value, f"`{document.of}` is never `{value}`{suggestion(value, looks)}")
+        single = members == [str(document.of)]
+        labels = [""] if single else labels_of([name[name.index("[") + 1 : -1].split(", ")[-1] for name in members])
+        marks = document.marks
+        beside = (
+            sum(x for x, _ in marks) / len(marks),
+            sum(y for _, y in marks) / len(marks) + (document.size * 1.4 if len(marks) == 1 else 4),
+        )
+        parts: list[MimicPart] = []
+        for number, (name, label) in enumerate(zip(members, labels, strict=True)):
+            column, row = number % document.columns, number // document.columns
+            x = document.at[0] + column * document.step[0] + row * document.row[0]
+            y = document.at[1] + column * document.step[1] + row * document.row[1]
+            parts.append(
+                MimicPart(
+                    variable=name,
+                    title=by_language(document.title) if single else {},
+                    label=label,
+                    label_x=x + beside[0],
+                    label_y=y + beside[1],
+                    marks=[(x + dx, y + dy) for dx, dy in marks],
+                    size=document.size,
+                    looks=looks,
+                )
+            )
+        return parts
+
+
+def _box(at: list[float], size: list[float]) -> Box:
+    return Box(x=at[0], y=at[1], width=size[0], height=size[1])

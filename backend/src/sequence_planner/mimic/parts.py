@@ -1,0 +1,36 @@
+"""How the parts of a product look, and what is written beside them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from sequence_planner.language.types import IntegerRange, Type, Value
+from sequence_planner.model.mimic.documents import Look
+
+
+def looks_of(of: Type) -> dict[str, Look]:
+    """The look of each value: with the first it is empty, with the last done, and placed in between. A number is
+    never done."""
+    values = [text_of_value(each) for each in of.domain]
+    looks: dict[str, Look] = dict.fromkeys(values, "placed")
+    looks[values[0]] = "empty"
+    if len(values) > 1 and not isinstance(of, IntegerRange):
+        looks[values[-1]] = "done"
+    return looks
+
+
+def text_of_value(value: Value) -> str:
+    """A value as the page knows it in a list of texts."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def labels_of(indices: Sequence[str]) -> list[str]:
+    """A short label for each index: the number in its name where these tell them apart, else its place in the order."""
+    numbers = [re.findall(r"\d+", each) for each in indices]
+    for which in (-1, 0):
+        found = [each[which] if each else "" for each in numbers]
+        if all(found) and (len(set(found)) == len(set(indices))):
+            return found
+    places = {each: str(number + 1) for number, each in enumerate(dict.fromkeys(indices))}
+    return [places[each] for each in indices]

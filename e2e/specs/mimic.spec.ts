@@ -1,0 +1,104 @@
+import type { Locator, Page } from '@playwright/test';
+import { findings, overflow } from '../station/barriers.ts';
+import { acknowledge, restsOnPerson } from '../station/seen.ts';
+import { expect, test } from '../station/test.ts';
+
+const picture = (page: Page): Locator => page.getByTestId('mimic');
+const token = (page: Page): Locator => picture(page).locator('[data-token="robot"]');
+
+/** The middle of something that is drawn. */
+async function middle(of: Locator): Promise<[number, number]> {
+	const box = await of.boundingBox();
+	return box === null ? [NaN, NaN] : [Math.round(box.x + box.width / 2), Math.round(box.y + box.height / 2)];
+}
+
+test('the robot of the picture goes where the robot goes, and the bolts look as they are', async ({ operate, watch, complaints }) => {
+	await restsOnPerson(operate, watch);
+	await expect(picture(operate)).toHaveAttribute('data-made-from', 'file');
+	const pair = await acknowledge(watch);
+	const part = picture(operate).locator(`[data-part="bolts[${pair}]"]`);
+	await expect(token(operate)).toHaveAttribute('data-at', pair);
+	await expect(part).toHaveAttribute('data-look', /placed|done/);
+	// It does not jump: it goes there, and then is where its stop is.
+	await expect
+		.poll(async () => (await token(operate).getAttribute('data-at')) !== pair || (await token(operate).evaluate((each) => each.getAnimations().length)) === 0)
+		.toBe(true);
+	if ((await token(operate).getAttribute('data-at')) === pair) {
+		const [x, y] = await middle(picture(operate).locator(`[data-stop="${pair}"]`));
+		const [there, below] = await middle(token(operate).locator('.disc'));
+		expect(Math.abs(there - x) + Math.abs(below - y)).toBeLessThanOrEqual(3);
+	}
+	await restsOnPerson(operate, watch);
+	expect(complaints).toEqual([]);
+});
+
+test('who wants no motion sees none', async ({ operate, watch }) => {
+	await operate.emulateMedia({ reducedMotion: 'reduce' });
+	await restsOnPerson(operate, watch);
+	await operate.evaluate(() => {
+		const seen = { moves: 0 };
+		Object.assign(window, { seen });
+		const animate = Element.prototype.animate;
+		Element.prototype.animate = function (...given) {
+			seen.moves += 1;
+			return animate.apply(this, given);
+		};
+	});
+	const pair = await acknowledge(watch);
+	await expect(token(operate)).toHaveAttribute('data-at', pair);
+	expect(await operate.evaluate(() => (window as unknown as { seen: { moves: number } }).seen.moves)).toBe(0);
+	await restsOnPerson(operate, watch);
+});
+
+test('the picture is one stop of the Tab key, and shows a thing with Enter @theme', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	const things = picture(operate).locator('[role="button"]');
+	await expect(things.first()).toBeVisible();
+	expect(await things.evaluateAll((all) => all.filter((each) => each.getAttribute('tabindex') === '0').length)).toBe(1);
+	await picture(operate).locator('[data-symbol="nutrunner"]').focus();
+	await operate.keyboard.press('ArrowDown');
+	await expect(picture(operate).locator('[data-symbol="planning_scene"]')).toBeFocused();
+	await operate.keyboard.press('ArrowRight');
+	await operate.keyboard.press('ArrowUp');
+	await picture(operate).locator('[data-symbol="robot"]').focus();
+	await operate.keyboard.press('Enter');
+	const dialog = operate.getByRole('dialog', { name: 'Robot UR10' });
+	await expect(dialog.getByRole('link', { name: 'Move to home' })).toBeVisible();
+	await expect(dialog).toContainText('target pose');
+	expect(await findings(operate)).toEqual([]);
+	await operate.keyboard.press('Escape');
+	await expect(dialog).toBeHidden();
+	await expect(picture(operate).locator('[data-symbol="robot"]')).toBeFocused();
+
+	await operate.getByRole('button', { name: 'in words' }).click();
+	const words = operate.getByRole('table', { name: /^Live picture of/ });
+	await expect(words.getByRole('row', { name: /^Cover plate/ })).toContainText('bolt pair 1');
+	expect(await findings(operate)).toEqual([]);
+	await operate.getByRole('button', { name: 'in words' }).click();
+});
+
+test('on a small screen what has no room in the picture stands in rows', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	for (const width of [390, 320]) {
+		await operate.setViewportSize({ width, height: 800 });
+		const row = picture(operate).locator('button[data-symbol="nutrunner"]');
+		await expect(row).toContainText('Smart nutrunner');
+		await expect(picture(operate).locator('[role="button"][data-symbol="cover_plate"]')).toBeVisible();
+		expect(await overflow(operate)).toBe(0);
+		expect(await findings(operate)).toEqual([]);
+	}
+});
+
+test.describe('a device that is silent', () => {
+	test.use({ shared: null });
+
+	test('lights up, and nobody pretends to know where it is', async ({ operate, station }) => {
+		await expect(token(operate)).not.toHaveAttribute('data-at', '', { timeout: 60_000 });
+		await station.fault('robot silent');
+		await expect(picture(operate).locator('[data-symbol="robot"]')).toHaveAttribute('data-alarm', /high|medium/);
+		await expect(token(operate)).toHaveAttribute('data-at', '');
+		await expect(picture(operate).locator('[data-symbol="robot"]')).toHaveAccessibleName(/Nothing is heard of it/);
+		await station.fault('clear');
+		await expect(token(operate)).not.toHaveAttribute('data-at', '');
+	});
+});

@@ -1,0 +1,37 @@
+/** The live picture of the station. */
+export const mimic = {
+	title: 'Station',
+	inWords: 'in words',
+	picture: (station: string): string => `Live picture of ${station}`,
+	keys: 'Arrow keys go from one thing to the next, Enter shows it.',
+	waits: 'The picture is being loaded.',
+	noPicture: 'There is no picture of the station.',
+	product: 'Product',
+	columns: { thing: 'Thing', now: 'Now', alarm: 'Alarm' },
+	looks: { empty: 'empty', placed: 'placed', done: 'done', doubt: 'unknown' },
+	towards: (stop: string): string => `On its way · ${stop}`,
+	unknownPlace: 'Nobody knows where it is',
+	between: 'Between two places',
+	notHeard: 'Nothing is heard of it',
+	rests: 'Nothing runs',
+	isThere: (thing: string): string => `${thing} is there`,
+	isGone: (thing: string): string => `${thing} is not there`,
+	unknownThing: (thing: string): string => `${thing}: unknown`,
+	is: (name: string, value: string): string => `${name}: ${value}`,
+	of: (value: number, most: number): string => `${value} of ${most}`,
+	undrawn: (n: number): string => (n === 1 ? '1 thing of mimic.yaml is not drawn' : `${n} things of mimic.yaml are not drawn`),
+	place: (file: string, line: number, column: number): string => `${file}, line ${line}, column ${column}`,
+	thing: {
+		alarms: 'Alarms',
+		whatToDo: 'What to do',
+		values: 'Values',
+		noValues: 'It has no values.',
+		abilities: 'Abilities',
+		states: { running: 'runs', ready: 'can start', waits: 'waits', unknown: 'unknown' },
+		moreValues: (n: number): string => `${n} more on State`,
+		links: 'More about it',
+		state: 'All values',
+		history: 'History',
+		alarmsPage: 'All alarms'
+	}
+};

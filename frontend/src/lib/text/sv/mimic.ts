@@ -1,0 +1,37 @@
+/** Den levande bilden av stationen. */
+export const mimic = {
+	title: 'Station',
+	inWords: 'i ord',
+	picture: (station: string): string => `Levande bild av ${station}`,
+	keys: 'Piltangenterna går från sak till sak, Enter visar den.',
+	waits: 'Bilden laddas.',
+	noPicture: 'Det finns ingen bild av stationen.',
+	product: 'Produkt',
+	columns: { thing: 'Sak', now: 'Nu', alarm: 'Larm' },
+	looks: { empty: 'tom', placed: 'placerad', done: 'klar', doubt: 'okänd' },
+	towards: (stop: string): string => `På väg · ${stop}`,
+	unknownPlace: 'Ingen vet var den är',
+	between: 'Mellan två platser',
+	notHeard: 'Inget hörs från den',
+	rests: 'Inget körs',
+	isThere: (thing: string): string => `${thing} är där`,
+	isGone: (thing: string): string => `${thing} är inte där`,
+	unknownThing: (thing: string): string => `${thing}: okänt`,
+	is: (name: string, value: string): string => `${name}: ${value}`,
+	of: (value: number, most: number): string => `${value} av ${most}`,
+	undrawn: (n: number): string => (n === 1 ? '1 sak i mimic.yaml ritas inte' : `${n} saker i mimic.yaml ritas inte`),
+	place: (file: string, line: number, column: number): string => `${file}, rad ${line}, kolumn ${column}`,
+	thing: {
+		alarms: 'Larm',
+		whatToDo: 'Att göra',
+		values: 'Värden',
+		noValues: 'Den har inga värden.',
+		abilities: 'Förmågor',
+		states: { running: 'körs', ready: 'kan starta', waits: 'väntar', unknown: 'okänt' },
+		moreValues: (n: number): string => `${n} till på Tillstånd`,
+		links: 'Mer om den',
+		state: 'Alla värden',
+		history: 'Historik',
+		alarmsPage: 'Alla larm'
+	}
+};
