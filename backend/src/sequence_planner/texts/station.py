@@ -105,10 +105,10 @@ STATION: Final[dict[str, str]] = {
     "waits.reset": "a reset: it is completed, and does not become active again by itself",
     "waits.goal-holds": "{condition}: its goal holds",
     # All of it, as a sentence.
-    "sentence.until": "Waits until {conditions}",
-    "sentence.for": "Waits for {what}",
-    "sentence.both": "Waits for {what}, and until {conditions}",
-    "sentence.goal": "Active until {condition}",
+    "sentence.until": "waits until {conditions}",
+    "sentence.for": "waits for {what}",
+    "sentence.both": "waits for {what}, and until {conditions}",
+    "sentence.goal": "until {condition}",
     # What is in the way of an ability, an operation or a goal.
     "blocked.one": "It waits for {what}.",
     "blocked.several": "It waits for {count} things.",

@@ -156,7 +156,8 @@ class Sentences:
         """Say that variables have values."""
         types = self._automaton.types
         literals = [ValueLiteral(name, types[name], frozenset((value,))) for name, value in values]
-        part = self._joined(literals, is_all=True)
+        several = SaidJunction(True, tuple(literals), junction(True, literals))
+        part = literals[0] if len(literals) == 1 else several
         return Sentence({grammar.language: self._told(part, grammar) for grammar in GRAMMARS}, written)
 
     def write_value(self, name: str, value: Value) -> str:
@@ -326,7 +327,7 @@ class Sentences:
     def _term(self, term: Expression, grammar: Grammar) -> str:
         match term:
             case Variable(name):
-                return self._names.subject(name, grammar)
+                return self._names.spoken_title(name, grammar)
             case Constant(value):
                 return self._names.word(value, grammar)
             case Arithmetic(operator, left, right):

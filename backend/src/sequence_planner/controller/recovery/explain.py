@@ -30,7 +30,7 @@ from sequence_planner.language.syntax import (
 from sequence_planner.language.types import Value
 from sequence_planner.planning.recovery.proposals import all_equal
 from sequence_planner.synthesis.guards import SupervisorGuard
-from sequence_planner.texts.message import Item, Message, Sentence, as_it_was, message
+from sequence_planner.texts.message import Item, Message, Sentence, as_it_was, message, waits_in_one
 
 # All that keeps an ability from starting now, each piece with what it takes to be over.
 
@@ -320,7 +320,12 @@ class Involving:
         condition, text = hindrance.expression, hindrance.text
         involved = [] if condition is None else list(self._involved_in(condition))
         return ConditionView(
-            kind=str(hindrance.kind), text=text, text_message=text, expanded=hindrance.expanded, involved=involved
+            kind=str(hindrance.kind),
+            text=text,
+            text_message=text,
+            expanded=hindrance.expanded,
+            involved=involved,
+            sentence=waits_in_one([text]),
         )
 
     def _involved_in(self, condition: Expression) -> Iterator[InvolvedView]:

@@ -86,14 +86,13 @@ export const frame = {
 	noOperation: 'no operation',
 	next: 'Next',
 	more: (n: number): string => `and ${n} more`,
-	waitsFor: 'waits for',
 	mayStart: 'may start now',
 	/** What is said in the place of the next start where there is none. */
 	nothingNext: {
 		idle: 'nothing to plan',
 		planning: 'a plan is being looked for',
 		followed: 'nothing more to start',
-		waits: 'nothing to start: what runs is waited for',
+		waits: 'waits for the running steps',
 		broken: 'the station departed from the plan; a new one is being looked for',
 		none: 'no plan was found',
 		paused: 'nothing is started in this mode',
