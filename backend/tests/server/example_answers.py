@@ -88,6 +88,7 @@ OFFER = OfferView(
     corrections=[ValueChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed")],
     errand=PLAN,
     ends="robot.pose == home",
+    ends_message=as_it_was("robot.pose == home"),
     into_safe=False,
     operation=None,
     needs_restart=True,
@@ -127,6 +128,7 @@ CONDITION = ConditionView(
     text_message=as_it_was("a message on /robot/state"),
     expanded=None,
     involved=[POSE],
+    sentence=as_it_was("waits for a message on /robot/state"),
 )
 
 

@@ -70,6 +70,7 @@ def job(state: JobState) -> JobView:
         ended=None,
         waits_for=[],
         waits_for_messages=[],
+        sentence=None,
         steps={},
     )
 

@@ -59,6 +59,7 @@ def job(title: str, state: JobStepState, started: float | None) -> JobView:
         ended=None,
         waits_for=[],
         waits_for_messages=[],
+        sentence=None,
         steps={f"work {title}": step},
     )
 

@@ -36,7 +36,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.planning.problem import Contract
-from sequence_planner.texts.message import as_it_was
+from sequence_planner.texts.message import Wording, as_it_was, message
 
 
 def ability(resource: str, title: str) -> AbilityView:
@@ -67,6 +67,7 @@ def step(name: str, resource: str, status: StepStatus, tick: int) -> PlanStepVie
         new=False,
         waits_for=[],
         waits_for_messages=[],
+        sentence=None,
     )
 
 
@@ -138,6 +139,7 @@ def example_view(**changes: object) -> StationView:
                 completed=0,
                 goal="bolts[bolt_pair_1] = tightened",
                 precondition="true",
+                sentence=message("sentence.goal", condition=Wording({"en": "bolt pair 1 is tight"})),
                 left_out=False,
                 repeat=True,
                 for_jobs=True,
@@ -156,6 +158,7 @@ def example_view(**changes: object) -> StationView:
                 ended=None,
                 waits_for=[],
                 waits_for_messages=[],
+                sentence=None,
                 steps={"tighten": JobStepView(state=JobStepState.ACTIVE, waits_for=[], started=990.0, ended=None)},
             )
         },

@@ -8,6 +8,7 @@ from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.core.immutable import Immutable, uncompared
+from sequence_planner.language.shorthand.titles import NO_TITLES, Titles
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.syntax import (
     FALSE,
@@ -207,7 +208,7 @@ class Automaton(Immutable):
     them. `goals` are formulas over its runs. `alarms` bear on nothing that it does. `places` says where a part was
     written, by its name; `reactions` which effects are written with an ability; `vocabulary` what its texts say, and
     `indices` the parameters of what was written once for several, each with what it ranges over, by its name: `bolts`,
-    `robot.move`, `operation.tighten`, `specification.never`.
+    `robot.move`, `operation.tighten`, `specification.never`; `titles` what it calls its parts when it speaks to people.
     """
 
     name: str
@@ -230,6 +231,7 @@ class Automaton(Immutable):
     reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
     vocabulary: Vocabulary = uncompared(default=NO_VOCABULARY)
     indices: Mapping[str, Mapping[str, str]] = uncompared(default={})
+    titles: Titles = uncompared(default=NO_TITLES)
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """The variables of a kind, in order of declaration."""

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from sequence_planner.automaton.automaton import Ability, Effect, Kind, VariableDeclaration
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, without_arguments
+from sequence_planner.automaton.lifting.titles import TitleReader
 from sequence_planner.automaton.shorthand import (
     RESERVED,
     ShorthandReader,
@@ -71,6 +72,7 @@ class Declarations:
         self._declare_flags()
         self._declare_activities()
         self.vocabulary = self._read_vocabulary()
+        self.titles = TitleReader(station, self.enumerations, self.types, findings).read_titles()
 
     def noting(self, findings: Findings, types: dict[str, Type] | None = None) -> Declarations:
         """The same names, and what is found by them from now on is noted in `findings`; `types` replaces theirs."""
@@ -88,6 +90,7 @@ class Declarations:
             list(self.enumerations.items()),
             frozenset(self.broken | self.unusable),
             self.vocabulary.declared(),
+            self.titles,
             self.removed,
         )
 
@@ -419,7 +422,7 @@ class GroundBefore:
             declarations.types,
             dict(declarations.variables),
             frozenset(declarations.broken),
-            (dict(declarations.enumerations), declarations.vocabulary.declared()),
+            (dict(declarations.enumerations), declarations.vocabulary.declared(), declarations.titles),
         )  # fmt: skip
         now = self._names
         if before is None or before.others != now.others:

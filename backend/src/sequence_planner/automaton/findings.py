@@ -6,9 +6,11 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from sequence_planner.language.shorthand.titles import NO_TITLES, Titles, in_language
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.texts.names import capitalised, in_words
 
 # What each parameter is: its value, and the enumeration it is of.
 Binding = Mapping[str, tuple[str, EnumerationType]]
@@ -73,9 +75,15 @@ def without_arguments(name: str) -> str:
     return re.sub(r"[\[(][^\])]*[\])]", "", name) if "(" in name or "[" in name else name
 
 
-def readable(title: SourceText | None, name: str, binding: Binding) -> str:
-    """A title, or the name in plain words, with `{parameter}` replaced by its value in plain words."""
-    text = str(title) if title is not None else name.replace("_", " ")
-    for parameter, (value, _) in binding.items():
-        text = text.replace(f"{{{parameter}}}", value.replace("_", " "))
+def readable(title: SourceText | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
+    """A title, or the name in plain words, with what each `{parameter}` is called in its place."""
+    text = str(title) if title is not None else in_words(name)
+    for parameter, (value, type_) in binding.items():
+        called = in_language(titles.of_value(type_, value), "en") or in_words(value)
+        text = text.replace(f"{{{parameter}}}", called)
     return text
+
+
+def titled(name: str) -> str:
+    """A name as a title."""
+    return capitalised(in_words(name))

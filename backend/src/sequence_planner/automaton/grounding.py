@@ -33,6 +33,7 @@ from sequence_planner.automaton.findings import (
     UseOfRemoved,
     instance_name,
     readable,
+    titled,
     told_where_removed,
     without_arguments,
 )
@@ -71,7 +72,7 @@ from sequence_planner.model.documents import (
     OperationDocument,
     SpecificationDocument,
     TimeoutsDocument,
-    by_language,
+    words_of,
 )
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
@@ -308,7 +309,7 @@ def _ability(
     return Ability(
         name=instance_name(f"{resource}.{name}", binding),
         resource=resource,
-        title=readable(document.title, name, binding),
+        title=readable(document.title, name, binding, meaning.declarations.titles),
         enabled=enabled,
         start_guard=start_guard,
         start_actions=start_actions,
@@ -356,7 +357,7 @@ def _human(meaning: Meaning, resource: str, document: AbilityDocument, binding: 
         return None
     text = document.human.acknowledgement
     check_acknowledgement(meaning, resource, text)
-    return HumanTask(readable(document.human.task, "", binding), f"{resource}.{text}")
+    return HumanTask(readable(document.human.task, "", binding, meaning.declarations.titles), f"{resource}.{text}")
 
 
 def check_acknowledgement(meaning: Meaning, resource: str, text: SourceText) -> None:
@@ -479,7 +480,7 @@ def _operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocume
                 places[f"{OPERATION}.{full}.local"] = _operation_place(document.local, name)
             yield Operation(
                 full,
-                readable(document.title, name, binding),
+                readable(document.title, name, binding, meaning.declarations.titles),
                 meaning.predicate(document.precondition, scope),
                 meaning.predicate(document.goal, scope),
                 document.priority,
@@ -558,7 +559,7 @@ def ground_specifications(
         meaning.declarations.check_parameters(document.parameters, *(f"{name}." for name in document.zone or ()))
         for binding in meaning.declarations.bindings(document.parameters):
             full = instance_name(name, binding)
-            title = readable(document.title, name, binding)
+            title = readable(document.title, name, binding, meaning.declarations.titles)
             for words, forbidden in _parts(meaning, document, binding, known):
                 part = f"{full}: {words}" if words else full
                 specifications[part] = Specification(part, f"{title}: {words}" if words else title, simplify(forbidden))
@@ -649,9 +650,9 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
                 resource,
                 alarm_condition(meaning, document.when, scope),
                 document.priority,
-                by_language(document.title) or {"": readable(None, name, {}).capitalize()},
-                by_language(document.consequence),
-                by_language(document.action),
+                words_of(document.title) or {"": titled(name)},
+                words_of(document.consequence),
+                words_of(document.action),
                 document.delay,
                 document.when.place if isinstance(document.when, SourceText) else name.place,
             )
@@ -709,6 +710,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
         reactions=reactions,
         vocabulary=declarations.vocabulary,
         indices=declarations.indices(),
+        titles=declarations.titles,
     )
     if findings.all:
         raise ModelError(told_where_removed(findings.all))
@@ -741,5 +743,6 @@ def ground_variables(station: Station) -> tuple[Automaton, list[Finding]]:
         flags=(),
         places=declarations.places,
         vocabulary=declarations.vocabulary,
+        titles=declarations.titles,
     )
     return automaton, findings.all

@@ -149,6 +149,60 @@ Duration = Annotated[
 ]
 
 
+def _said(text: SourceText) -> SourceText:
+    if not text.strip():
+        raise ValueError("write a text: this one is empty")
+    return text
+
+
+SaidText = Annotated[SourceText, AfterValidator(_said)]
+
+
+class WordsDocument(DocumentPart):
+    """A text for people in several languages."""
+
+    en: Given[SaidText] = None
+    """English, which is told where a language has no text of its own."""
+    sv: Given[SaidText] = None
+    """Swedish."""
+
+    @model_validator(mode="after")
+    def _says_something(self) -> WordsDocument:
+        if not self.model_fields_set:
+            raise ValueError("say it in one language at least: `en` or `sv`")
+        return self
+
+
+def _form_of_words(content: object) -> str | None:
+    if isinstance(content, dict | WordsDocument):
+        return "words"
+    return "text" if isinstance(content, str) else None
+
+
+Words = Annotated[
+    Annotated[SaidText, Tag("text")] | Annotated[WordsDocument, Tag("words")],
+    Discriminator(_form_of_words, "words", "a text, or one for each language: `{en: …, sv: …}`"),
+]
+
+
+def by_language(text: Words | None) -> dict[str, SourceText]:
+    """A text for people by its language; one that is written in none in particular is under the empty one."""
+    if text is None:
+        return {}
+    if isinstance(text, SourceText):
+        return {"": text}
+    return {language: said for language in type(text).model_fields if (said := getattr(text, language)) is not None}
+
+
+def words_of(text: Words | None) -> Mapping[str, str]:
+    """The same without the places at which it is written."""
+    return {language: str(said) for language, said in by_language(text).items()}
+
+
+# The words for values: `{placed: placed, tightened: tight}`, or `{true: in place, false: away}`.
+ValueTitles = dict[ReadValue, Words]
+
+
 class VariableDocument(DocumentPart):
     """A variable: `type` is `bool`, an enumeration, or a range such as `0..3`.
 
@@ -163,6 +217,12 @@ class VariableDocument(DocumentPart):
     """One variable per value of an enumeration: `{where: side}` makes `name[left]` and `name[right]`."""
     approval: Literal["single", "dual"] = "single"
     """`dual`: each correction and force of it needs a second person (four-eyes principle)."""
+    title: Given[Words] = None
+    """For people: what it tells of, such as `Robot` or, with `for`, `{pair}`."""
+    phrase: Given[Words] = None
+    """How people are told its value, such as `the robot is at {value}`; without it `TITLE is {value}`."""
+    titles: ValueTitles = Field(default_factory=dict)
+    """Words for its values, in the place of those of its enumeration: `{true: in place, false: away}`."""
 
 
 class StartDocument(DocumentPart):
@@ -330,52 +390,6 @@ class TopicDocument(DocumentPart):
         return self
 
 
-def _said(text: SourceText) -> SourceText:
-    if not text.strip():
-        raise ValueError("write a text: this one is empty")
-    return text
-
-
-SaidText = Annotated[SourceText, AfterValidator(_said)]
-
-
-class WordsDocument(DocumentPart):
-    """A text for people in several languages."""
-
-    en: Given[SaidText] = None
-    """English, which is told where a language has no text of its own."""
-    sv: Given[SaidText] = None
-    """Swedish."""
-
-    @model_validator(mode="after")
-    def _says_something(self) -> WordsDocument:
-        if not self.model_fields_set:
-            raise ValueError("say it in one language at least: `en` or `sv`")
-        return self
-
-
-def _form_of_words(content: object) -> str | None:
-    if isinstance(content, dict | WordsDocument):
-        return "words"
-    return "text" if isinstance(content, str) else None
-
-
-Words = Annotated[
-    Annotated[SaidText, Tag("text")] | Annotated[WordsDocument, Tag("words")],
-    Discriminator(_form_of_words, "words", "a text, or one for each language: `{en: …, sv: …}`"),
-]
-
-
-def by_language(text: Words | None) -> dict[str, str]:
-    """The text of each language; one of no language in particular under "", and none where nothing is written."""
-    if text is None:
-        return {}
-    if isinstance(text, SourceText):
-        return {"": str(text)}
-    said = {language: getattr(text, language) for language in WordsDocument.model_fields}
-    return {language: str(each) for language, each in said.items() if each is not None}
-
-
 class AlarmDocument(DocumentPart):
     """An alarm that people are told while a condition holds. It changes nothing of what the station does."""
 
@@ -405,6 +419,8 @@ class EnumerationDocument(DocumentPart):
     """Enumerations whose values it has as well."""
     ordered: bool = False
     """Whether `<`, `previous`, `next`, `first` and `last` go by the order of its values."""
+    titles: ValueTitles = Field(default_factory=dict)
+    """Words for its values, as they stand within a sentence: `{tightened: tight}`."""
 
     @model_validator(mode="after")
     def _has_values(self) -> EnumerationDocument:
@@ -422,6 +438,8 @@ class SetDocument(DocumentPart):
     """Its values; a set among them stands for all of its own."""
     excludes: Given[Annotated[list[SourceText], Field(min_length=1)]] = Field(default=None, alias="except")
     """The values that are not in it, where all others are; a set among them stands for all of its own."""
+    title: Given[Words] = None
+    """For people: what is said in the place of `one of its values`, such as `a tool dock`."""
 
     @model_validator(mode="after")
     def _one_form(self) -> SetDocument:
@@ -476,8 +494,8 @@ class ValueMapDocument(DocumentPart):
 class PredicateDocument(DocumentPart):
     """A condition with a name, and parameters if it needs some."""
 
-    title: Given[SourceText] = None
-    """For people; `{parameter}` is replaced by the value."""
+    title: Given[Words] = None
+    """For people: a sentence that says it, such as `the robot holds {tool}`."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: what it is about."""
     when: Predicate

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PLACE: Final = re.compile(r"\{(\w+)(?:\|([^|}]*)\|([^|}]*))?\}")
 _NAMED = 3  # of a list so many are named, and the others counted
 
-Item = TypeAliasType("Item", "str | int | float | Message | Wording")
+Item = TypeAliasType("Item", "str | int | float | Message | Sentence | Wording")
 Argument = TypeAliasType("Argument", "Item | Sequence[Item]")
 
 
@@ -82,6 +82,20 @@ class Wording:
     def __str__(self) -> str:
         """Return it in English, or in the first language that there is."""
         return self.words.get("en") or next(iter(self.words.values()), "")
+
+
+@dataclass(frozen=True)
+class Sentence(Wording):
+    """What people are told in sentences, by language, and programs as it is `written` in the model's language."""
+
+    written: str
+
+    def __str__(self) -> str:
+        """Return it as it is written."""
+        return self.written
+
+    def __hash__(self) -> int:
+        return hash(self.written)
 
 
 @dataclass(frozen=True)
@@ -151,10 +165,36 @@ def quoted(titles: Collection[str]) -> list[Item]:
     return [message("quoted", title=title) for title in titles]
 
 
+# All that is waited for in one sentence: things that come, and what is to be so.
+
+_CLAUSES = frozenset(("waits.sake", "waits.goal-holds"))
+
+
+def waits_in_one(conditions: Iterable[Message]) -> Message | None:
+    """Say what is waited for; None where it is nothing, or not what somebody waits for."""
+    until, things = list[Item](), list[Item]()
+    for each in conditions:
+        if not each.id.startswith("waits."):
+            return None
+        if each.id == "waits.condition":
+            said = each.arguments["condition"]
+            assert isinstance(said, Sentence)
+            until.append(said)
+        else:
+            (until if each.id in _CLAUSES else things).append(each)
+    if until and things:
+        return message("sentence.both", what=things, conditions=until)
+    if until:
+        return message("sentence.until", conditions=until)
+    return message("sentence.for", what=things) if things else None
+
+
 def _sent(argument: Argument) -> object:
     match argument:
         case Message():
             return argument.sent()
+        case Sentence():
+            return {"words": dict(argument.words), "written": argument.written}
         case Wording():
             return {"words": dict(argument.words)}
         case str() | int() | float():

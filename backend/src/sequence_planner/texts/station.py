@@ -43,6 +43,7 @@ STATION: Final[dict[str, str]] = {
     "late.tried-once": "{late}, tried once",
     "late.tried": "{late}, tried {times} times",
     # What is waited for, as in *it waits for …*.
+    "waits.condition": "{condition}",
     "waits.production": "production to be started",
     "waits.automatic": "automatic mode",
     "waits.paused": "automatic mode: the station is paused",
@@ -103,6 +104,11 @@ STATION: Final[dict[str, str]] = {
     "waits.sequence-beside": "its turn in the sequence {sequence}, beside {operations}",
     "waits.reset": "a reset: it is completed, and does not become active again by itself",
     "waits.goal-holds": "{condition}: its goal holds",
+    # All of it, as a sentence.
+    "sentence.until": "waits until {conditions}",
+    "sentence.for": "waits for {what}",
+    "sentence.both": "waits for {what}, and until {conditions}",
+    "sentence.goal": "until {condition}",
     # What is in the way of an ability, an operation or a goal.
     "blocked.one": "It waits for {what}.",
     "blocked.several": "It waits for {count} things.",
@@ -151,6 +157,7 @@ STATION: Final[dict[str, str]] = {
     "offer.see-to-first": "See to it that {changes}",
     "offer.see-to-so": "see to it that {changes}, so that {records}",
     "offer.see-to-so-first": "See to it that {changes}, so that {records}",
+    "offer.so": "{condition}",
     "offer.is": "{name} is {value}",
     "offer.counts-as": "{name} counts as {value}",
     "offer.correct": "correct {changes}",

@@ -65,6 +65,15 @@ def test_a_word_is_renamed_in_its_expression_alone() -> None:
     assert new == {"station.yaml": SHORTHAND["station.yaml"].replace(before, "all each in part: bolts[each] == tight")}
 
 
+def test_titles_follow_what_they_are_of() -> None:
+    said = "titles: {tight: firm}, title: {en: 'bolt {where}'}, phrase: '{where} is {value}'"
+    written = SHORTHAND["station.yaml"].replace("initial: empty}", f"initial: empty, {said}}}")
+    files = {**SHORTHAND, "station.yaml": written}
+    assert said.replace("tight", "fast") in renamed(files, parse_part("value:state.tight"), "fast")["station.yaml"]
+    renaming = renamed(files, parse_part("parameter:bolts.where"), "spot_of")
+    assert said.replace("{where}", "{spot_of}") in renaming["station.yaml"]
+
+
 def test_all_of_it_is_in_the_graph() -> None:
     found = graph(SHORTHAND)
     assert [thing.part.id for thing in found.things if thing.standing is Standing.MISSING] == []

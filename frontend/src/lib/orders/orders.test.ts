@@ -28,6 +28,7 @@ function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 		ended_at: null,
 		waits_for: [],
 		waits_for_messages: [],
+		sentence: null,
 		...rest
 	};
 }
@@ -88,6 +89,7 @@ test('how far an order has come is told by its job', () => {
 		ended: null,
 		waits_for: [],
 		waits_for_messages: [],
+		sentence: null,
 		steps: {
 			place: { ...step, state: 'completed' as const },
 			tighten: { ...step, state: 'active' as const },

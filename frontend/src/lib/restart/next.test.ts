@@ -6,7 +6,7 @@ import { nextAct, type Next, type Standing } from './next.ts';
 
 const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [], because_messages: [] };
 const UNDECIDED = { 'robot.go': { value: true, reacts: [], reacts_messages: [], quiet: [false], unsafe: [] } };
-const ERRAND = { kind: 'reset', title: '', title_message: { id: 'as-it-was', arguments: { text: '' } }, by: 'Eva', why: '', since: 0, ends: null, into_safe: true, ability: null } as const;
+const ERRAND = { kind: 'reset', title: '', title_message: { id: 'as-it-was', arguments: { text: '' } }, by: 'Eva', why: '', since: 0, ends: null, ends_message: null, into_safe: true, ability: null } as const;
 const HANDS = offer({ kind: 'physical', online: ['robot'] });
 const TAKE = offer({ kind: 'restart', errand: preview('back') });
 const WAY_BACK = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '', reason_message: { id: 'as-it-was', arguments: { text: '' } } };

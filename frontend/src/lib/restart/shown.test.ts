@@ -10,6 +10,7 @@ const active: Operation = {
 	completed: 0,
 	goal: 'b == tightened',
 	precondition: 'b == placed',
+	sentence: null,
 	left_out: false,
 	repeat: true,
 	for_jobs: false,

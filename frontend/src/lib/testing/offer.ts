@@ -23,6 +23,7 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		corrections: [],
 		errand: null,
 		ends: null,
+		ends_message: null,
 		into_safe: false,
 		operation: null,
 		needs_restart: false,

@@ -33,7 +33,8 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 		expected_end: null,
 		new: false,
 		waits_for: [],
-		waits_for_messages: []
+		waits_for_messages: [],
+		sentence: null
 	};
 	return { ...base, ...rest };
 }

@@ -183,13 +183,14 @@ class ModelWording:
         """Each predicate with the values of its parameters, and its negation, by what it means."""
         found: dict[NormalForm, Expression] = {}
         for predicate in self._vocabulary.predicates.values():
-            for form, call in self._calls_of(predicate):
+            for form, call in self.calls_of(predicate):
                 if form not in (ALWAYS, NEVER):
                     found.setdefault(form, call)
                     found.setdefault(negated(form), Not(call))
         return found
 
-    def _calls_of(self, predicate: NamedPredicate) -> Iterator[tuple[NormalForm, Name]]:
+    def calls_of(self, predicate: NamedPredicate) -> Iterator[tuple[NormalForm, Name]]:
+        """A predicate with each choice of the values of its parameters, by what it means."""
         domains = [type_.values for type_ in predicate.parameters.values()]
         if prod(map(len, domains)) > MOST_CALLS:
             return
@@ -482,7 +483,7 @@ def _mentioned(condition: Expression) -> set[str]:
     return found
 
 
-class _Same:
+class Same:
     """An automaton, which is compared by its identity: to compare all of it takes long."""
 
     def __init__(self, automaton: Automaton) -> None:
@@ -492,14 +493,14 @@ class _Same:
         return id(self.automaton)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.automaton is self.automaton
+        return isinstance(other, Same) and other.automaton is self.automaton
 
 
 def wording_of(automaton: Automaton) -> ModelWording:
     """The words of the model that `automaton` was made of, which are looked for once for each of the last few."""
-    return _wording_of(_Same(automaton))
+    return _wording_of(Same(automaton))
 
 
 @lru_cache(maxsize=4)
-def _wording_of(same: _Same) -> ModelWording:
+def _wording_of(same: Same) -> ModelWording:
     return ModelWording(same.automaton)

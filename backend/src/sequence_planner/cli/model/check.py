@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -46,6 +47,7 @@ class Told(Document):
     findings: list[FindingDocument]
     summary: dict[str, object]
     questions: list[str]
+    untitled: list[str]
     line: str
 
 
@@ -68,6 +70,9 @@ def check(
     runs: Annotated[
         bool, typer.Option("--runs", help="Print also long runs that show something, step by step.")
     ] = False,
+    titles: Annotated[
+        bool, typer.Option("--titles", help="Print what has no title, and what people read in its place.")
+    ] = False,
     json: AsJson = False,
 ) -> None:
     """Check a model: its documents, its pipelines, that its specifications can be met, and what is suspicious in it.
@@ -77,6 +82,7 @@ def check(
     specifications cannot be met, go to standard output, and the exit code is 1. Without either it is 0.
     A trace shows how something comes about, step by step; it is indented below the warning. Of one with more than ten
     steps only their number is printed without --runs.
+    With --titles it says where a title is missing that sentences for people need. That is no warning.
     What is said of several instances of one declaration is one finding, in the words of the model.
     With --json: {model, findings: [{severity, kind, file, line, column, message, members, trace}], summary}; `members`
     are the instances where a finding is about several, and a trace is {initial, forbidden_by, steps: [{kind, names,
@@ -90,7 +96,8 @@ def check(
     else:
         lines = [line for each in told.findings for line in finding_lines(each, runs)]
         counts = [counts_line(told.findings)] if told.findings else []
-        typer.echo("\n".join([*lines, *counts, *told.questions, told.line]))
+        untitled = told.untitled if titles else []
+        typer.echo("\n".join([*lines, *counts, *untitled, *told.questions, told.line]))
     if told.findings:
         raise typer.Exit(FINDINGS)
 
@@ -119,7 +126,11 @@ def _told(model: Path, limits: Limits, of: str | None, *, emulator: bool, json: 
             typer.echo(str(error), err=True)
         raise typer.Exit(UNUSABLE) from error
     told = Told(
-        findings=found.findings, summary=_summary(found), questions=_question_lines(found), line=_summary_line(found)
+        findings=found.findings,
+        summary=_summary(found),
+        questions=_question_lines(found),
+        untitled=[*_untitled_lines(found)],
+        line=_summary_line(found),
     )
     if of is not None and found.found.unfinished is None and of == _key(model, emulator):
         write(of, told)
@@ -187,6 +198,15 @@ def _question_lines(checked: Checked) -> list[str]:
     )
     number = counted(questions.possible + questions.impossible + questions.open, *what)
     return [f"{number}: {questions.possible} always possible, {questions.impossible} not, {questions.open} not known"]
+
+
+def _untitled_lines(checked: Checked) -> Iterator[str]:
+    """Say what of a station has no title; of a plain automaton nobody reads sentences at a station."""
+    from sequence_planner.automaton.lifting.untitled import untitled_names  # noqa: PLC0415
+
+    if checked.model.station is not None:
+        for each in untitled_names(checked.model.automaton):
+            yield f"{each.place}: `{each.name}` has no title: people read “{each.told}”"
 
 
 def _guarded(checked: Checked) -> set[str] | None:

@@ -6,12 +6,12 @@ from collections.abc import Collection, Iterator
 
 from sequence_planner.automaton.automaton import Ability
 from sequence_planner.automaton.dependencies import is_along
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import CONFLICT, GIVEN_UP, OVERDUE, STILL, TRIED, Cause, silences
 from sequence_planner.controller.io.inputs import Inputs
 from sequence_planner.controller.recovery.stalls import StallDetector
 from sequence_planner.controller.views.station import AbilityView
-from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -147,7 +147,9 @@ class Abilities:
         automaton, state = self._execution.automaton, self._execution.state
         told = (each for each in sorted(names) if not is_along(automaton, each, names))
         known = {each: value for each in told if (value := state[each]) is not None}
-        return [value_text(automaton, each, value) for each, value in known.items()] or message("still.nothing")
+        return [sentences_of(automaton).tell_value(each, value) for each, value in known.items()] or message(
+            "still.nothing"
+        )
 
     def _failures(self, resources: Collection[str]) -> tuple[str, ...]:
         """The alarms by which it is told that devices of these resources do nothing."""

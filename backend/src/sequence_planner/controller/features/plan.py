@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import LEFT_OUT, LOCAL, NO_PLAN, PLANNER, UNDECIDED, Cause, silences
 from sequence_planner.controller.recovery.explain import ConditionContext, waits_for
@@ -25,7 +26,7 @@ from sequence_planner.execution.plan_tracker import PlannedStart, Replacement, f
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
 from sequence_planner.language.printer import print_expression
 from sequence_planner.planning.problem import Contract, Plan, PlanAnswer, Verdict
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import Message, message, waits_in_one
 
 
 class LivePlan:
@@ -101,7 +102,7 @@ class LivePlan:
         ability = self._execution.automaton.abilities[step.ability]
         due = expected.get(step.number)
         replacement = self._replaced[0]
-        waiting = (
+        waits = (
             waits_for(self._execution, step.ability, self._around.feeds, self._around.guards().get(step.ability))
             if status is StepStatus.NEXT
             else []
@@ -118,8 +119,9 @@ class LivePlan:
             expected_start=due.start if due and step.started is None else None,
             expected_end=due.end if due else None,
             new=replacement is not None and step.number in replacement.new,
-            waits_for=[*waiting],
-            waits_for_messages=waiting,
+            waits_for=[*waits],
+            waits_for_messages=waits,
+            sentence=waits_in_one(waits),
         )
 
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
@@ -233,6 +235,7 @@ class Operations:
         answer, active = execution.plan.answer, execution.active
         left_out = frozenset[str]() if answer is None else active.intersection(answer.left_out)
         jobs, automaton = execution.conduct.jobs, execution.automaton
+        sentences = sentences_of(automaton)
         asking = {name: job.id for job in jobs.under_way for name in automaton.work_masters[job.work_master].operations}
         views = {
             operation.name: OperationView(
@@ -242,6 +245,9 @@ class Operations:
                 completed=self._completed[operation.name],
                 goal=self._conditions[operation.name][0],
                 precondition=self._conditions[operation.name][1],
+                sentence=sentences.tell_operation(
+                    operation, execution.state, *self._conditions[operation.name], active=operation.name in active
+                ),
                 left_out=operation.name in left_out,
                 repeat=operation.repeat,
                 for_jobs=operation.name in automaton.job_operations,

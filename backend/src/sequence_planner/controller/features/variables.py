@@ -8,8 +8,8 @@ from pydantic import JsonValue, ValidationError
 
 from sequence_planner.automaton.automaton import Ability, Kind, reads, target
 from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.views.station import BeliefView, VariableKind, VariableView
-from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import CalledOff, Confirmed, Corrected, Heard, ModeChanged, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -120,7 +120,9 @@ class Beliefs:
         self._beliefs[target(action)] = BeliefView(
             writer=ability.name,
             at=now.epoch,
-            evidence=[value_text(self._automaton, name, value) for name, value in genuine if value is not None],
+            evidence=[
+                sentences_of(self._automaton).write_value(name, value) for name, value in genuine if value is not None
+            ],
             unconfirmed_since=now.epoch if forced else self._doubt(action),
         )
 

@@ -15,19 +15,19 @@ from sequence_planner.analysis.mutual_exclusion import NeverTogether, Pair, find
 from sequence_planner.analysis.store import key, read, write
 from sequence_planner.automaton.automaton import Automaton, Effect, Kind, State, target
 from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import CONTRADICTION, UNDECIDED_OUTPUTS, Cause
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.station import QuestionView, UndecidedOutputView
-from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Value
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import Message, Sentence, message
 
 # Where what the station believes does not fit what is measured, and what else could be true.
 #
@@ -148,14 +148,19 @@ def _last_first(automaton: Automaton, names: Iterable[str]) -> list[str]:
 def _because(automaton: Automaton, state: State, names: Iterable[str]) -> Message:
     """That the belief in some of `names` does not go with what the others are measured to be."""
     told = set(names)
-    believed: list[str] = []
-    measured: list[str] = []
+    believed: list[tuple[str, Value]] = []
+    measured: list[tuple[str, Value]] = []
     for name in (each for each in automaton.variables if each in told):
         value = state[name]
         if value is not None:
             kind = automaton.variables[name].kind
-            (believed if kind is Kind.ESTIMATED else measured).append(value_text(automaton, name, value))
-    return message("belief.never", believed=" and ".join(believed), measured=" and ".join(measured))
+            (believed if kind is Kind.ESTIMATED else measured).append((name, value))
+    return message("belief.never", believed=_all_so(automaton, believed), measured=_all_so(automaton, measured))
+
+
+def _all_so(automaton: Automaton, values: list[tuple[str, Value]]) -> Sentence:
+    said = sentences_of(automaton)
+    return said.tell_values(values, " and ".join(said.write_value(name, value) for name, value in values))
 
 
 def _different(hypotheses: Iterable[Hypothesis]) -> tuple[Hypothesis, ...]:
@@ -307,7 +312,8 @@ def _reaction(automaton: Automaton, effect: Effect, state: State) -> Message | N
         unknown = sorted(n for n in read_variables(automaton, (effect.guard,)) if state[n] is None)
         return message("reacts.may", resource=effect.resource, variables=" and ".join(unknown))
     said = [
-        message("reacts.changes", variable=n) if v is None else value_text(automaton, n, v) for n, v in changes.items()
+        message("reacts.changes", variable=n) if v is None else sentences_of(automaton).tell_value(n, v)
+        for n, v in changes.items()
     ]
     return message("reacts.does", resource=effect.resource, changes=said)
 

@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.dependencies import looked_at, read_variables
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.tick import record_activity, supervised_start, update_operations
 from sequence_planner.controller.commands.command import CommandRefused, GivenValue, answers, handles
 from sequence_planner.controller.commands.queries import AskCorrection
@@ -20,7 +21,7 @@ from sequence_planner.controller.recovery.explain import TellsBelief
 from sequence_planner.controller.recovery.safe_state import leaves
 from sequence_planner.controller.views.details import CorrectedView, CorrectionPreview
 from sequence_planner.controller.views.station import LastCorrectionView, SpecificationView
-from sequence_planner.controller.views.wording import correcting_refused, hint_of, plan_preview, value_text
+from sequence_planner.controller.views.wording import correcting_refused, hint_of, plan_preview
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import Heard
@@ -175,7 +176,7 @@ class Corrections:
             if value is None:
                 yield message("value.unknown", name=measured)
             else:
-                yield value_text(automaton, measured, value)
+                yield sentences_of(automaton).write_value(measured, value)
 
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""

@@ -9,11 +9,11 @@ from typing import Protocol
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
 from sequence_planner.automaton.dependencies import read_variables
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.lifting.wording import expansion, phrase, untrue, wording_of
 from sequence_planner.automaton.tick import effect_writes, reverts, start, supervised_start, synchronise
 from sequence_planner.controller.views.details import ChangerView, ConditionView, InvolvedView
 from sequence_planner.controller.views.station import BeliefView
-from sequence_planner.controller.views.wording import value_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import OperatorPlan
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
@@ -23,13 +23,14 @@ from sequence_planner.language.syntax import (
     Assignment,
     Constant,
     Expression,
+    Not,
     conjunction,
     variables,
 )
 from sequence_planner.language.types import Value
 from sequence_planner.planning.recovery.proposals import all_equal
 from sequence_planner.synthesis.guards import SupervisorGuard
-from sequence_planner.texts.message import Item, Message, as_it_was, message
+from sequence_planner.texts.message import Item, Message, Sentence, as_it_was, message, waits_in_one
 
 # All that keeps an ability from starting now, each piece with what it takes to be over.
 
@@ -121,8 +122,20 @@ def lacking(execution: Executor, condition: Expression, feeds: Mapping[str, str]
     for part in wording_of(execution.automaton).lacking(condition, execution.state):
         unknown = evaluate(part.condition, execution.state) is None
         topics = awaited(execution, part.condition, feeds) if unknown else []
-        text = message("waits.message", topics=", ".join(topics)) if topics else as_it_was(phrase(part))
+        if topics:
+            text = message("waits.message", topics=", ".join(topics))
+        else:
+            said = sentences_of(execution.automaton).tell_missing(part.condition, execution.state, phrase(part))
+            text = message("waits.condition", condition=said)
         yield BlockingCondition(HindranceKind.WRITTEN, text, part.condition, expansion([part], execution.state))
+
+
+def goal_holds(execution: Executor, goal: Expression) -> BlockingCondition:
+    """Say that a goal holds, where it must not."""
+    undone, words = Not(goal), wording_of(execution.automaton)
+    said = sentences_of(execution.automaton).tell_so([undone], words.in_words(undone))
+    text = message("waits.goal-holds", condition=said)
+    return BlockingCondition(HindranceKind.WRITTEN, text, undone, expansion(words.told_parts(undone), execution.state))
 
 
 def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> list[str]:
@@ -156,11 +169,13 @@ def _unsafe(execution: Executor, ability: Ability, after: State, guard: Supervis
         causes += [message("waits.rest")] if guard.rest else []
         said = TRUE if guard.expression is None else guard.expression
         if undone := list(wording_of(execution.automaton).lacking(said, execution.state)):
-            text = message("waits.sake", condition=phrase(*undone), causes=causes)
             condition = conjunction(*(part.condition for part in undone))
+            lacks = sentences_of(execution.automaton).tell_missing(condition, execution.state, phrase(*undone))
+            text = message("waits.sake", condition=lacks, causes=causes)
             return BlockingCondition(kind, text, condition, expansion(undone, execution.state))
         if guard.expression is None and (nearest := _nearest(execution, ability)) is not None:
-            where = message("waits.nearest", condition=wording_of(execution.automaton).in_words(nearest))
+            words = wording_of(execution.automaton).in_words(nearest)
+            where = message("waits.nearest", condition=sentences_of(execution.automaton).tell_so([nearest], words))
             return BlockingCondition(kind, message("waits.sake", condition=where, causes=causes), nearest)
     for specification in execution.automaton.specifications.values():
         if holds(specification.forbidden, after):
@@ -305,7 +320,12 @@ class Involving:
         condition, text = hindrance.expression, hindrance.text
         involved = [] if condition is None else list(self._involved_in(condition))
         return ConditionView(
-            kind=str(hindrance.kind), text=text, text_message=text, expanded=hindrance.expanded, involved=involved
+            kind=str(hindrance.kind),
+            text=text,
+            text_message=text,
+            expanded=hindrance.expanded,
+            involved=involved,
+            sentence=waits_in_one([text]),
         )
 
     def _involved_in(self, condition: Expression) -> Iterator[InvolvedView]:
@@ -398,7 +418,7 @@ def right_moment(execution: Executor) -> Message:
     return message("waits.right-moment-taken")
 
 
-def _before(execution: Executor) -> Iterator[str]:
+def _before(execution: Executor) -> Iterator[Sentence]:
     """Yield what has still to happen, of what the plan has before its next start."""
     automaton, state, (_, ticks) = execution.automaton, execution.state, execution.plan.order.rest()
     effects = {effect.name: effect for effect in automaton.effects}
@@ -406,7 +426,7 @@ def _before(execution: Executor) -> Iterator[str]:
         for name in tick.effects:
             for variable, value in (effect_writes(effects[name], state) or {}).items():
                 if state[variable] != value:
-                    yield value_text(automaton, variable, value)
+                    yield sentences_of(automaton).tell_value(variable, value)
         if tick.starts:
             return
 

@@ -16,9 +16,9 @@ from typing import Final
 from pydantic import JsonValue
 
 from sequence_planner.automaton.automaton import Ability, Kind, State
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.reactions import Reactions
 from sequence_planner.controller.alarms.kinds import BY_HAND, Cause
-from sequence_planner.controller.views.wording import value_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -90,9 +90,10 @@ class ByHand:
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """One cause of an alarm for each resource that was last moved by hand."""
         automaton = self._execution.automaton
+        said = sentences_of(automaton)
         for moved in self.notices(moment.monotonic):
             values = [
-                message("by-hand.value", value=value_text(automaton, name, after), before=print_value(before))
+                message("by-hand.value", value=said.tell_value(name, after), before=print_value(before))
                 for name, (before, after) in moved.values.items()
             ]
             resource = automaton.resources.get(moved.resource, moved.resource)

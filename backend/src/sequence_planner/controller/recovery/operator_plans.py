@@ -9,7 +9,7 @@ from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.recovery.explain import idle_since, waits_for
 from sequence_planner.controller.views.execution import last_operator_plan_view, operator_plan_view
-from sequence_planner.controller.views.wording import end_text, ended_text, title_text
+from sequence_planner.controller.views.wording import end_sentence, ended_text, title_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode
@@ -61,7 +61,7 @@ class OperatorPlans:
             conditions: Argument = waits or message("errand-waits.nothing-known")
             what = message("errand-waits.start", ability=title, seconds=START_WITHIN, conditions=conditions)
         else:
-            condition = end_text(operator_plan.goal, operator_plan.into_safe)
+            condition = end_sentence(execution.automaton, operator_plan.goal, operator_plan.into_safe)
             inside = [message("errand-waits.safe")] if operator_plan.into_safe else []
             what = message(
                 "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]

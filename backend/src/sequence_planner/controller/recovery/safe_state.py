@@ -9,14 +9,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import UNSAFE_STATE, Cause
 from sequence_planner.controller.views.station import DifferenceView, SpecificationView, WayBackStepView, WayBackView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
-from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.syntax import Comparison, Constant, Expression, Not, Variable, variables
+from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Circumstances, RecoveryPath, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import deciding, violated
@@ -219,7 +219,7 @@ class SafeStateMonitor:
     def _by_itself(self, way: RecoveryPath) -> Message:
         automaton, state = self._execution.automaton, self._execution.state
         awaited = [
-            _printed(automaton, name, value)
+            sentences_of(automaton).tell_value(name, value)
             for name in automaton.names(Kind.MEASURED)
             if name in self._deciding and (value := way.end[name]) is not None and value != state[name]
         ]
@@ -242,18 +242,14 @@ class SafeStateMonitor:
 
 def _nearest(automaton: Automaton, differences: Iterable[SafeStateDifference]) -> Argument:
     parts = [
-        message("unsafe.difference", safe=_printed(automaton, each.name, each.safe), now=print_value(each.now))
+        message(
+            "unsafe.difference",
+            safe=sentences_of(automaton).tell_value(each.name, each.safe),
+            now=sentences_of(automaton).call_value(each.name, each.now),
+        )
         for each in differences
     ]
     return message("unsafe.nearest", differences=parts) if parts else ""
-
-
-def _printed(automaton: Automaton, name: str, value: Value) -> str:
-    """That the variable has this value, in the model's language."""
-    variable: Expression = Variable(name, automaton.variables[name].type)
-    if isinstance(value, bool):
-        return print_expression(variable if value else Not(variable))
-    return print_expression(Comparison("==", variable, Constant(value)))
 
 
 def _named(automaton: Automaton, specifications: Iterable[str]) -> list[Item]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.automaton import Operation
-from sequence_planner.automaton.lifting.wording import expansion, untrue, wording_of
+from sequence_planner.automaton.lifting.wording import untrue, wording_of
 from sequence_planner.controller.commands.command import CommandRefused, answers
 from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.planner_client import AIMED_WITHIN, AdvisorClient, aim
@@ -17,6 +17,7 @@ from sequence_planner.controller.recovery.explain import (
     ConditionContext,
     HindranceKind,
     Involving,
+    goal_holds,
     lacking,
     of_ability,
     of_station,
@@ -29,7 +30,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.syntax import Expression, Not, conjunction
+from sequence_planner.language.syntax import Expression, conjunction
 from sequence_planner.planning.recovery.request import GoalPlanRequest
 from sequence_planner.texts.message import Message, message, quoted
 
@@ -112,11 +113,7 @@ class WhyNot:
         elif operation.name in execution.conduct.done:
             yield BlockingCondition(HindranceKind.SERVICE, message("waits.reset"))
         if evaluate(operation.goal, execution.state) is True:
-            undone, words = Not(operation.goal), wording_of(execution.automaton)
-            text = message("waits.goal-holds", condition=words.in_words(undone))
-            yield BlockingCondition(
-                HindranceKind.WRITTEN, text, undone, expansion(words.told_parts(undone), execution.state)
-            )
+            yield goal_holds(execution, operation.goal)
 
     def _out_of_turn(self, operation: Operation) -> Iterable[BlockingCondition]:
         """Yield the sequences in which it is not its turn."""

@@ -343,6 +343,7 @@ class ConditionView(View):
     text_message: Message
     expanded: str | None
     involved: list[InvolvedView]
+    sentence: Message | None  # what it waits for, as a sentence
 
 
 class WhyNotView(View):

@@ -14,7 +14,7 @@ from sequence_planner.controller.views.station import (
     ServiceView,
     StationStanding,
 )
-from sequence_planner.controller.views.wording import end_text, ended_text, title_text
+from sequence_planner.controller.views.wording import end_message, end_text, ended_text, title_text
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import ExecutionState
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production, ServiceKind
@@ -94,6 +94,7 @@ def operator_plan_view(execution: Executor) -> OperatorPlanView | None:
         why=plan.why,
         since=plan.taken.epoch,
         ends=end_text(plan.goal, plan.into_safe),
+        ends_message=end_message(execution.automaton, plan.goal, plan.into_safe),
         into_safe=plan.into_safe,
         ability=plan.ability,
     )

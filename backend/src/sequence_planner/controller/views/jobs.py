@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.lifting.wording import phrase, wording_of
 from sequence_planner.controller.commands.tasks import TaskProblem, WaitingTask
 from sequence_planner.controller.recovery.explain import of_station
@@ -18,7 +19,7 @@ from sequence_planner.execution.plan_tracker import PlannedStart
 from sequence_planner.execution.timeouts import Late, overdue
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.language.syntax import Expression
-from sequence_planner.texts.message import Argument, Item, Message, as_it_was, message
+from sequence_planner.texts.message import Argument, Item, Message, Sentence, as_it_was, message, waits_in_one
 
 # In words, what keeps a job that is worked from going on: the one place where that is said.
 #
@@ -148,11 +149,11 @@ class _Running:
             for job, name in sorted(awaited):
                 yield message("waits.other-job", operation=operations[name].title, job=job)
 
-    def _lacking(self, condition: Expression) -> str:
+    def _lacking(self, condition: Expression) -> Sentence:
         """Say what of a condition does not hold, or all of it where that is not to be told."""
         wording = wording_of(self._automaton)
         undone = list(wording.lacking(condition, self._execution.state)) or wording.told_parts(condition)
-        return phrase(*undone)
+        return sentences_of(self._automaton).tell_missing(condition, self._execution.state, phrase(*undone))
 
     def _plan(self, moves: bool) -> Iterator[Message]:
         plan, titles = self._execution.plan, self._automaton.operations
@@ -190,7 +191,8 @@ class _Running:
         if not self._execution.plan.order.ahead:
             operations = self._automaton.operations
             for name in sorted(self._active):
-                goal = wording_of(self._automaton).in_words(operations[name].goal)
+                written = wording_of(self._automaton).in_words(operations[name].goal)
+                goal = sentences_of(self._automaton).tell_missing(operations[name].goal, self._execution.state, written)
                 yield message("waits.goal", operation=operations[name].title, goal=goal)
 
 
@@ -269,6 +271,7 @@ def _view(execution: Executor, jobs: Jobs, job: Job, around: Around | None) -> J
         ended=_epoch(job.ended),
         waits_for=[*waits],
         waits_for_messages=waits,
+        sentence=waits_in_one(waits),
         steps={name: _step(execution, jobs, job, name, eligible) for name in names},
     )
 

@@ -79,6 +79,7 @@ class OfferView(View):
     corrections: list[ValueChangeView]
     errand: PlanPreviewView | None
     ends: str | None  # null where nothing is carried out, or it is only a way into the safe states
+    ends_message: Message | None
     into_safe: bool
     operation: str | None
     needs_restart: bool

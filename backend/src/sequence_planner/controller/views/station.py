@@ -164,6 +164,7 @@ class JobView(View):
     ended: float | None
     waits_for: list[str]
     waits_for_messages: list[Message]
+    sentence: Message | None  # the same as one sentence
     steps: dict[str, JobStepView]
 
 
@@ -237,6 +238,7 @@ class OperatorPlanView(View):
     why: str
     since: float
     ends: str | None  # in the model's language; null where it is a way into the safe states and nothing else
+    ends_message: Message | None
     into_safe: bool
     ability: str | None
 
@@ -529,6 +531,7 @@ class OperationView(View):
     completed: int
     goal: str
     precondition: str
+    sentence: Message | None  # what it waits for, or until when it is active: what of that is still missing
     left_out: bool  # active, but not part of the plan, because not all goals can be planned together
     repeat: bool  # it becomes active again after it was completed, whenever its precondition holds
     for_jobs: bool
@@ -555,6 +558,7 @@ class PlanStepView(View):
     new: bool  # the plan that was replaced last did not have it
     waits_for: list[str]  # for the next step: what keeps it from starting, in the model's language
     waits_for_messages: list[Message]
+    sentence: Message | None  # the same as one sentence
 
 
 class DiagnosisView(View):

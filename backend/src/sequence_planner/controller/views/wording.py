@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.dependencies import is_along
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
 from sequence_planner.controller.views.proposals import (
     EffortView,
@@ -20,12 +21,11 @@ from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.resolver import NameScope, resolve_predicate, suggestion
-from sequence_planner.language.syntax import TRUE, Comparison, Constant, Expression, ExpressionError, Not, Variable
-from sequence_planner.language.types import Value
+from sequence_planner.language.syntax import TRUE, Expression, ExpressionError
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
 from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal, ValueChange
-from sequence_planner.texts.message import Argument, Message, as_it_was, message
+from sequence_planner.texts.message import Argument, Message, Sentence, as_it_was, message
 
 # Offers in the words of the people they are shown to.
 
@@ -47,6 +47,7 @@ def offer_view(
         corrections=_changes(offer.corrections),
         errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan),
         ends=None if offer.operator_plan is None else end_text(offer.goal, offer.into_safe),
+        ends_message=None if offer.operator_plan is None else end_message(automaton, offer.goal, offer.into_safe),
         into_safe=offer.into_safe,
         operation=offer.operation,
         needs_restart=needs_restart(offer),
@@ -75,6 +76,21 @@ def offer_view(
 def end_text(goal: Expression, into_safe: bool) -> str | None:
     """By what it is known that an operator plan has come to its end, beside that it is inside the safe states."""
     return None if into_safe and goal == TRUE else print_expression(goal)
+
+
+def end_sentence(automaton: Automaton, goal: Expression, into_safe: bool) -> Sentence | None:
+    """The same for people."""
+    return None if into_safe and goal == TRUE else _said(automaton, goal)
+
+
+def end_message(automaton: Automaton, goal: Expression, into_safe: bool) -> Message | None:
+    """The same as a message."""
+    said = end_sentence(automaton, goal, into_safe)
+    return None if said is None else message("waits.condition", condition=said)
+
+
+def _said(automaton: Automaton, condition: Expression) -> Sentence:
+    return sentences_of(automaton).tell_so([condition], print_expression(condition))
 
 
 def needs_restart(offer: RecoveryProposal) -> bool:
@@ -121,24 +137,26 @@ def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
     if returning:
         yield message("offer.return", titles=returning)
     if offer.physical:
-        changes = _each(told(automaton, offer.physical), "offer.is")
+        changes = _so(automaton, told(automaton, offer.physical))
         if offer.records:
-            yield message("offer.see-to-so", changes=changes, records=_each(offer.records, "offer.counts-as"))
+            yield message(
+                "offer.see-to-so", changes=changes, records=_each(automaton, offer.records, "offer.counts-as")
+            )
         else:
             yield message("offer.see-to", changes=changes)
     if offer.only_if_checked:
-        yield message("list", items=_each(offer.corrections, "offer.is"))
+        yield message("list", items=_so(automaton, offer.corrections))
     elif offer.corrections:
-        yield message("offer.correct", changes=_each(offer.corrections, "offer.to"))
+        yield message("offer.correct", changes=_each(automaton, offer.corrections, "offer.to"))
     if offer.operation is not None:
         yield message("offer.reset", operation=automaton.operations[offer.operation].title)
     elif offer.kind is OfferKind.GOAL:
-        yield message("offer.goal", goal=print_expression(offer.goal))
+        yield message("offer.goal", goal=_said(automaton, offer.goal))
     elif offer.operator_plan is not None and offer.operator_plan.starts:
         yield message("offer.start", titles=[automaton.abilities[name].title for _, name in offer.operator_plan.starts])
     elif offer.operator_plan is not None:
         safe = [message("offer.safe")] if offer.into_safe else []
-        condition = end_text(offer.goal, offer.into_safe)
+        condition = end_sentence(automaton, offer.goal, offer.into_safe)
         yield message("offer.wait", conditions=[*safe, *([condition] if condition else [])])
 
 
@@ -153,8 +171,23 @@ def _as_new(change: ValueChange, changes: Iterable[ValueChange]) -> list[str]:
     return [each.name for each in changes if each.new == change.new]
 
 
-def _each(changes: Iterable[ValueChange], what: str) -> list[Message]:
-    return [message(what, name=change.name, value=print_value(change.new)) for change in changes]
+def _each(automaton: Automaton, changes: Iterable[ValueChange], what: str) -> list[Message]:
+    said = sentences_of(automaton)
+    return [
+        message(what, name=said.call_variable(each.name), value=said.call_value(each.name, each.new))
+        for each in changes
+    ]
+
+
+def _so(automaton: Automaton, changes: Iterable[ValueChange]) -> list[Message]:
+    said = sentences_of(automaton)
+    return [
+        message(
+            "offer.so",
+            condition=said.tell_values([(each.name, each.new)], f"{each.name} is {print_value(each.new)}"),
+        )
+        for each in changes
+    ]
 
 
 def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
@@ -264,15 +297,7 @@ def read_predicate(automaton: Automaton, text: str) -> Expression:
         raise CommandRefused("bad-predicate", detail, 422, place=place) from None
 
 
-# That a variable has a value, in the model's language.
-
-
-def value_text(automaton: Automaton, name: str, value: Value) -> str:
-    """As in `robot.pose == home`, `tool_is_idle` or `not tool_is_idle`."""
-    variable: Expression = Variable(name, automaton.types[name])
-    if isinstance(value, bool):
-        return print_expression(variable if value else Not(variable))
-    return print_expression(Comparison("==", variable, Constant(value)))
+# How a sentence ends that says that there is no such name.
 
 
 def hint_of(word: str, known: Iterable[str], otherwise: str = ".") -> Message:

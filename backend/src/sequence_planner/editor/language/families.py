@@ -15,8 +15,16 @@ from sequence_planner.automaton.shorthand import parts_of, written_in, written_p
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import ENDS, STEPS
+from sequence_planner.language.shorthand.titles import in_language
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
-from sequence_planner.model.documents import AbilityDocument, Parameters, PredicateDocument, VariableDocument
+from sequence_planner.model.documents import (
+    AbilityDocument,
+    Parameters,
+    PredicateDocument,
+    VariableDocument,
+    Words,
+    words_of,
+)
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
@@ -124,7 +132,7 @@ def _short(station: Station, declarations: Declarations) -> Iterator[Family]:
         full = str(name) if resource is None else f"{resource}.{name}"
         if full in vocabulary.predicates:
             arguments = tuple(map(str, parts_of(document)[0].values()))
-            title = str(document.title) if isinstance(document, PredicateDocument) and document.title else None
+            title = _in_english(document.title) if isinstance(document, PredicateDocument) else None
             yield Family(full, NameKind.PREDICATE, BOOLEAN, name.place, arguments, owner=resource, title=title)
     relations = {resource: document.relations for resource, document in station.resources.items()}
     for full, name, relation in written_in(written.relations, relations):
@@ -178,8 +186,14 @@ def _variable(
     declared = declarations.variables.get(first)
     if declared is not None and declared.kind is kind and declared.resource == resource:
         yield Family(
-            full, family.kind, declared.type, name.place, arguments, "", True, resource, initial=declared.initial
-        )
+            full, family.kind, declared.type, name.place, arguments, "", True, resource, declared.initial,
+            _in_english(document.title or document.phrase),
+        )  # fmt: skip
+
+
+def _in_english(text: Words | None) -> str | None:
+    """A text for people as engineers read it."""
+    return in_language(words_of(text), "en")
 
 
 def _flags(resource: str, name: SourceText, document: AbilityDocument, arguments: tuple[str, ...]) -> Iterator[Family]:

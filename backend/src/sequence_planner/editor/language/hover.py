@@ -21,6 +21,7 @@ from sequence_planner.language.resolver import (
     resolve_formula,
     resolve_predicate,
 )
+from sequence_planner.language.shorthand.titles import in_language
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.syntax import (
     And,
@@ -188,12 +189,17 @@ class _Hovering:
             if word in declared.values and (type_ is None or set(type_.domain) <= set(declared.values)):
                 place = self._lexicon.within(values[declared.values.index(word)].place)
                 return Hover(
-                    span.start, span.end, word, NameKind.VALUE, word, type=declared, title=name, place=place,
-                    part=f"value:{name}.{word}",
+                    span.start, span.end, word, NameKind.VALUE, word, type=declared,
+                    title=self._called(name, declared, word), place=place, part=f"value:{name}.{word}",
                 )  # fmt: skip
         if type_ is not None and not isinstance(type_, EnumerationType) and contains(type_, _read(word)):
             return Hover(span.start, span.end, word, NameKind.VALUE, word, type=type_)
         return None
+
+    def _called(self, enumeration: str, type_: EnumerationType, value: str) -> str:
+        """The enumeration of a value, and what people are told in its place."""
+        said = in_language(self._lexicon.declarations.titles.of_value(type_, value), "en")
+        return enumeration if said is None else f"{enumeration}: {said}"
 
     def _enumeration(self, span: Span, word: str) -> Hover | None:
         for name in self._lexicon.station.station.enumerations:

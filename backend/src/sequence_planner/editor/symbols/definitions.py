@@ -210,6 +210,7 @@ class _Walk:
                 self._add(value_of(str(name), str(value)), listed.to(index), value, declares=True)
             for index, each in enumerate(items(entry(values, "includes"))):
                 self._naming.note_domain(each, where.to("includes", index))
+            self._value_titles(str(name), entry(values, "titles"), where.to("titles"))
         self._sets(content, top)
         self._relations(None, content, top)
         self._maps(None, content, top)
@@ -265,7 +266,7 @@ class _Walk:
             at = top.to("predicates", name).within(f"predicate {part.full}", around)
             self._add(part, at, name, declares=True)
             self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
-            self._title(entry(document, "title"), at.to("title"))
+            self._words(entry(document, "title"), at.to("title"))
             self._read.condition(document, at)
             self._read.condition(entry(document, "when"), at.to("when"))
 
@@ -310,6 +311,10 @@ class _Walk:
             self._parameters(part.full, entry(document, "for"), at.to("for"))
             enumeration = self._naming.declared.enumeration(resource, str(name))
             self._naming.note_value(enumeration, at.to("initial"), entry(document, "initial"))
+            self._value_titles(enumeration, entry(document, "titles"), at.to("titles"))
+            around = at.within(at.owner, TextContext(resource, part.full, parameters(entry(document, "for"))))
+            for key in ("title", "phrase"):
+                self._words(entry(document, key), around.to(key))
 
     def _ability(self, resource: str, name: SourceText, document: object, where: Where) -> None:
         part = ModelPart("ability", resource, str(name))
@@ -442,6 +447,17 @@ class _Walk:
     def _enumeration(self, text: SourceText, where: Where) -> None:
         if str(text).isidentifier() and text != "bool":
             self._add(self._naming.declared.domain(str(text)), where, text)
+
+    def _value_titles(self, enumeration: str | None, written: object, where: Where) -> None:
+        """Words for values, by these."""
+        for value, _ in pairs(written):
+            self._naming.note_value(enumeration, where.to(value), value)
+
+    def _words(self, written: object, where: Where) -> None:
+        """A text for people, or one for each language."""
+        self._title(written, where)
+        for language, text in pairs(written):
+            self._title(text, where.to(language))
 
     def _title(self, text: object, where: Where) -> None:
         """A text for people, in which a parameter stands in braces."""

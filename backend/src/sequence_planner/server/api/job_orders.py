@@ -54,7 +54,7 @@ from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.orders import OrderService
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import Message, message, waits_in_one
 
 # A job order as it is answered over REST.
 
@@ -98,6 +98,7 @@ class OrderAnswer(AnswerModel):
     ended_at = iso("ended", optional=True)
     waits_for: list[str]
     waits_for_messages: list[Message]
+    sentence: Message | None  # what the station waits for with it, as one sentence
 
 
 _KEPT = OrderAnswer.model_fields.keys() & JobOrder.model_fields.keys()
@@ -118,6 +119,7 @@ def all_answered(orders: Sequence[JobOrder], desk: OrderService) -> list[OrderAn
             allowed=[] if each.removed is not None else list(each.allowed),
             waits_for=[*waits[each.id]],
             waits_for_messages=waits[each.id],
+            sentence=waits_in_one(waits[each.id]),
         )
         for each in orders
     ]

@@ -86,7 +86,6 @@ export const frame = {
 	noOperation: 'no operation',
 	next: 'Next',
 	more: (n: number): string => `and ${n} more`,
-	waitsFor: 'waits for',
 	mayStart: 'may start now',
 	/** What is said in the place of the next start where there is none. */
 	nothingNext: {

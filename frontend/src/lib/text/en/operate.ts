@@ -84,13 +84,6 @@ export const operate = {
 			plan: 'Plan',
 			order: 'Order'
 		} as Readonly<Record<string, string>>,
-		untilExecuting: (title: string): string => `waits until ${title} is executing`,
-		untilNotExecuting: (title: string): string => `waits until ${title} is not executing`,
-		untilFinished: (title: string): string => `waits until ${title} has finished`,
-		untilIs: (name: string, values: string): string => `waits until ${name} is ${values}`,
-		untilChanges: (name: string): string => `waits until ${name} changes, together with others`,
-		or: ' or ',
-		waitsFor: (text: string): string => `waits for ${text}`,
 		itIs: (value: string): string => `It is ${value}`,
 		itIsSince: (value: string, ago: string): string => `It is ${value}, since ${ago}`,
 		heardOn: (topic: string): string => `heard on ${topic}`,
@@ -111,8 +104,7 @@ export const operate = {
 	operations: {
 		title: 'Operations',
 		activeOf: (active: number, all: number): string => `${active} of ${all} active`,
-		activeFor: (duration: string): string => `active ${duration}, until`,
-		waitsUntil: 'waits until',
+		activeFor: (duration: string): string => `active ${duration},`,
 		completed: (n: number): string => `${n}× completed`,
 		once: 'done once: active again after a reset',
 		out: 'out of service',

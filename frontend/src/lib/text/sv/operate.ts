@@ -83,13 +83,6 @@ export const operate: Text['operate'] = {
 			plan: 'Plan',
 			order: 'Order'
 		},
-		untilExecuting: (title) => `väntar tills ${title} pågår`,
-		untilNotExecuting: (title) => `väntar tills ${title} inte pågår`,
-		untilFinished: (title) => `väntar tills ${title} är klart`,
-		untilIs: (name, values) => `väntar tills ${name} är ${values}`,
-		untilChanges: (name) => `väntar tills ${name} ändras, tillsammans med annat`,
-		or: ' eller ',
-		waitsFor: (text) => `väntar på ${text}`,
 		itIs: (value) => `Det är ${value}`,
 		itIsSince: (value, ago) => `Det är ${value}, sedan ${ago}`,
 		heardOn: (topic) => `hörs på ${topic}`,
@@ -110,8 +103,7 @@ export const operate: Text['operate'] = {
 	operations: {
 		title: 'Operationer',
 		activeOf: (active, all) => `${active} av ${all} aktiva`,
-		activeFor: (duration) => `aktiv ${duration}, tills`,
-		waitsUntil: 'väntar tills',
+		activeFor: (duration) => `aktiv ${duration},`,
 		completed: (n) => `${n}× slutförd`,
 		once: 'utförs en gång: aktiv igen efter återställning',
 		out: 'ur drift',

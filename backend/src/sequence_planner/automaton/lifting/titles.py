@@ -1,0 +1,140 @@
+"""Reads what a model calls its parts when it speaks to people."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+
+from sequence_planner.automaton.automaton import Kind
+from sequence_planner.automaton.findings import Findings, without_arguments
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.shorthand.titles import Titles, VariableTitles, Words
+from sequence_planner.language.types import BOOLEAN, EnumerationType, Type, Value
+from sequence_planner.model import documents
+from sequence_planner.model.loader import Station
+from sequence_planner.model.source import SourceText
+
+VALUE = "value"  # stands in a phrase for what the variable is
+_KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
+_IN_BRACES = re.compile(r"\{([^{}]*)\}")
+
+
+class TitleReader:
+    """Reads the titles of `station`, whose names have these types; what is wrong is noted."""
+
+    def __init__(
+        self, station: Station, enumerations: Mapping[str, EnumerationType], types: Mapping[str, Type], found: Findings
+    ) -> None:
+        self._station = station
+        self._enumerations = enumerations
+        self._types = {without_arguments(name): type_ for name, type_ in types.items()}
+        self._findings = found
+
+    def read_titles(self) -> Titles:
+        """Read all of them."""
+        return Titles(dict(self._variables()), self._values(), self._sets(), dict(self._predicates()))
+
+    def _variables(self) -> Iterator[tuple[str, VariableTitles]]:
+        sections: list[tuple[str | None, Mapping[SourceText, documents.VariableDocument]]]
+        sections = [(None, self._station.station.estimated)]
+        for resource, whole in self._station.resources.items():
+            sections += [(resource, getattr(whole, kind.value)) for kind in _KINDS]
+        for owner, section in sections:
+            for name, document in section.items():
+                full = str(name) if owner is None else f"{owner}.{name}"
+                if document.title is not None or document.phrase is not None or document.titles:
+                    self._check_words(document.title, document.each)
+                    self._check_words(document.phrase, {*document.each, VALUE})
+                    self._check_phrase(document.phrase)
+                    values = self._read_values(document.titles, self._types.get(full), full)
+                    yield (
+                        full,
+                        VariableTitles(documents.words_of(document.title), documents.words_of(document.phrase), values),
+                    )
+
+    def _values(self) -> dict[EnumerationType, Mapping[Value, Words]]:
+        """The titles of each enumeration's values: its own, then those of what it includes."""
+        found: dict[EnumerationType, Mapping[Value, Words]] = {}
+        for name in self._station.station.enumerations:
+            document, type_ = self._station.station.enumerations[name], self._enumerations.get(str(name))
+            if isinstance(document, documents.EnumerationDocument) and type_ is not None:
+                self._read_values(document.titles, type_, str(name))
+                found[type_] = {**found.get(type_, {}), **self._included(str(name), ())}
+        for name, chosen in self._station.station.sets.items():
+            if str(name) in self._enumerations:
+                found.setdefault(self._enumerations[str(name)], self._of_domain(str(chosen.of), ()))
+        return {type_: titles for type_, titles in found.items() if titles}
+
+    def _of_domain(self, name: str, around: tuple[str, ...]) -> Mapping[Value, Words]:
+        """The titles of the values of an enumeration, or of that which a set is of."""
+        sets = {str(each): str(document.of) for each, document in self._station.station.sets.items()}
+        return (
+            self._of_domain(sets[name], (*around, name))
+            if name in sets and name not in around
+            else self._included(name, ())
+        )
+
+    def _included(self, name: str, around: tuple[str, ...]) -> dict[Value, Words]:
+        document = {str(each): one for each, one in self._station.station.enumerations.items()}.get(name)
+        if not isinstance(document, documents.EnumerationDocument) or name in around:
+            return {}
+        found: dict[Value, Words] = {}
+        for each in document.includes:
+            found |= {**self._included(str(each), (*around, name)), **found}
+        return found | {str(value): documents.words_of(text) for value, text in document.titles.items()}
+
+    def _sets(self) -> dict[frozenset[Value], Words]:
+        found: dict[frozenset[Value], Words] = {}
+        for name, document in self._station.station.sets.items():
+            if document.title is not None and str(name) in self._enumerations:
+                self._check_words(document.title, {})
+                found.setdefault(frozenset(self._enumerations[str(name)].values), documents.words_of(document.title))
+        return found
+
+    def _predicates(self) -> Iterator[tuple[str, Words]]:
+        sections = [("", self._station.station.predicates)]
+        sections += [(f"{resource}.", whole.predicates) for resource, whole in self._station.resources.items()]
+        for prefix, section in sections:
+            for name, document in section.items():
+                if isinstance(document, documents.PredicateDocument) and document.title is not None:
+                    self._check_words(document.title, document.parameters)
+                    yield f"{prefix}{name}", documents.words_of(document.title)
+
+    # What is wrong with them
+
+    def _read_values(self, titles: documents.ValueTitles, type_: Type | None, owner: str) -> dict[Value, Words]:
+        """The words for values of `type_`, each of which has others in each language."""
+        if type_ is None:
+            return {}
+        domain = {_written(type_, value): value for value in type_.domain}
+        found: dict[Value, Words] = {}
+        told: dict[tuple[str, str], SourceText] = {}
+        for key, text in titles.items():
+            if str(key) not in domain:
+                near = suggestion(str(key), domain)
+                self._findings.add(key, f"`{key}` is no value of `{owner}`, which ranges over {type_}{near}")
+                continue
+            found[domain[str(key)]] = documents.words_of(text)
+            for language, said in documents.by_language(text).items():
+                before = told.setdefault((language, said.strip().casefold()), key)
+                if before is not key:
+                    message = f"`{said}` is what `{before}` is called already: nobody could tell them apart"
+                    self._findings.add(said, f"{message}; write other words for one of them")
+        return found
+
+    def _check_phrase(self, phrase: documents.Words | None) -> None:
+        for said in documents.by_language(phrase).values():
+            if f"{{{VALUE}}}" not in said:
+                message = f"a phrase has a place for the value: write `{{{VALUE}}}` in it"
+                self._findings.add(said, f"{message}, as in `the robot is at {{{VALUE}}}`")
+
+    def _check_words(self, text: documents.Words | None, known: Collection[str]) -> None:
+        for said in documents.by_language(text).values():
+            for match in _IN_BRACES.finditer(said):
+                if match[1] not in known:
+                    near = suggestion(match[1], map(str, known))
+                    self._findings.add(said, f"`{match[0]}` stands for no parameter here{near}")
+
+
+def _written(type_: Type, value: Value) -> str:
+    return str(value).lower() if type_ == BOOLEAN else str(value)
