@@ -8,6 +8,7 @@ test.use({ shared: 'staffed', byItself: false, people: 'everybody' });
 
 test('pages, variables and acts are found by a few letters, by keyboard alone', async ({ browse }) => {
 	const page = await browse(EVA, '/');
+	await expect(page.getByTestId('strip')).toHaveAttribute('data-live', 'true');
 	await page.keyboard.press('Control+k');
 	const palette = page.getByRole('dialog', { name: 'Search or act' });
 	const typed = palette.getByRole('combobox');
@@ -63,6 +64,7 @@ test('the rail is made slim, which the browser remembers, and the keys are told'
 	expect(await findings(page)).toEqual([]);
 	await page.getByRole('button', { name: 'Expand' }).click();
 
+	await expect(page.getByTestId('strip')).toHaveAttribute('data-live', 'true');
 	await page.keyboard.press('?');
 	await expect(page.getByRole('dialog', { name: 'Keys' })).toContainText('Search or act');
 	await page.keyboard.press('Escape');

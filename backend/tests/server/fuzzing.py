@@ -100,8 +100,8 @@ def fuzz(
     seed: int = 1,
     without_edges: Collection[str] = (),
 ) -> Found:
-    """Try every operation as somebody with `role`, or as nobody, with so many drawn requests each beside the edges of all
-    but those `without_edges`.
+    """Try every operation as somebody with `role`, or as nobody, with so many drawn requests each beside the edges,
+    unless it is one of those `without_edges`.
     """
     config = schemathesis.Config.from_dict(
         {

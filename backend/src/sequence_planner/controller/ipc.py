@@ -19,7 +19,6 @@ from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 from sequence_planner.controller.commands.command import Command, CommandRefused, Query, TextPlace
 from sequence_planner.controller.commands.registry import AnyCommand, AnyQuery
 from sequence_planner.controller.views.details import NetworkView
-from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.process.unix_socket import listen_on
@@ -244,7 +243,7 @@ MOST_COMMANDS = 32  # of one peer, being carried out at the same time
 
 # Carries a command out; false where the journal does not have it yet.
 Handle = Callable[[Command], Awaitable[bool | None]]
-Answer = Callable[[Query[Any]], Awaitable[View]]
+Answer = Callable[[Query[Any]], Awaitable[DataModel]]
 
 
 @dataclass(eq=False)
@@ -259,7 +258,7 @@ class _Peer:
     asks: set[asyncio.Task[None]] = field(default_factory=set)
 
 
-async def _nothing_to_tell(ask: Query[Any]) -> View:
+async def _nothing_to_tell(ask: Query[Any]) -> DataModel:
     raise CommandRefused("preparing", message("refused.preparing.again"), 503)
 
 
@@ -452,7 +451,7 @@ async def _say(peer: _Peer, message: LinkMessage) -> None:
 # process may be started, killed and started again in any order.
 
 Heard = Reply | AnswerMessage
-Told = TypeVar("Told", bound=View)
+Told = TypeVar("Told", bound=DataModel)
 
 SILENCE = 2.0  # seconds without a view after which the controller counts as lost
 FIRST_WAIT, LONGEST_WAIT = 0.05, 1.0  # seconds between attempts to connect

@@ -37,8 +37,8 @@ from sequence_planner.controller.previous_run import as_it_ended, how_it_ended, 
 from sequence_planner.controller.restore import RestoredState
 from sequence_planner.controller.views.builder import Shown
 from sequence_planner.controller.views.details import NetworkView
-from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationIdentity, StationView
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.database import Database
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.journal.last_accepted import LastEnding, LastWord, last_word_file
@@ -317,7 +317,7 @@ class _Life:
         self._link.publish(view)
         return await self._lasting.settle(command, controller, before, audited)
 
-    async def _answer(self, query: Query[Any]) -> View:
+    async def _answer(self, query: Query[Any]) -> DataModel:
         """Return what is told only when somebody asks for it. Raises `CommandRefused`."""
         if self._preparation.controller is None:
             raise self._refusal()

@@ -25,7 +25,7 @@ from sequence_planner.mimic.views import (
     MimicTrack,
     MimicView,
 )
-from sequence_planner.model.documents import Words, by_language
+from sequence_planner.model.documents import Words, words_of
 from sequence_planner.model.mimic.documents import (
     MimicDocument,
     PartDocument,
@@ -77,7 +77,7 @@ class _Drawing:
             name=str(name),
             symbol=document.symbol,
             resource=None if resource is None else str(resource),
-            title=by_language(document.title) or ({"": name.replace("_", " ")} if resource is None else {}),
+            title=dict(words_of(document.title)) or ({"": name.replace("_", " ")} if resource is None else {}),
             box=box,
             texts=[
                 MimicText(text=self._text(each.say), when=tests)
@@ -139,7 +139,7 @@ class _Drawing:
                 if found[1] not in self._automaton.variables:
                     near = suggestion(found[1], self._automaton.variables)
                     self._findings.add(each, f"there is no variable `{found[1]}`{near}")
-        return by_language(words)
+        return dict(words_of(words))
 
     # Parts of a symbol.
 
@@ -161,7 +161,7 @@ class _Drawing:
         stops = [
             MimicStop(
                 value=str(value),
-                title=by_language(stop.title),
+                title=dict(words_of(stop.title)),
                 x=stop.at[0],
                 y=stop.at[1],
                 label=stop.label,
@@ -188,7 +188,7 @@ class _Drawing:
         if holds is None:
             return None
         box = _box(document.at, document.size)
-        return MimicSlot(box=box, title=by_language(document.title), symbol=document.symbol, holds=holds)
+        return MimicSlot(box=box, title=dict(words_of(document.title)), symbol=document.symbol, holds=holds)
 
     def _parts(self, document: PartDocument) -> list[MimicPart]:
         """The part; of an indexed variable one for each of its values."""
@@ -222,7 +222,7 @@ class _Drawing:
             parts.append(
                 MimicPart(
                     variable=name,
-                    title=by_language(document.title) if single else {},
+                    title=dict(words_of(document.title)) if single else {},
                     label=label,
                     label_x=x + beside[0],
                     label_y=y + beside[1],
