@@ -67,7 +67,10 @@ def test_where_it_is_used(editor: Editor, station: Path) -> None:
     others = editor.ask("textDocument/references", **asked, context={"includeDeclaration": False})
     assert len(every) == len(others) + 1
     assert {named(editor, each) for each in every} == {
-        *((file, "pose") for file in ("robot.yaml", "nutrunner.yaml", "station.yaml", "specifications.yaml"))
+        *(
+            (file, "pose")
+            for file in ("robot.yaml", "nutrunner.yaml", "station.yaml", "specifications.yaml", "mimic.yaml")
+        )
     }
     shown = editor.ask("textDocument/documentHighlight", **asked)
     own = [each["range"] for each in every if each["uri"] == uri]
@@ -87,6 +90,7 @@ def test_another_name_in_all_files(editor: Editor, station: Path) -> None:
     editor.apply(edit)
     assert "robot.place == pair  # seen" in editor.text(other)
     assert "robot.place == bolt_pair_1" in (station / "resources" / "nutrunner.yaml").read_text(encoding="utf-8")
+    assert "of: robot.place\n" in (station / "mimic.yaml").read_text(encoding="utf-8")
     for uri in (robot, other):
         Path(uri.removeprefix("file://")).write_text(editor.text(uri), encoding="utf-8")
     told = CliRunner().invoke(app, ["check", str(station)])
