@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind, State, VariableDeclaration
+from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind, Operation, State, VariableDeclaration
 from sequence_planner.automaton.lifting.sentences import Sentences, sentences_of
 from sequence_planner.core.immutable import replace
 from sequence_planner.language.evaluator import evaluate
@@ -214,6 +214,37 @@ def test_only_what_does_not_hold_is_told(data: st.DataObject) -> None:
     said = SENTENCES.tell_missing(condition, state, "as it is written")
     assert said.words == SENTENCES.tell_conditions(*(lacking or [condition])).words
     assert str(said) == "as it is written"
+
+
+def test_an_operation_says_what_is_still_missing() -> None:
+    tighten = Operation(
+        "tighten",
+        "Tighten",
+        precondition=ground("bolts[AtPair1TCPPose] == placed and engine_in_place"),
+        goal=ground("bolts[AtPair1TCPPose] == tightened"),
+    )
+
+    def said(bolts: str, *, active: bool) -> str | None:
+        state: State = {**CELL.initial_valuation, "bolts[AtPair1TCPPose]": bolts, "engine_in_place": True}
+        told = SENTENCES.tell_operation(tighten, state, "the goal", "the precondition", active=active)
+        return None if told is None else english(told)
+
+    assert said("empty", active=False) == "waits until pair 1 is placed"
+    assert said("placed", active=False) is None
+    assert said("placed", active=True) == "until pair 1 is tight"
+    assert said("tightened", active=False) is None
+
+
+def english(told: Message) -> str:
+    """A message as the page tells it in English."""
+    return str(Message.__new__(Message, told.id, {name: _spoken(each) for name, each in told.arguments.items()}))
+
+
+def _spoken(argument: object) -> list[str] | str:
+    if isinstance(argument, Sentence):
+        return argument.words["en"]
+    assert isinstance(argument, list)
+    return [each.words["en"] for each in argument]
 
 
 def test_what_is_waited_for_is_one_sentence() -> None:
