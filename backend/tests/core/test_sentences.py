@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind, State, VariableDeclaration
+from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind, Operation, State, VariableDeclaration
 from sequence_planner.automaton.lifting.sentences import Sentences, sentences_of
 from sequence_planner.core.immutable import replace
 from sequence_planner.language.evaluator import evaluate
@@ -166,7 +166,7 @@ def test_a_formula_has_a_sentence() -> None:
 
 
 @given(st.data())
-@settings(max_examples=200)
+@settings(max_examples=200, deadline=None)
 def test_every_condition_has_a_sentence_of_words_alone(data: st.DataObject) -> None:
     """Also what has no title: names become words."""
     scope = [Variable(name, type_) for name, type_ in CELL.types.items()]
@@ -178,7 +178,7 @@ def test_every_condition_has_a_sentence_of_words_alone(data: st.DataObject) -> N
 
 
 @given(made_by(lambda choices: _with_titles(choices, random_automaton(choices))))
-@settings(max_examples=100)
+@settings(max_examples=100, deadline=None)
 def test_values_of_a_variable_are_told_apart(automaton: Automaton) -> None:
     """Whatever titles somebody has thought of, also the same for several values."""
     sentences = Sentences(automaton)
@@ -205,7 +205,7 @@ def _with_titles(choices: Choices, automaton: Automaton) -> Automaton:
 
 
 @given(st.data())
-@settings(max_examples=100)
+@settings(max_examples=100, deadline=None)
 def test_only_what_does_not_hold_is_told(data: st.DataObject) -> None:
     scope = [Variable(name, type_) for name, type_ in VARIABLES.items()]
     condition = And(tuple(data.draw(made_by(lambda c: predicate(c, scope, 1))) for _ in range(3)))
@@ -214,6 +214,37 @@ def test_only_what_does_not_hold_is_told(data: st.DataObject) -> None:
     said = SENTENCES.tell_missing(condition, state, "as it is written")
     assert said.words == SENTENCES.tell_conditions(*(lacking or [condition])).words
     assert str(said) == "as it is written"
+
+
+def test_an_operation_says_what_is_still_missing() -> None:
+    tighten = Operation(
+        "tighten",
+        "Tighten",
+        precondition=ground("bolts[AtPair1TCPPose] == placed and engine_in_place"),
+        goal=ground("bolts[AtPair1TCPPose] == tightened"),
+    )
+
+    def said(bolts: str, *, active: bool) -> str | None:
+        state: State = {**CELL.initial_valuation, "bolts[AtPair1TCPPose]": bolts, "engine_in_place": True}
+        told = SENTENCES.tell_operation(tighten, state, "the goal", "the precondition", active=active)
+        return None if told is None else english(told)
+
+    assert said("empty", active=False) == "waits until pair 1 is placed"
+    assert said("placed", active=False) is None
+    assert said("placed", active=True) == "until pair 1 is tight"
+    assert said("tightened", active=False) is None
+
+
+def english(told: Message) -> str:
+    """A message as the page tells it in English."""
+    return str(Message.__new__(Message, told.id, {name: _spoken(each) for name, each in told.arguments.items()}))
+
+
+def _spoken(argument: object) -> list[str] | str:
+    if isinstance(argument, Sentence):
+        return argument.words["en"]
+    assert isinstance(argument, list)
+    return [each.words["en"] for each in argument]
 
 
 def test_what_is_waited_for_is_one_sentence() -> None:
@@ -227,6 +258,13 @@ def test_what_is_waited_for_is_one_sentence() -> None:
     found = waits_in_one([placed])
     assert isinstance(found, Message)
     assert found.sent()["arguments"] == {"conditions": [{"words": words, "written": "b == placed"}]}
+
+
+def test_numbers_that_are_names_stay_apart() -> None:
+    type_ = EnumerationType(("p01", "p1", "p2"))
+    cell = replace(CELL, variables={"at": VariableDeclaration("at", type_, Kind.ESTIMATED, "p1", None)}, flags=())
+    told = [Sentences(cell).tell_value("at", value).words["en"] for value in type_.values]
+    assert told == ["at is p 01", "at is p 1", "at is p 2"]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from sequence_planner.language.shorthand.titles import NO_TITLES, Titles, in_lan
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.source import Finding, SourceText
-from sequence_planner.texts.names import capitalised, in_words
 
 # What each parameter is: its value, and the enumeration it is of.
 Binding = Mapping[str, tuple[str, EnumerationType]]
@@ -76,14 +75,12 @@ def without_arguments(name: str) -> str:
 
 
 def readable(title: SourceText | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
-    """A title, or the name in plain words, with what each `{parameter}` is called in its place."""
-    text = str(title) if title is not None else in_words(name)
+    """A title, or the name in plain words, with what each `{parameter}` is called in its place.
+
+    The digest of a model, by which its journals know it, has these: what has no title keeps the letters of its name.
+    """
+    text = str(title) if title is not None else name.replace("_", " ")
     for parameter, (value, type_) in binding.items():
-        called = in_language(titles.of_value(type_, value), "en") or in_words(value)
+        called = in_language(titles.of_value(type_, value), "en") or value.replace("_", " ")
         text = text.replace(f"{{{parameter}}}", called)
     return text
-
-
-def titled(name: str) -> str:
-    """A name as a title."""
-    return capitalised(in_words(name))

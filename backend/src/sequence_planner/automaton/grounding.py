@@ -33,7 +33,6 @@ from sequence_planner.automaton.findings import (
     UseOfRemoved,
     instance_name,
     readable,
-    titled,
     told_where_removed,
     without_arguments,
 )
@@ -650,7 +649,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
                 resource,
                 alarm_condition(meaning, document.when, scope),
                 document.priority,
-                words_of(document.title) or {"": titled(name)},
+                words_of(document.title) or {"": readable(None, name, {}).capitalize()},
                 words_of(document.consequence),
                 words_of(document.action),
                 document.delay,

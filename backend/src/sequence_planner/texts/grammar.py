@@ -96,18 +96,19 @@ class Grammar:
 
     def _numbered(self, texts: Sequence[str], last: str, *, plural: bool = True) -> list[str]:
         """The texts, those that differ in one number as one."""
-        groups: dict[tuple[str, str], list[int]] = {}
+        groups: dict[tuple[str, str], dict[int, str]] = {}
         for text in dict.fromkeys(texts):
             numbers = list(_NUMBER.finditer(text))
-            if len(numbers) == 1:
+            # One that begins with a zero is a name: 01 is not 1.
+            if len(numbers) == 1 and (numbers[0][0] == "0" or numbers[0][0][0] != "0"):
                 (number,) = numbers
-                groups.setdefault((text[: number.start()], text[number.end() :]), []).append(int(number[0]))
+                groups.setdefault((text[: number.start()], text[number.end() :]), {})[int(number[0])] = text
             else:
-                groups[text, ""] = []
+                groups[text, ""] = {}
         found = []
         for (before, behind), values in groups.items():
             if len(values) < 2:
-                found.append(f"{before}{values[0] if values else ''}{behind}")
+                found.append(next(iter(values.values()), before))
             else:
                 noun = self._plural(before) if plural else before
                 found.append(f"{noun}{self.listed(self._ranges(values), last)}{behind}")

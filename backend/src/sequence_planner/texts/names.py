@@ -14,11 +14,6 @@ def in_words(name: str) -> str:
     return " ".join(_word(each) for each in _WORD.findall(name)) or name
 
 
-def capitalised(text: str) -> str:
-    """A text as the beginning of a sentence."""
-    return text[:1].upper() + text[1:]
-
-
 def within_sentence(text: str) -> str:
     """A title as it stands within a sentence: `Robot UR10` → `robot UR10`, `AGV` and `UR10` as they are."""
     first = text.partition(" ")[0]

@@ -123,12 +123,12 @@ class Sentences:
     def tell_operation(
         self, operation: Operation, state: Valuation, goal: str, precondition: str, *, active: bool
     ) -> Message | None:
-        """Say what is still missing of its goal, or of its precondition; None of one that could become active. These
-        are written as `goal` and `precondition`.
+        """Say what is still missing of its goal, or of its precondition; None of one that could become active, and of
+        one whose goal holds. These are written as `goal` and `precondition`.
         """
         if active:
             return message("sentence.goal", condition=self.tell_missing(operation.goal, state, goal))
-        if evaluate(operation.precondition, state) is True:
+        if evaluate(operation.goal, state) is True or evaluate(operation.precondition, state) is True:
             return None
         return message("sentence.until", conditions=[self.tell_missing(operation.precondition, state, precondition)])
 

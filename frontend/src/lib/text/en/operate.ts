@@ -14,8 +14,7 @@ export const operate = {
 		noTaskKnown: 'Nothing when last heard',
 		noAlarm: 'None',
 		alarmsOver: (n: number): string => `${n} over`,
-		nothing: 'Nothing',
-		more: (n: number): string => `and ${n} more`
+		nothing: 'Nothing'
 	},
 	plan: {
 		title: 'Plan',

@@ -15,8 +15,7 @@ export const operate: Text['operate'] = {
 		noTaskKnown: 'Inget när stationen senast hördes',
 		noAlarm: 'Inga',
 		alarmsOver: (n) => `${n} över`,
-		nothing: 'Inget',
-		more: (n) => `och ${n} till`
+		nothing: 'Inget'
 	},
 	plan: {
 		title: 'Plan',
