@@ -203,7 +203,14 @@ NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the
             ARM,
             "do: [goto := position]",
             "do: [goto := position, ‹goto := home]",
-            "`arm.goto` is written twice by one transition",
+            "`arm.goto` is written twice by one transition: keep one of the two",
+        ),
+        (
+            ARM,
+            "do: [pose := unknown, moving := true]",
+            "do: [moving := true if goto == home, ‹moving := false if goto != home]",
+            "`arm.moving` is written twice by one transition: put the cases into one value, such as "
+            "`(A and B) or (C and D)`",
         ),
         (
             ARM,
