@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from sequence_planner.analysis.guard_documents import Document, GuardDocument, LiftedGuard
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.printer import print_expression
+from sequence_planner.model.source import alike_in_types, in_instances
 
 if TYPE_CHECKING:
     from sequence_planner.analysis.analysis import Analysis
@@ -42,7 +43,8 @@ class TraceDocument(Document):
 
 class FindingDocument(Document):
     """Something suspicious, where it is written, and a run that shows it. Where it is said of several instances in one,
-    as in `for all pair in bolt_pair`, `members` are these, and the run is that of the first.
+    as in `for all pair in bolt_pair`, or of several instances of a type, `members` are these, and the run is that of the
+    first.
     """
 
     severity: str
@@ -94,20 +96,27 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
 
 
 def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[FindingDocument]:
-    """The warnings of a model that can be used."""
-    return [
-        FindingDocument(
-            severity="warning",
-            kind=warning.kind,
-            file=warning.place.file,
-            line=warning.place.line,
-            column=warning.place.column,
-            message=warning.message,
-            members=list(warning.members),
-            trace=None if warning.trace is None else trace_document(automaton, warning.trace),
-        )
-        for warning in warnings
-    ]
+    """The warnings of a model that can be used. What is so in several instances of a type is said once of all of them,
+    and its run is that of the first.
+    """
+    return [_told(automaton, each) for each in alike_in_types(warnings)]
+
+
+def _told(automaton: Automaton, alike: Sequence[ModelWarning]) -> FindingDocument:
+    first, *others = alike
+    members = [name for each in alike for name in each.members]
+    if others and not members:
+        members = [each.place.instance.partition(" ")[0] for each in alike if each.place.instance]
+    return FindingDocument(
+        severity="warning",
+        kind=first.kind,
+        file=first.place.file,
+        line=first.place.line,
+        column=first.place.column,
+        message=f"{in_instances(alike)}{first.message}",
+        members=members,
+        trace=None if first.trace is None else trace_document(automaton, first.trace),
+    )
 
 
 def error_document(finding: Finding) -> FindingDocument:
