@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 from sequence_planner.analysis.guard_documents import Document, GuardDocument, LiftedGuard
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.printer import print_expression
-from sequence_planner.model.source import alike_in_types, in_instances
+from sequence_planner.model.source import Finding, alike_in_types, in_instances
 
 if TYPE_CHECKING:
     from sequence_planner.analysis.analysis import Analysis
     from sequence_planner.analysis.checks.warning import ModelWarning
-    from sequence_planner.model.source import Finding
     from sequence_planner.synthesis.guards import SupervisorGuard
     from sequence_planner.synthesis.traces import Trace
 
@@ -43,8 +42,7 @@ class TraceDocument(Document):
 
 class FindingDocument(Document):
     """Something suspicious, where it is written, and a run that shows it. Where it is said of several instances in one,
-    as in `for all pair in bolt_pair`, or of several instances of a type, `members` are these, and the run is that of the
-    first.
+    as in `for all pair in bolt_pair`, or of a type, `members` are these, and the run is that of the first.
     """
 
     severity: str
@@ -99,7 +97,7 @@ def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[
     """The warnings of a model that can be used. What is so in several instances of a type is said once of all of them,
     and its run is that of the first.
     """
-    return [_told(automaton, each) for each in alike_in_types(warnings)]
+    return [_told(automaton, each) for each in alike_in_types(warnings, lambda each: Finding(each.place, each.message))]
 
 
 def _told(automaton: Automaton, alike: Sequence[ModelWarning]) -> FindingDocument:
@@ -113,7 +111,7 @@ def _told(automaton: Automaton, alike: Sequence[ModelWarning]) -> FindingDocumen
         file=first.place.file,
         line=first.place.line,
         column=first.place.column,
-        message=f"{in_instances(alike)}{first.message}",
+        message=f"{in_instances([each.place for each in alike])}{first.message}",
         members=members,
         trace=None if first.trace is None else trace_document(automaton, first.trace),
     )

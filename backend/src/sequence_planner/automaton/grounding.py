@@ -91,11 +91,11 @@ def _not_a_variable(name: str) -> str:
     return "the activity of an operation" if name.startswith(f"{OPERATION}.") else "a flag of an ability"
 
 
-def _written_twice(one: Assignment, other: Assignment) -> str:
-    wrong = f"`{target(one)}` is written twice by one transition"
+def _written_twice(variable: VariableDeclaration, one: Assignment, other: Assignment) -> str:
+    wrong = f"`{variable.name}` is written twice by one transition"
     if one.condition is None and other.condition is None:
         return f"{wrong}: keep one of the two"
-    if isinstance(one.target.type, BooleanType):
+    if isinstance(variable.type, BooleanType):
         return f"{wrong}: put the cases into one value, such as `(A and B) or (C and D)`"
     return f"{wrong}: give the ability a parameter for the case, and let its condition say which case it is"
 
@@ -142,7 +142,7 @@ class Meaning:
                 written = text[action.target.span.start : action.target.span.end]
                 self.findings.add(text, f"{writing.what} writes {permitted} variables, and `{written}` is {kind}")
             elif name in actions:
-                self.findings.add(text, _written_twice(actions[name], action))
+                self.findings.add(text, _written_twice(variable, actions[name], action))
             elif action.condition != FALSE:
                 actions[name] = action
                 self._check_fits(text, action, guard)

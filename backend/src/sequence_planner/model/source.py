@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol, Self, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
@@ -39,39 +39,31 @@ def told_once(findings: list[Finding]) -> list[Finding]:
     if not any(finding.place.instance for finding in findings):
         return findings
     return [
-        Finding(each[0].place._replace(instance=""), f"{in_instances(each)}{each[0].message}")
-        for each in alike_in_types(findings)
+        Finding(
+            alike[0].place._replace(instance=""), f"{in_instances([each.place for each in alike])}{alike[0].message}"
+        )
+        for alike in alike_in_types(findings, lambda each: each)
     ]
 
 
-class Placed(Protocol):
-    """Something that is said of a place."""
-
-    @property
-    def place(self) -> Place:
-        """Where it is so."""
-
-    @property
-    def message(self) -> str:
-        """What is so there."""
+T = TypeVar("T")
 
 
-P = TypeVar("P", bound=Placed)
-
-
-def alike_in_types(said: Iterable[P]) -> list[list[P]]:
-    """What is said, with what is the same of one place in a type, but for the names of its instances, together."""
-    together: dict[tuple[Place, str], list[P]] = {}
+def alike_in_types(said: Iterable[T], finding: Callable[[T], Finding]) -> list[list[T]]:
+    """What is said, each with its `finding`: what is the same of one place in a type, but for the names of its
+    instances, together.
+    """
+    together: dict[tuple[Place, str], list[T]] = {}
     for each in said:
-        own = re.escape(each.place.instance.partition(" ")[0] or "\0")
-        alike = re.sub(rf"\b{own}\b", "\0", each.message)
-        together.setdefault((each.place._replace(instance=""), alike), []).append(each)
+        place, message = (found := finding(each)).place, found.message
+        own = re.escape(place.instance.partition(" ")[0] or "\0")
+        together.setdefault((place._replace(instance=""), re.sub(rf"\b{own}\b", "\0", message)), []).append(each)
     return list(together.values())
 
 
-def in_instances(said: Sequence[Placed]) -> str:
-    """Name the instances of a type of which something is said; say nothing where it is not said of a type."""
-    first, *others = (each.place.instance for each in said)
+def in_instances(places: Sequence[Place]) -> str:
+    """Name the instances of a type of which something is said there; say nothing where it is not said of a type."""
+    first, *others = (each.instance for each in places)
     names = [first, *(other.partition(" ")[0] for other in others)]
     if not first:
         return ""
