@@ -473,6 +473,8 @@ def ground_work_masters(
     }
     for name, document in station.work_masters.items():
         meaning.declarations.check_name(name)
+        if document.brings:
+            meaning.declarations.places[f"work_master.{name}.brings"] = document.brings[0].place
         order = sequences.order_of(document)
         check_steps(meaning, order.steps, operations, ordered, name)
         masters[str(name)] = WorkMaster(
