@@ -182,7 +182,7 @@ MOVED = '["all p in part where p == next(chosen): bolts[p] := placed if p != fir
         ),
         (
             STATION,
-            'rest: "none p in part where p < chosen and is_done(p): bolts[p] == placed"',
+            'rest: "none p in part where p < chosen and is_done(p): bolts[p] == tight"',
             "‹rest:\n  at most 2 p in part: bolts[p] == placed",
             f'expected a text or true or false, found a mapping: {COLON} "at most 2 p in part: …"',
         ),

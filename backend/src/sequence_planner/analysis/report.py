@@ -93,11 +93,18 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
     )
 
 
-def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[FindingDocument]:
-    """The warnings of a model that can be used. What is so in several instances of a type is said once of all of them,
-    and its run is that of the first.
+def findings_of(
+    automaton: Automaton, warnings: Iterable[ModelWarning], written: Iterable[ModelWarning] = ()
+) -> list[FindingDocument]:
+    """The warnings of a model that can be used, those of its automaton and those of what is `written`. What is so of
+    one place in both is said in the words that stand there. What is so in several instances of a type is said once of
+    all of them, and its run is that of the first.
     """
-    return [_told(automaton, each) for each in alike_in_types(warnings, lambda each: Finding(each.place, each.message))]
+    as_written = list(written)
+    said = {(each.place._replace(instance=""), each.kind) for each in as_written}
+    found = [each for each in warnings if (each.place._replace(instance=""), each.kind) not in said]
+    alike = alike_in_types([*found, *as_written], lambda each: Finding(each.place, each.message))
+    return [_told(automaton, each) for each in alike]
 
 
 def _told(automaton: Automaton, alike: Sequence[ModelWarning]) -> FindingDocument:
