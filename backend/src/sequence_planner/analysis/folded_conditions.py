@@ -14,7 +14,6 @@ from typing import NamedTuple
 from sequence_planner.analysis.checks.warning import ModelWarning, shortened
 from sequence_planner.automaton.declarations import Declarations
 from sequence_planner.automaton.findings import Binding, Findings, instance_name
-from sequence_planner.automaton.shorthand import RESERVED
 from sequence_planner.language.evaluator import holds
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import NameScope, resolve_predicate
@@ -22,6 +21,7 @@ from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.syntax import And, Constant, Expression, ExpressionError, Span, occurrences
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import AbilityDocument
+from sequence_planner.model.fields import RESERVED
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
 

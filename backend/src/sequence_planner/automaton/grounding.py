@@ -444,7 +444,7 @@ def ground_operations(meaning: Meaning, station: Station) -> dict[str, Operation
     """All operations by name, in the order of the sequences."""
     operations = {operation.name: operation for operation in _operations(meaning, station.operations)}
     for name in station.sequences:
-        meaning.declarations.check_name(name)
+        meaning.declarations.check_name(name, "sequence")
     ordered = station_sequences(meaning, station, operations).ordered(operations)
     read = (
         each
@@ -472,7 +472,7 @@ def ground_work_masters(
         for name, operation in operations.items()
     }
     for name, document in station.work_masters.items():
-        meaning.declarations.check_name(name)
+        meaning.declarations.check_name(name, "work_master")
         if document.brings:
             meaning.declarations.places[f"work_master.{name}.brings"] = document.brings[0].place
         order = sequences.order_of(document)
@@ -574,7 +574,7 @@ def ground_specifications(
     specifications: dict[str, Specification] = {}
     known = list(resources)
     for name, document in documents.items():
-        meaning.declarations.check_name(name)
+        meaning.declarations.check_name(name, "specification")
         meaning.declarations.check_parameters(document.parameters, *(f"{name}." for name in document.zone or ()))
         for binding in meaning.declarations.bindings(document.parameters):
             full = instance_name(name, binding)
@@ -661,7 +661,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
     found = {}
     for resource, documents in ((None, station.station.alarms), *((n, d.alarms) for n, d in station.resources.items())):
         for name, document in documents.items():
-            meaning.declarations.check_name(name)
+            meaning.declarations.check_name(name, "alarm")
             full = str(name) if resource is None else f"{resource}.{name}"
             scope = meaning.scope({}, *(() if resource is None else (f"{resource}.",)))
             found[full] = AlarmDeclaration(

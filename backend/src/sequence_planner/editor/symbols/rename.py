@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sequence_planner.automaton.declarations import FLAGS, OPERATION
 from sequence_planner.editor.symbols.definitions import gather
 from sequence_planner.editor.symbols.index import (
     ROS_KINDS,
@@ -18,14 +17,13 @@ from sequence_planner.editor.symbols.index import (
     Occurrence,
     belongs_to,
     following,
-    is_reserved,
     variable_of,
 )
 from sequence_planner.editor.symbols.pipelines import said, unsaid
 from sequence_planner.editor.symbols.texts import ModelContent, file_of
-from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import Place
+from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.map import ANY
@@ -179,8 +177,6 @@ def usage_of(found: Occurrence) -> Usage:
 
 # Why a part cannot be called so: its new name is none, or taken, or not the model's alone.
 
-_SHORT = ("predicate", "relation", "map")
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 # Which have no names in common, of a resource or of the station.
 _SHARING = (("variable", "ability", "predicate", "relation", "map"), ("enumeration", "set"), ("operation", "sequence"))
 
@@ -195,20 +191,10 @@ def require_name(part: ModelPart, name: str) -> None:
         except ValueError as error:
             raise EditError(str(error).replace("'", "`")) from error
         return
-    if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
-        raise EditError(
-            f"`{name}` is no name: use letters, digits and `_`, no digit first, and none of the words of the language"
-        )
+    if (fault := fault_of_name(name, part.kind)) is not None:
+        raise EditError(fault)
     if scalar(name) != name:
         raise EditError(f"`{name}` is no name that YAML would read as a text: choose another")
-    if name in FLAGS and part.kind in ("variable", "parameter", "ability", *_SHORT):
-        raise EditError(f"`{name}` is a flag of every ability: choose another name")
-    if is_reserved(name) and part.kind in _SHORT:
-        raise EditError(f"`{name}` is a word of quantifiers and orders: choose another name")
-    if part.kind in ("enumeration", "set") and name == "bool":
-        raise EditError("`bool` is a type already: choose another name")
-    if part.kind == "resource" and name == OPERATION:
-        raise EditError(f"`{OPERATION}` stands for the operations in expressions: choose another name")
     if part.kind == "value" and name == ANY:
         raise EditError(f"`{ANY}` stands for every value in the rows of a table: choose another name")
 
