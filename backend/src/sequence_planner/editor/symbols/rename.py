@@ -102,10 +102,10 @@ def dependants(files: Mapping[str, str], part: ModelPart, messages: MessageRegis
 
 def one_with(part: ModelPart, gathered: Gathered) -> frozenset[ModelPart]:
     """The part, and those that it is one with: by texts that name both, in a type of resources or as values of two
-    enumerations, and for a value by comparisons.
+    enumerations, by the field of a message that a topic of a type has for both, and for a value by comparisons.
     """
     together = {part}
-    links = gathered.links | shared(gathered) if part.kind == "value" else shared(gathered)
+    links = shared(gathered) | (gathered.links if part.kind == "value" else _fed_together(gathered))
     while more := {other for link in links if link & together for other in link} - together:
         together |= more
     return frozenset(together)
@@ -118,6 +118,15 @@ def shared(gathered: Gathered) -> set[frozenset[ModelPart]]:
         if each.text is not None and (each.part.kind == "value" or each.home is not None):
             place = each.text.place
             found.setdefault((place.file, place.line, place.column, each.span.start), set()).add(each.part)
+    return {frozenset(parts) for parts in found.values() if len(parts) > 1}
+
+
+def _fed_together(gathered: Gathered) -> set[frozenset[ModelPart]]:
+    """Variables of several instances that are one field, since their names are that of it, in a topic of their type."""
+    found: dict[tuple[str, EntryPath, str], set[ModelPart]] = {}
+    for part, bindings in gathered.bindings.items():
+        for each in bindings:
+            found.setdefault((each.file, each.path, each.field), set()).add(part)
     return {frozenset(parts) for parts in found.values() if len(parts) > 1}
 
 
