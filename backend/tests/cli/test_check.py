@@ -144,8 +144,8 @@ def test_what_is_so_of_instances_of_a_type_is_told_once_and_names_them(tmp_path:
     with (model / "resources" / "robot_2.yaml").open("a", encoding="utf-8") as other:
         other.write(f"  open_gripper: {{enabled: {guard}}}\n")
     _, out, _ = command("check", model)
-    [told] = [line for line in out.splitlines() if "[always-holds]" in line]
-    assert f"warning: {first.partition(' and ')[0]}: `robot_1.at" in told
+    [alone] = [line for line in out.splitlines() if "[always-holds]" in line]
+    assert f"warning: {first.partition(' and ')[0]}: `robot_1.at" in alone
 
 
 def test_unusable_input_for_programs(tmp_path: Path) -> None:
