@@ -8,6 +8,7 @@ import pytest
 
 from sequence_planner.analysis.folded_conditions import check_folded
 from sequence_planner.station import prepare_station
+from support.commands import as_json
 
 STATION = """
 name: press
@@ -41,6 +42,9 @@ abilities:
         ("fits(cup, die_a)", "always"),
         ("code_of[die_a] == 4", "never"),
         ("code_of[mounted] == 4", "never"),
+        ("code_of[mounted] >= 3", "always"),
+        ("any p in piece: fits(p, mounted)", "always"),
+        ("all s in side: holds[s] or not holds[s]", "always"),
         ("next(at) == down", "never"),
         ("(count s in side: holds[s]) > 2", "never"),
         ("any s in side where s == left and s == right: holds[s]", "never"),
@@ -61,6 +65,7 @@ def test_what_is_decided_by_what_was_declared_is_told(tmp_path: Path, condition:
         "fits(what, mounted)",
         "fits(what, die_b)",  # of one piece it is so, of the other it is not
         "code_of[mounted] == 5",
+        "code_of[mounted] > 3",
         "previous(at) == middle",
         "exactly 1 s in side: holds[s]",
         "mounted == die_a",
@@ -70,10 +75,21 @@ def test_what_depends_on_the_state_or_on_a_parameter_is_not(tmp_path: Path, cond
     assert said(tmp_path, condition) == []
 
 
+def test_a_whole_condition_is_told_once_and_as_it_is_written(tmp_path: Path) -> None:
+    write(tmp_path, PRESS.replace("at == up and\n", "").replace("ENABLED", "code_of[mounted] >= 3"))
+    _, document = as_json("check", tmp_path)
+    [message] = [each["message"] for each in document["findings"] if each["kind"] == "always-holds"]
+    assert message.startswith("`code_of[mounted] >= 3` always holds, whatever")
+
+
 def said(folder: Path, condition: str) -> list[str]:
-    (folder / "resources").mkdir()
-    (folder / "station.yaml").write_text(STATION, encoding="utf-8")
-    (folder / "resources" / "press.yaml").write_text(PRESS.strip().replace("ENABLED", condition), encoding="utf-8")
+    write(folder, PRESS.replace("ENABLED", condition))
     written = prepare_station(folder).written
     assert written is not None
     return [str(each).removeprefix(f"{folder}/") for each in check_folded(written)]
+
+
+def write(folder: Path, press: str) -> None:
+    (folder / "resources").mkdir()
+    (folder / "station.yaml").write_text(STATION, encoding="utf-8")
+    (folder / "resources" / "press.yaml").write_text(press.strip(), encoding="utf-8")

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from hypothesis import assume, given
 
-from checks.small import station
+from checks.small import DEVICE, station
 from core.choices import Choices, made_by
 from core.explicit import Explicit, Key, outcomes
 from core.plain_questions import meant, read
@@ -366,3 +366,32 @@ abilities:
     assert warning.message.startswith("for all to in {right, between}: `robot.go(to)` never starts, as the supervisor")
     assert warning.members == ("robot.go(right)", "robot.go(between)")
     assert warning.place.file.endswith("robot.yaml")
+
+
+@pytest.mark.parametrize(
+    ("specifications", "said"),
+    [
+        ("no_blank: {forbidden: count == 2 and part}", "`no_blank` forbids it"),
+        ("one: {forbidden: count == 2 and device.on}\ntwo: {forbidden: count > 1 and not device.on}", "it is so in no"),
+        # While the device is on, nothing is brought; that it is seen to be off is enough.
+        ("not_now: {forbidden: count == 2 and device.on}", ""),
+        ("other: {forbidden: count == 3 and part}", ""),
+    ],
+)
+def test_a_product_that_is_safe_in_no_state(tmp_path: Path, specifications: str, said: str) -> None:
+    documents = {
+        "operations": "make: {precondition: count == 2, goal: count == 0}",
+        "work_masters": "another: {sequence: make}\nmade:\n  brings: [count := 2, part := true]\n  sequence: make",
+        "specifications": specifications,
+    }
+    ready = "  reset: {enabled: count == 2 and not on, start: {do: [count := 0, part := false]}}\n"
+    warnings = found(station(tmp_path, {"device": DEVICE + ready}, **documents))
+    told = [each for each in warnings if "no job" in each.message]
+    assert bool(told) is bool(said)
+    for each in told:
+        assert (each.kind, each.place.line, each.place.column) == ("never-allowed", 3, 12)
+        assert Path(each.place.file).name == "work_masters.yaml"
+        assert (
+            f"no job of `made` ever begins: its product brings `count == 2 and part == true`, and {said}"
+            in each.message
+        )

@@ -7,7 +7,7 @@ import shutil
 from pathlib import Path
 
 from support.commands import as_json, command, plain
-from support.places import BOLT_TIGHTENING, CELL, WORKED_EXAMPLE
+from support.places import BOLT_TIGHTENING, CELL, MODELS, WORKED_EXAMPLE
 
 
 def test_a_fine_station() -> None:
@@ -120,6 +120,32 @@ def test_what_is_so_of_all_instances_is_told_once(tmp_path: Path) -> None:
     (finding,) = document["findings"]
     assert finding["members"] == [f"tighten_bolt_pair(bolt_pair_{number})" for number in (1, 2, 3)]
     assert finding["trace"]["steps"]
+
+
+def test_what_is_so_of_instances_of_a_type_is_told_once_and_names_them(tmp_path: Path) -> None:
+    model = Path(shutil.copytree(MODELS / "robots_with_buffer", tmp_path / "model"))
+    robot = model / "types" / "robot.yaml"
+    written = robot.read_text(encoding="utf-8")
+    guard = "at == target and close_gripper and not part_in_gripper"
+    assert written.count(guard) == 1
+    robot.write_text(written.replace(guard, f"{guard} or not close_gripper or at != target or at == target"), "utf-8")
+    code, out, _ = command("check", model)
+    told = [line for line in out.splitlines() if "[always-holds]" in line]
+    assert code == 1
+    line = written[: written.index(guard)].count("\n") + 1
+    assert len(told) == 1
+    first = f"in robot_1 ({model / 'resources' / 'robot_1.yaml'}:2:7) and robot_2: `"
+    assert told[0].startswith(f"{robot}:{line}:14: warning: {first}")
+    assert "robot_1.at" in told[0]
+    assert "robot_2.at" not in told[0]
+    _, document = as_json("check", model)
+    [finding] = [each for each in document["findings"] if each["kind"] == "always-holds"]
+    assert finding["members"] == ["robot_1", "robot_2"]
+    with (model / "resources" / "robot_2.yaml").open("a", encoding="utf-8") as other:
+        other.write(f"  open_gripper: {{enabled: {guard}}}\n")
+    _, out, _ = command("check", model)
+    [alone] = [line for line in out.splitlines() if "[always-holds]" in line]
+    assert f"warning: {first.partition(' and ')[0]}: `robot_1.at" in alone
 
 
 def test_unusable_input_for_programs(tmp_path: Path) -> None:

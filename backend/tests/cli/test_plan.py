@@ -11,7 +11,7 @@ from pytest import MonkeyPatch
 
 from sequence_planner.export.unified import installed
 from support.commands import as_json, command, plain
-from support.places import WORKED_EXAMPLE
+from support.places import MODELS, TRUCK_ENGINE_STATION, WORKED_EXAMPLE
 
 PLACED = json.dumps({"state": {"bolts": "placed"}})
 
@@ -168,6 +168,24 @@ def test_no_plan() -> None:
 def test_an_operation_that_is_none() -> None:
     code, _, err = command("plan", WORKED_EXAMPLE, "tighten")
     assert (code, err) == (2, "there is no operation `tighten`; did you mean `tighten_bolt_pair`?\n")
+
+
+def test_of_a_sequence_and_of_a_work_master_the_operations_are_named(tmp_path: Path) -> None:
+    model = Path(shutil.copytree(MODELS / "docking_agv", tmp_path / "model"))
+    with (model / "operations.yaml").open("a", encoding="utf-8") as operations:
+        operations.write(
+            "all_of_it:\n  sequence: [supply, assemble]\nsupply:\n  parallel: [hand_over_kit, fetch_kit]\n"
+        )
+    plans = "and a plan is for operations that are active together: name some (its operations are"
+    for name, what, within in (
+        ("all_of_it", "a sequence", "`fetch_kit`, `hand_over_kit`, `assemble`"),
+        ("supply", "a sequence", "`fetch_kit`, `hand_over_kit`"),
+        ("supply_and_assemble", "a work master", "`fetch_kit`, `hand_over_kit`, `assemble`"),
+    ):
+        assert command("plan", model, name) == (2, "", f"`{name}` is {what}, {plans} {within})\n")
+    code, _, err = command("plan", TRUCK_ENGINE_STATION, "tighten_bolts")
+    assert (code, err.partition("(")[0]) == (2, f"`tighten_bolts` is a sequence, {plans.partition('(')[0]}")
+    assert err.endswith(" and 2 more)\n")
 
 
 def test_a_plain_automaton(tmp_path: Path) -> None:

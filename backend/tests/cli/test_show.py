@@ -64,6 +64,23 @@ def test_all_instances_of_a_name() -> None:
     assert document["variables"] == {}
 
 
+def test_an_effect_that_several_abilities_share_is_shown_once_with_any_of_them() -> None:
+    shared = "robot.move_to_position(home).robot_arrives"
+    for names, count in (
+        (["robot.move_to_position(bolt_pair_1)"], 1),
+        (["robot.move_to_position(bolt_pair_1)", "robot.move_to_position(bolt_pair_2)"], 1),
+        (["robot.move_to_position"], 1),
+        ([shared], 1),
+        ([], 1),
+        (["robot.move_to_previous"], 0),
+    ):
+        code, out, _ = command("show", BOLT_TIGHTENING, *names)
+        assert code == 0
+        assert sum(line.startswith(f"    effect {shared} (") for line in out.splitlines()) == count, names
+    _, document = as_json("show", BOLT_TIGHTENING, "robot.move_to_position(bolt_pair_1)")
+    assert shared in document["effects"]
+
+
 def test_phases_with_what_they_read_and_write() -> None:
     _, document = as_json("show", WORKED_EXAMPLE)
     assert set(document["phases"]) == {"sense", "finish", "start"}

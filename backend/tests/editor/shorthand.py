@@ -34,7 +34,7 @@ estimated:
   chosen: {type: part, initial: p1}
 alarms:
   stuck: {when: '(count p in ends where p != chosen: bolts[p] == placed) >= 2 and all_tight', title: Stuck}
-rest: "none p in part where p < chosen and is_done(p): bolts[p] == placed"
+rest: "none p in part where p < chosen and is_done(p): bolts[p] == tight"
 """,
     "resources/arm.yaml": """\
 measured:
@@ -59,7 +59,7 @@ abilities:
     parameters: {one: ends}
     enabled: held != grip_for[one] and bolts[chosen] == after_state[empty] and fits(held, placed)
     start: {do: ["goal := left if is_heavy[held]"]}
-    executing: "at least 1 p in {p1, p2}, q in ends: bolts[p] == bolts[q] and p != last(part)"
+    executing: "at least 1 p in {p1, p2}, q in ends: bolts[p] != bolts[q] and p != last(part)"
     finish: {when: "exactly 1 q in ends: is_done(q) or bolts[q] == placed"}
     effects:
       holds: {kind: executing, when: held == bare, do: ["held := small"]}

@@ -464,7 +464,8 @@ def _action(text: str) -> object:
         (
             _action,
             "tool := ‹tool_for[at]›",
-            "`tool_for[at]` depends on the state: write one action for each case, with `if`",
+            "`tool_for[at]` depends on the state: give the ability a parameter for the case, and let its condition say "
+            "which case it is",
         ),
     ],
 )

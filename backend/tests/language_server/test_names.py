@@ -126,7 +126,7 @@ def test_an_editor_that_renames_no_files_is_told_so(station: Path) -> None:
     [
         ("set tool", "is no name"),
         ("tool_is_idle", "is there already: choose another name"),
-        ("and", "none of the words of the language"),
+        ("and", "`and` is a word of the language: take another name"),
     ],
 )
 def test_names_that_are_refused(editor: Editor, station: Path, name: str, why: str) -> None:

@@ -259,7 +259,7 @@ def test_nobody_writes_whether_an_operation_is_active(tmp_path: Path) -> None:
 def test_no_resource_takes_the_name_of_the_operations(tmp_path: Path) -> None:
     station = copy_of_cell(tmp_path)
     [place] = write(station, "resources/operation.yaml", "‹title: Operation\n")
-    message = "`operation` stands for the operations in expressions: give the resource another name"
+    message = "`operation` stands for the operations in expressions: take another name"
     assert findings(station) == [f"{place}: {message}"]
 
 
@@ -405,7 +405,7 @@ def test_a_parameter_must_not_hide_a_variable_of_the_station(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("parameter", "message"),
     [
-        ("executing", "`executing` is a flag of every ability: give the parameter another name"),
+        ("executing", "`executing` is a flag of every ability: take another name"),
         ("home", "the parameter `home` hides the value `home` of `target`: rename one of them"),
     ],
 )

@@ -22,7 +22,9 @@ NO_TOPIC = (
     "of letters, digits and single underscores, no part beginning with a digit"
 )
 NO_QUOTES = "`'` has no meaning here; write values without quotes"
-NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the language"
+NO_NAME = "is no name: use letters, digits and `_`, and no digit first"
+
+WORD = "`implies` is a word of the language: take another name"
 
 
 @pytest.mark.parametrize(
@@ -163,16 +165,34 @@ NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the
         ),
         # names
         (ARM, "  moving: {type", "  ‹my-arm: {type: bool}\n  moving: {type", f"`my-arm` {NO_NAME}"),
-        (ARM, "  moving: {type", "  ‹in: {type: bool}\n  moving: {type", f"`in` {NO_NAME}"),
+        (
+            ARM,
+            "  moving: {type",
+            "  ‹in: {type: bool}\n  moving: {type",
+            "`in` is a word of the language: take another name",
+        ),
         (
             ARM,
             "  moving: {type",
             "  ‹executing: {type: bool}\n  moving: {type",
-            "`executing` is a flag of every ability: give the variable another name",
+            "`executing` is a flag of every ability: take another name",
         ),
+        # one rule for all names
+        (STATION, "  fill: [empty, full]", "  fill: [empty, full, ‹implies]", WORD),
+        (STATION, "enumerations:\n", "sets: {‹implies: {of: fill, values: [full]}}\nenumerations:\n", WORD),
+        (STATION, "enumerations:\n", "predicates: {‹implies: true}\nenumerations:\n", WORD),
+        (
+            STATION,
+            "enumerations:\n",
+            "predicates: {p: {parameters: {‹implies: fill}, when: true}}\nenumerations:\n",
+            WORD,
+        ),
+        (ARM, "  moving: {type", "  ‹implies: {type: bool}\n  moving: {type", WORD),
+        (ARM, "abilities:\n", "abilities:\n  ‹implies: {enabled: moving}\n", WORD),
+        (OPERATIONS, "fetch:\n", "‹implies:\n", WORD),
         (STATION, "  fill: [empty, full]", "  fill: [empty, full, ‹half full]", f"`half full` {NO_NAME}"),
         (STATION, "  fill: [empty, full]", "  fill: [empty, full, ‹empty]", "duplicate value `empty` in `fill`"),
-        (STATION, "  fill: [", "  ‹bool: [x]\n  fill: [", "`bool` is a type already: rename the enumeration"),
+        (STATION, "  fill: [", "  ‹bool: [x]\n  fill: [", "`bool` is a type already: take another name"),
         (OPERATIONS, "fetch:\n", "‹fetch part:\n", f"`fetch part` {NO_NAME}"),
         # who writes what
         (
@@ -203,7 +223,14 @@ NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the
             ARM,
             "do: [goto := position]",
             "do: [goto := position, ‹goto := home]",
-            "`arm.goto` is written twice by one transition",
+            "`arm.goto` is written twice by one transition: keep one of the two",
+        ),
+        (
+            ARM,
+            "do: [pose := unknown, moving := true]",
+            "do: [moving := true if goto == home, ‹moving := false if goto != home]",
+            "`arm.moving` is written twice by one transition: put the cases into one value, such as "
+            "`(A and B) or (C and D)`",
         ),
         (
             ARM,

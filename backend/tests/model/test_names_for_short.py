@@ -9,6 +9,9 @@ from pathlib import Path
 import pytest
 
 from editor.shorthand import SHORTHAND
+from sequence_planner.automaton.tick import initial_state, writes
+from sequence_planner.language.evaluator import holds
+from sequence_planner.station import prepare_station
 
 from .breaking import findings, replace, write
 
@@ -126,6 +129,38 @@ def test_what_is_wrong_elsewhere_is_told_all_the_same(press: Path) -> None:
     ]
 
 
+def test_a_circle_is_told_once_and_where_it_is(press: Path) -> None:
+    old = "predicates:\n"
+    [itself] = replace(press, STATION, old, f"{old}  leads_there: arm.hen\n  one: arm.two\n  itself: ‹itself\n")
+    [hen] = replace(press, ARM, old, f"{old}  hen: ‹egg\n  egg: chick\n  chick: hen and leads_there\n  two: hen\n")
+    assert findings(press) == [
+        f"{hen}: predicates need each other in a circle: arm.egg → arm.chick → arm.hen → arm.egg",
+        f"{itself}: predicates need each other in a circle: itself → itself",
+    ]
+
+
+def test_a_value_by_cases_is_written_as_is_told(press: Path) -> None:
+    advice = "give the ability a parameter for the case, and let its condition say which case it is"
+    start = "start: {do: [target := to]}"
+    [place] = replace(press, ARM, start, "start: {do: [target := home if at == out, ‹target := out if at == home]}")
+    assert findings(press) == [f"{place}: `arm.target` is written twice by one transition: {advice}"]
+    replace(press, ARM, "start: {do: [target := home if at == out, target := out if at == home]}", start)
+    lead, map_ = "maps:\n", "  away: {from: spot, to: spot, values: {home: out}, otherwise: home}\n"
+    replace(press, STATION, lead, lead + map_)
+    away = "  leave:\n    start: {{do: ['target := {}']}}\n    until: at == target\n"
+    [place] = replace(press, ARM, "abilities:\n", "abilities:\n" + away.format("‹away[at]"))
+    assert findings(press) == [f"{place}: `away[at]` depends on the state: {advice}"]
+    parameter = "  leave:\n    parameters: {here: spot}\n    enabled: at == here\n"
+    replace(press, ARM, away.format("away[at]"), away.format("away[here]").replace("  leave:\n", parameter))
+    automaton = prepare_station(press).automaton
+    for here, value in {"home": "out", "left": "home", "right": "home", "out": "home"}.items():
+        leave = automaton.abilities[f"arm.leave({here})"]
+        state = {**initial_state(automaton), "arm.at": here, "arm.target": "left"}
+        assert holds(leave.enabled, state)
+        assert writes(leave.start_actions, state) == {"arm.target": value}
+        assert not holds(leave.enabled, {**state, "arm.at": "nowhere"})
+
+
 COLON = "put quotes around a text with a colon, as in"
 MOVED = '["all p in part where p == next(chosen): bolts[p] := placed if p != first(ends)"]'
 
@@ -147,7 +182,7 @@ MOVED = '["all p in part where p == next(chosen): bolts[p] := placed if p != fir
         ),
         (
             STATION,
-            'rest: "none p in part where p < chosen and is_done(p): bolts[p] == placed"',
+            'rest: "none p in part where p < chosen and is_done(p): bolts[p] == tight"',
             "‹rest:\n  at most 2 p in part: bolts[p] == placed",
             f'expected a text or true or false, found a mapping: {COLON} "at most 2 p in part: …"',
         ),

@@ -379,12 +379,12 @@ HIDES = "rename one of them"
         (
             PARAMETERS,
             f"{PARAMETERS}  ‹enabled: text\n",
-            "`enabled` is a flag of every ability: give the parameter another name",
+            "`enabled` is a flag of every ability: take another name",
         ),
         (
             PARAMETERS,
             f"{PARAMETERS}  ‹in: text\n",
-            "`in` is no name: use letters, digits and `_`, and none of the words of the language",
+            "`in` is a word of the language: take another name",
         ),
         (PARAMETERS, "‹paramters:\n", "`paramters` is not known here; did you mean `parameters`?"),
         (PARAMETERS, f"type: ‹robot\n{PARAMETERS}", "`robot` is a type of itself: robot → robot"),

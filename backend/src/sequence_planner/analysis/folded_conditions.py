@@ -1,26 +1,31 @@
 """Conditions that relations, maps, quantifiers and orders make true or false for good.
 
-In an automaton they are constants, which nobody can tell from what was meant so; here they are as they were written.
+In an automaton most are constants, which nobody can tell from what was meant so; here they are as they were written.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import product
+from math import prod
 from typing import NamedTuple
 
 from sequence_planner.analysis.checks.warning import ModelWarning, shortened
 from sequence_planner.automaton.declarations import Declarations
 from sequence_planner.automaton.findings import Binding, Findings, instance_name
-from sequence_planner.automaton.shorthand import RESERVED
+from sequence_planner.language.evaluator import holds
 from sequence_planner.language.parser import parse
 from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.simplifier import simplify
-from sequence_planner.language.syntax import And, Constant, Expression, ExpressionError, Span
+from sequence_planner.language.syntax import And, Constant, Expression, ExpressionError, Span, occurrences
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import AbilityDocument
+from sequence_planner.model.fields import RESERVED
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
+
+MOST_VALUES = 1000  # of what a condition reads, all combinations
 
 
 class _Condition(NamedTuple):
@@ -45,15 +50,16 @@ def check_folded(station: Station) -> Iterator[ModelWarning]:
         for span, truth in _parts(condition):
             written = condition.text[span.start : span.end]
             if told.search(written) and not _is_given(condition.text, span):
-                place = condition.text.at(span)._replace(instance="")
+                is_whole = written == condition.text.strip()  # told at the same place as what the automaton says of it
+                place = (condition.text.place if is_whole else condition.text.at(span))._replace(instance="")
                 found.setdefault(place, (written, set()))[1].add(truth)
     for place, (written, truths) in sorted(found.items()):
         if truths in ({True}, {False}):
-            holds, advice = ("always", "leave it out, or write") if truths == {True} else ("never", "write")
+            when, advice = ("always", "leave it out, or write") if truths == {True} else ("never", "write")
             message = (
-                f"{shortened(written)} {holds} holds, whatever the values of its variables: {advice} what was meant"
+                f"{shortened(written)} {when} holds, whatever the values of its variables: {advice} what was meant"
             )
-            yield ModelWarning(place, f"{holds}-holds", message)
+            yield ModelWarning(place, f"{when}-holds", message)
 
 
 def _conditions(station: Station, declarations: Declarations) -> Iterator[_Condition]:
@@ -101,7 +107,19 @@ def _truth(part: Expression, scope: NameScope) -> bool | None:
         found = simplify(resolve_predicate(part, scope))
     except ExpressionError:
         return None
-    return found.value if isinstance(found, Constant) and isinstance(found.value, bool) else None
+    if isinstance(found, Constant):
+        return found.value if isinstance(found.value, bool) else None
+    return True if _always_holds(found) else None
+
+
+def _always_holds(condition: Expression) -> bool:
+    """Return whether a condition holds for all values, as one on a map does that has it for each; false where these are
+    too many.
+    """
+    read = {each.name: each.type.domain for each in occurrences(condition)}
+    if prod(map(len, read.values())) > MOST_VALUES:
+        return False
+    return all(holds(condition, dict(zip(read, values, strict=True))) for values in product(*read.values()))
 
 
 def _is_given(text: SourceText, span: Span) -> bool:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from sequence_planner.analysis.guard_documents import Document, GuardDocument, LiftedGuard
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.printer import print_expression
+from sequence_planner.model.source import Finding, alike_in_types, in_instances
 
 if TYPE_CHECKING:
     from sequence_planner.analysis.analysis import Analysis
     from sequence_planner.analysis.checks.warning import ModelWarning
-    from sequence_planner.model.source import Finding
     from sequence_planner.synthesis.guards import SupervisorGuard
     from sequence_planner.synthesis.traces import Trace
 
@@ -42,7 +42,7 @@ class TraceDocument(Document):
 
 class FindingDocument(Document):
     """Something suspicious, where it is written, and a run that shows it. Where it is said of several instances in one,
-    as in `for all pair in bolt_pair`, `members` are these, and the run is that of the first.
+    as in `for all pair in bolt_pair`, or of a type, `members` are these, and the run is that of the first.
     """
 
     severity: str
@@ -93,21 +93,35 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
     )
 
 
-def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[FindingDocument]:
-    """The warnings of a model that can be used."""
-    return [
-        FindingDocument(
-            severity="warning",
-            kind=warning.kind,
-            file=warning.place.file,
-            line=warning.place.line,
-            column=warning.place.column,
-            message=warning.message,
-            members=list(warning.members),
-            trace=None if warning.trace is None else trace_document(automaton, warning.trace),
-        )
-        for warning in warnings
-    ]
+def findings_of(
+    automaton: Automaton, warnings: Iterable[ModelWarning], written: Iterable[ModelWarning] = ()
+) -> list[FindingDocument]:
+    """The warnings of a model that can be used, those of its automaton and those of what is `written`. What is so of
+    one place in both is said in the words that stand there. What is so in several instances of a type is said once of
+    all of them, and its run is that of the first.
+    """
+    as_written = list(written)
+    said = {(each.place._replace(instance=""), each.kind) for each in as_written}
+    found = [each for each in warnings if (each.place._replace(instance=""), each.kind) not in said]
+    alike = alike_in_types([*found, *as_written], lambda each: Finding(each.place, each.message))
+    return [_told(automaton, each) for each in alike]
+
+
+def _told(automaton: Automaton, alike: Sequence[ModelWarning]) -> FindingDocument:
+    first, *others = alike
+    members = [name for each in alike for name in each.members]
+    if others and not members:
+        members = [each.place.instance.partition(" ")[0] for each in alike if each.place.instance]
+    return FindingDocument(
+        severity="warning",
+        kind=first.kind,
+        file=first.place.file,
+        line=first.place.line,
+        column=first.place.column,
+        message=f"{in_instances([each.place for each in alike])}{first.message}",
+        members=members,
+        trace=None if first.trace is None else trace_document(automaton, first.trace),
+    )
 
 
 def error_document(finding: Finding) -> FindingDocument:

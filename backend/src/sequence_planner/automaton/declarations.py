@@ -12,14 +12,13 @@ from sequence_planner.automaton.automaton import Ability, Effect, Kind, Variable
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, without_arguments
 from sequence_planner.automaton.lifting.titles import TitleReader
 from sequence_planner.automaton.shorthand import (
-    RESERVED,
     ShorthandReader,
     own_values,
     parts_of,
     read_enumerations,
     written_predicates,
 )
-from sequence_planner.language.lexer import KEYWORDS, MOST_DIGITS
+from sequence_planner.language.lexer import MOST_DIGITS
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.shorthand.vocabulary import Vocabulary
 from sequence_planner.language.types import (
@@ -33,16 +32,15 @@ from sequence_planner.language.types import (
 )
 from sequence_planner.model import fields
 from sequence_planner.model.documents import AbilityDocument, EnumerationDocument, Parameters, VariableDocument
-from sequence_planner.model.fields import Predicate
+from sequence_planner.model.fields import SHORT, Predicate, fault_of_name
 from sequence_planner.model.loader import Station
 from sequence_planner.model.paths import parse_path
 from sequence_planner.model.source import Finding, SourceText
 
 FLAGS = fields.FLAGS
-OPERATION = "operation"  # the first part of the name of what the tick knows of an operation
+OPERATION = fields.OPERATION
 MOST_VALUES = 1000  # of a range; every value costs memory in plans and supervisors
 
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _RANGE = re.compile(r"(-?[0-9]{1,18})\s*\.\.\s*(-?[0-9]{1,18})")
 _KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
 
@@ -135,11 +133,11 @@ class Declarations:
             for values in product(*(type_.values for type_ in types))
         ]
 
-    def check_name(self, name: SourceText) -> None:
-        """Note a name that is none."""
-        if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
-            message = f"`{name}` is no name: use letters, digits and `_`, and none of the words of the language"
-            self._findings.add(name, message)
+    def check_name(self, name: SourceText, kind: str) -> bool:
+        """Return whether a part of this kind can have a name; what is wrong with it is noted."""
+        if (fault := fault_of_name(name, kind)) is not None:
+            self._findings.add(name, fault)
+        return fault is None
 
     def check_parameters(self, parameters: Mapping[SourceText, SourceText], *prefixes: str) -> None:
         """Note parameters that are none, and those that would hide something: a variable of the station or under
@@ -147,9 +145,7 @@ class Declarations:
         """
         values = {value: each for each, type_ in self.enumerations.items() for value in type_.values}
         for name, enumeration in parameters.items():
-            self.check_name(name)
-            if name in FLAGS:
-                self._findings.add(name, f"`{name}` is a flag of every ability: give the parameter another name")
+            self.check_name(name, "parameter")
             if name in values:
                 message = f"the parameter `{name}` hides the value `{name}` of `{values[name]}`: rename one of them"
                 self._findings.add(name, message)
@@ -165,10 +161,7 @@ class Declarations:
     def _check_resources(self) -> None:
         for name in self._station.resources:
             file = str(self._station.folder / "resources" / f"{name}.yaml")
-            self.check_name(SourceText(name, Place(file, 1, 1), name))
-            if name == OPERATION:
-                message = f"`{OPERATION}` stands for the operations in expressions: give the resource another name"
-                self._findings.add(Place(file, 1, 1), message)
+            self.check_name(SourceText(name, Place(file, 1, 1), name), "resource")
 
     def _declare(self, name: str, key: SourceText) -> bool:
         """Return whether `name` is new; a second declaration is a finding."""
@@ -181,18 +174,16 @@ class Declarations:
 
     def _read_enumerations(self) -> None:
         for name, document in self._station.station.enumerations.items():
-            self.check_name(name)
-            if name == "bool":
-                self._findings.add(name, "`bool` is a type already: rename the enumeration")
+            self.check_name(name, "enumeration")
             values = own_values(document)
             for index, value in enumerate(values):
-                self.check_name(value)
+                self.check_name(value, "value")
                 if value in values[:index]:
                     self._findings.add(value, f"duplicate value `{value}` in `{name}`")
         self.enumerations |= read_enumerations(self._station, self._findings, self.unusable)
         for name, type_ in ShorthandReader(self, self._station, self._findings).read_sets():
-            self.check_name(name)
-            if name in self._station.station.enumerations or name == "bool":
+            self.check_name(name, "set")
+            if name in self._station.station.enumerations:
                 self._findings.add(name, f"`{name}` is an enumeration already: give the set another name")
             else:
                 self.enumerations[str(name)] = type_
@@ -224,12 +215,7 @@ class Declarations:
                 yield f"{resource}.{name}", name
 
     def _declare_short(self, full: str, name: SourceText) -> None:
-        self.check_name(name)
-        if name in RESERVED:
-            self._findings.add(name, f"`{name}` is a word of quantifiers and orders: take another name")
-        elif name in FLAGS:
-            self._findings.add(name, f"`{name}` is a flag of every ability: take another name")
-        else:
+        if self.check_name(name, SHORT[0]):
             self._declare(full, name)
 
     def _read_variables(self) -> None:
@@ -262,11 +248,9 @@ class Declarations:
         ]
 
     def _read_variable(self, resource: str | None, name: SourceText, document: VariableDocument, kind: Kind) -> None:
-        self.check_name(name)
+        self.check_name(name, "variable")
         full = name if resource is None else f"{resource}.{name}"
         type_ = self.type_of(name, document.type, kind)
-        if name in FLAGS:
-            self._findings.add(name, f"`{name}` is a flag of every ability: give the variable another name")
         self.check_parameters(document.each)
         if not self._declare(full, name):
             return
@@ -329,7 +313,7 @@ class Declarations:
     def _declare_flags(self) -> None:
         for resource, document in self._station.resources.items():
             for name, ability in document.abilities.items():
-                self.check_name(name)
+                self.check_name(name, "ability")
                 self.check_parameters(ability.parameters, f"{resource}.")
                 if self._declare(f"{resource}.{name}", name) and not self.bindings(ability.parameters):
                     self.broken.add(f"{resource}.{name}")
@@ -339,7 +323,7 @@ class Declarations:
 
     def _declare_activities(self) -> None:
         for name, document in self._station.operations.items():
-            self.check_name(name)
+            self.check_name(name, OPERATION)
             self.check_parameters(document.parameters)
             bindings = self.bindings(document.parameters)
             if not bindings:

@@ -41,7 +41,6 @@ from sequence_planner.language.fitting import misfit
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.resolver import (
     NameScope,
-    UnusableError,
     resolve_assignments,
     resolve_formula,
     resolve_predicate,
@@ -52,19 +51,21 @@ from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
     Assignment,
+    CircleError,
     Constant,
     Expression,
     ExpressionError,
     Name,
     Not,
     Or,
+    UnusableError,
     Variable,
     conjunction,
     conjuncts,
     occurrences,
     variables,
 )
-from sequence_planner.language.types import BOOLEAN, Place
+from sequence_planner.language.types import BOOLEAN, BooleanType, Place
 from sequence_planner.model.documents import (
     AbilityDocument,
     EffectDocument,
@@ -90,6 +91,15 @@ def _not_a_variable(name: str) -> str:
     return "the activity of an operation" if name.startswith(f"{OPERATION}.") else "a flag of an ability"
 
 
+def _written_twice(variable: VariableDeclaration, one: Assignment, other: Assignment) -> str:
+    wrong = f"`{variable.name}` is written twice by one transition"
+    if one.condition is None and other.condition is None:
+        return f"{wrong}: keep one of the two"
+    if isinstance(variable.type, BooleanType):
+        return f"{wrong}: put the cases into one value, such as `(A and B) or (C and D)`"
+    return f"{wrong}: give the ability a parameter for the case, and let its condition say which case it is"
+
+
 class Writing(NamedTuple):
     """A writer, in words, and the kinds of variables that it may write."""
 
@@ -103,6 +113,7 @@ class Meaning:
     def __init__(self, declarations: Declarations, findings: Findings) -> None:
         self.declarations = declarations
         self.findings = findings
+        self.circle: frozenset[str] = frozenset()  # of predicates that need each other, to which a text led
         self._activities: dict[str, None] = {}  # in order
 
     def scope(self, binding: Binding, *prefixes: str) -> NameScope:
@@ -131,7 +142,7 @@ class Meaning:
                 written = text[action.target.span.start : action.target.span.end]
                 self.findings.add(text, f"{writing.what} writes {permitted} variables, and `{written}` is {kind}")
             elif name in actions:
-                self.findings.add(text, f"`{name}` is written twice by one transition")
+                self.findings.add(text, _written_twice(variable, actions[name], action))
             elif action.condition != FALSE:
                 actions[name] = action
                 self._check_fits(text, action, guard)
@@ -197,6 +208,8 @@ class Meaning:
     def _misread(self, text: SourceText, error: ExpressionError, scope: NameScope) -> None:
         if isinstance(error, UnusableError):
             return  # what is wrong is told where the predicate is declared
+        if isinstance(error, CircleError):
+            self.circle = frozenset(error.circle)
         name = without_arguments(text[error.span.start : error.span.end])
         owner = name.rpartition(".")[0]  # of a flag
         known = [prefix + one for prefix in (*scope.prefixes, "") for one in (name, owner)]
@@ -219,14 +232,19 @@ class Meaning:
 
 
 def check_predicates(meaning: Meaning) -> None:
-    """Note what is wrong with a predicate, once and where it is declared, for all values of its parameters."""
+    """Note what is wrong with a predicate, once and where it is declared, for all values of its parameters; a circle at
+    the first predicate that is in it.
+    """
     declarations = meaning.declarations
+    told: set[frozenset[str]] = set()  # circles
     for full, prefixes, parameters, condition in declarations.written_predicates():
         apart = Meaning(declarations, Findings())
         for binding in declarations.bindings(parameters):
             apart.predicate(condition, apart.scope(binding, *prefixes))
-            if apart.findings.all:
-                meaning.take(apart.findings.all, ())
+            if found := apart.findings.all:
+                if not apart.circle or (full in apart.circle and apart.circle not in told):
+                    meaning.take(found, ())
+                    told.add(apart.circle)
                 declarations.broken.add(full)
                 break
 
@@ -426,7 +444,7 @@ def ground_operations(meaning: Meaning, station: Station) -> dict[str, Operation
     """All operations by name, in the order of the sequences."""
     operations = {operation.name: operation for operation in _operations(meaning, station.operations)}
     for name in station.sequences:
-        meaning.declarations.check_name(name)
+        meaning.declarations.check_name(name, "sequence")
     ordered = station_sequences(meaning, station, operations).ordered(operations)
     read = (
         each
@@ -454,7 +472,9 @@ def ground_work_masters(
         for name, operation in operations.items()
     }
     for name, document in station.work_masters.items():
-        meaning.declarations.check_name(name)
+        meaning.declarations.check_name(name, "work_master")
+        if document.brings:
+            meaning.declarations.places[f"work_master.{name}.brings"] = document.brings[0].place
         order = sequences.order_of(document)
         check_steps(meaning, order.steps, operations, ordered, name)
         masters[str(name)] = WorkMaster(
@@ -554,7 +574,7 @@ def ground_specifications(
     specifications: dict[str, Specification] = {}
     known = list(resources)
     for name, document in documents.items():
-        meaning.declarations.check_name(name)
+        meaning.declarations.check_name(name, "specification")
         meaning.declarations.check_parameters(document.parameters, *(f"{name}." for name in document.zone or ()))
         for binding in meaning.declarations.bindings(document.parameters):
             full = instance_name(name, binding)
@@ -641,7 +661,7 @@ def ground_alarms(meaning: Meaning, station: Station) -> dict[str, AlarmDeclarat
     found = {}
     for resource, documents in ((None, station.station.alarms), *((n, d.alarms) for n, d in station.resources.items())):
         for name, document in documents.items():
-            meaning.declarations.check_name(name)
+            meaning.declarations.check_name(name, "alarm")
             full = str(name) if resource is None else f"{resource}.{name}"
             scope = meaning.scope({}, *(() if resource is None else (f"{resource}.",)))
             found[full] = AlarmDeclaration(

@@ -9,8 +9,8 @@ from typing import Any, Protocol, TypeVar
 
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.findings import Findings
-from sequence_planner.language.parser import QUANTIFIERS, parse
-from sequence_planner.language.resolver import ENDS, STEPS, suggestion
+from sequence_planner.language.parser import parse
+from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.shorthand.vocabulary import NamedPredicate, ValueMap, ValueRelation
 from sequence_planner.language.syntax import FALSE, TRUE, Expression, ExpressionError
 from sequence_planner.language.types import EnumerationType, Place, Type, Value, contains
@@ -27,9 +27,6 @@ from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
 
 D = TypeVar("D")
-
-# Words that a text would take for something else.
-RESERVED = frozenset({*STEPS, *ENDS, *QUANTIFIERS, "exactly", "where"})
 
 # Enumerations and named sets.
 

@@ -38,6 +38,24 @@ def named(known: Mapping[str, T], name: str, what: str) -> T:
     return known[name]
 
 
+MOST_NAMED = 4  # of several operations
+
+
+def named_operation(automaton: Automaton, name: str) -> str:
+    """Return the name of an operation; end the command if it is none, and say which are meant if it is of several."""
+    if name in automaton.operations:
+        return name
+    within = [each for each in automaton.operations if f"operation.{each}.sequence.{name}" in automaton.places]
+    if name in automaton.work_masters:
+        within = [each for each in automaton.operations if each in automaton.work_masters[name].operations]
+    if within:
+        what = "a work master" if name in automaton.work_masters else "a sequence"
+        some = ", ".join(f"`{each}`" for each in within[:MOST_NAMED])
+        of = f"its operations are {some}" + (f" and {more} more" if (more := len(within) - MOST_NAMED) > 0 else "")
+        refuse(f"`{name}` is {what}, and a plan is for operations that are active together: name some ({of})")
+    return named(automaton.operations, name, "operation").name
+
+
 def moment(automaton: Automaton, file: str | None) -> StartingPoint:
     """Return what `file` holds, as `tick --json` writes it.
 

@@ -15,7 +15,6 @@ from typing import Literal
 
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS
-from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.language.records.record import (
     FieldType as RecordFieldType,
 )
@@ -28,6 +27,7 @@ from sequence_planner.language.records.record import (
 )
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, IntegerRange
+from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.yaml.editor import Layout, in_brackets, insert, replace, same
 from sequence_planner.model.yaml.reader import read_text
@@ -187,13 +187,13 @@ def _depth(reliable: bool, transient_local: bool) -> int:
 
 # Which names of a resource are free for what a new topic brings.
 
-_RESOURCE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
-
 
 def check_resource(name: str) -> None:
     """Raise `AttachError` unless a resource may have this name."""
-    if not _RESOURCE.fullmatch(name) or name in KEYWORDS | {"null"}:
-        raise AttachError("bad-name", f"`{name}` is no name for a resource: write letters, digits and underscores")
+    if (fault := fault_of_name(name, "resource")) is not None:
+        raise AttachError("bad-name", fault)
+    if name == "null":
+        raise AttachError("bad-name", f"`{name}` is no name that YAML would read as a text: take another name")
 
 
 def renamed(

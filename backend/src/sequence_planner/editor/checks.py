@@ -75,7 +75,7 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
     view = view.model_copy(update={"summary": summary, "doing": "what is suspicious"})
     yield view
     with collection_put_off():
-        warnings = findings_of(automaton, [*check_automaton(automaton, station.connections), *station.suspicions()])
+        warnings = findings_of(automaton, check_automaton(automaton, station.connections), station.suspicions())
     view = view.model_copy(update={"findings": listed(sorted(warnings, key=_place))})
     for document in documents(automaton):
         found = sorted([*warnings, *(document.findings or ())], key=_place)

@@ -54,6 +54,7 @@ from sequence_planner.language.syntax import (
     Assignment,
     BinaryTemporal,
     Binder,
+    CircleError,
     Comparison,
     Component,
     Constant,
@@ -70,6 +71,7 @@ from sequence_planner.language.syntax import (
     Selection,
     Span,
     UnaryTemporal,
+    UnusableError,
     Variable,
     conjunction,
     first_temporal,
@@ -93,14 +95,6 @@ ENDS = {"first": 0, "last": -1}
 
 # What a comparison is with its sides exchanged.
 MIRRORED = {"==": "==", "!=": "!=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
-
-
-class UnusableError(ExpressionError):
-    """Something is used that is wrong where it is declared."""
-
-
-class CircleError(ExpressionError):
-    """A predicate needs itself."""
 
 
 class NameScope(Immutable):
@@ -273,8 +267,8 @@ def _written(expression: Expression, scope: NameScope, expected: Type) -> Expres
     resolved, found = _typed(expression, scope, expected)
     if isinstance(resolved, BY_CASES):
         if not isinstance(found, BooleanType):
-            message = f"`{print_name(expression)}` depends on the state: write one action for each case, with `if`"
-            raise ExpressionError(message, expression.span)
+            advice = "give the ability a parameter for the case, and let its condition say which case it is"
+            raise ExpressionError(f"`{print_name(expression)}` depends on the state: {advice}", expression.span)
         resolved = truth_of(resolved, expression.span)
     fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else overlap(found, expected)
     if not fits:
@@ -507,8 +501,8 @@ def expand(predicate: NamedPredicate, words: tuple[str, ...], scope: NameScope, 
     if (known := vocabulary.expanded.get(key)) is not None:
         return known
     if predicate.name in vocabulary.expanding:
-        circle = [*vocabulary.expanding[vocabulary.expanding.index(predicate.name) :], predicate.name]
-        raise CircleError(f"predicates need each other in a circle: {' → '.join(circle)}", span)
+        circle = (*vocabulary.expanding[vocabulary.expanding.index(predicate.name) :], predicate.name)
+        raise CircleError(circle, span)
     parameters = {
         parameter: (word, type_) for (parameter, type_), word in zip(predicate.parameters.items(), words, strict=True)
     }
@@ -517,7 +511,7 @@ def expand(predicate: NamedPredicate, words: tuple[str, ...], scope: NameScope, 
     try:
         found = simplify(resolve_predicate(predicate.body, own))
     except CircleError as error:
-        raise CircleError(error.message, span) from None
+        raise CircleError(error.circle, span) from None
     except ExpressionError as error:
         raise UnusableError(f"`{predicate.name}` means nothing: {error.message}", span) from None
     finally:

@@ -32,6 +32,18 @@ class ExpressionError(Exception):
         self.span = span
 
 
+class UnusableError(ExpressionError):
+    """Something is used that is wrong where it is declared."""
+
+
+class CircleError(ExpressionError):
+    """A predicate needs itself, over those of `circle`, which begins and ends with it."""
+
+    def __init__(self, circle: tuple[str, ...], span: Span) -> None:
+        super().__init__(f"predicates need each other in a circle: {' → '.join(circle)}", span)
+        self.circle = circle
+
+
 class Constant(Immutable):
     """A truth value, an integer, or the name of an enumeration's value."""
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self, TypeVar
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
@@ -37,21 +38,36 @@ def told_once(findings: list[Finding]) -> list[Finding]:
     """The same, with one for what is wrong in a type, which names the instances that have it."""
     if not any(finding.place.instance for finding in findings):
         return findings
-    told: dict[tuple[Place, str], list[Finding]] = {}
-    for finding in findings:
-        own = re.escape(finding.place.instance.partition(" ")[0] or "\0")
-        alike = re.sub(rf"\b{own}\b", "\0", finding.message)
-        told.setdefault((finding.place._replace(instance=""), alike), []).append(finding)
     return [
-        Finding(place, each[0].message if not each[0].place.instance else f"{_instances(each)}: {each[0].message}")
-        for (place, _), each in told.items()
+        Finding(
+            alike[0].place._replace(instance=""), f"{in_instances([each.place for each in alike])}{alike[0].message}"
+        )
+        for alike in alike_in_types(findings, lambda each: each)
     ]
 
 
-def _instances(findings: list[Finding]) -> str:
-    first, *others = (finding.place.instance for finding in findings)
+T = TypeVar("T")
+
+
+def alike_in_types(said: Iterable[T], finding: Callable[[T], Finding]) -> list[list[T]]:
+    """What is said, each with its `finding`: what is the same of one place in a type, but for the names of its
+    instances, together.
+    """
+    together: dict[tuple[Place, str], list[T]] = {}
+    for each in said:
+        place, message = (found := finding(each)).place, found.message
+        own = re.escape(place.instance.partition(" ")[0] or "\0")
+        together.setdefault((place._replace(instance=""), re.sub(rf"\b{own}\b", "\0", message)), []).append(each)
+    return list(together.values())
+
+
+def in_instances(places: Sequence[Place]) -> str:
+    """Name the instances of a type of which something is said there; say nothing where it is not said of a type."""
+    first, *others = (each.instance for each in places)
     names = [first, *(other.partition(" ")[0] for other in others)]
-    return f"in {', '.join(names[:-1])} and {names[-1]}" if others else f"in {first}"
+    if not first:
+        return ""
+    return f"in {', '.join(names[:-1])} and {names[-1]}: " if others else f"in {first}: "
 
 
 class SourceText(str):

@@ -108,9 +108,9 @@ def test_a_name_can_be_given(folds: list[Fold], finder: FoldFinder, files: dict[
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("2nd", "`2nd` is no name: letters, digits and `_`, and no digit first"),
+        ("2nd", "`2nd` is no name: use letters, digits and `_`, and no digit first"),
         ("tool", "`tool` is the name of something else: take another one"),
-        ("in", "the fold `{}` with the name `in` cannot be proven to leave what the station means as it is"),
+        ("in", "`in` is a word of the language: take another name"),
     ],
 )
 def test_a_name_that_cannot_be(

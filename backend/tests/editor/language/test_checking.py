@@ -58,7 +58,7 @@ def test_nothing_is_found_in_the_texts_of_a_station_that_grounds(station: str) -
             "set_tool_idle := true",
             0,
             21,
-            "`nutrunner.set_tool_idle` is written twice by one transition",
+            "`nutrunner.set_tool_idle` is written twice by one transition: keep one of the two",
         ),
         (TOOL, START, "run_tool_forward = true", 17, 18, "`=` has no meaning here; write == (or := in an action)"),
         (TOOL, START, "run_tool_forward :=", 19, 19, "expected a name, a value or `(`, found the end of the text"),

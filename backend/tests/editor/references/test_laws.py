@@ -17,6 +17,7 @@ from sequence_planner.ros.types.messages import MessageRegistry
 from ..shorthand import SHORTHAND
 from .stations import CELL, IN_SEQUENCE, REPOSITORY, changed, described, messages_of, of_folder, of_page, write
 
+TYPED = of_folder(REPOSITORY / "models" / "robots_with_buffer")
 STATIONS = {
     "bolt_tightening": of_folder(REPOSITORY / "models" / "bolt_tightening"),
     "model page": of_page("model.md"),
@@ -24,10 +25,15 @@ STATIONS = {
     "cell": CELL,
     "sequences": IN_SEQUENCE,
     "shorthand": SHORTHAND,
+    "types": TYPED,
 }
 LARGE = of_folder(REPOSITORY / "models" / "truck_engine_station")
-TYPED = of_folder(REPOSITORY / "models" / "robots_with_buffer")  # its laws are in test_types
 FRESH = "z9"
+# Why a part cannot be given another name in the model alone.
+REFUSED = {
+    "value": ("by their names", "whose names are given"),
+    "topic": ("its name is made of an argument of its type",),
+}
 
 
 def parts_of(files: Mapping[str, str], messages: MessageRegistry) -> list[ModelPart]:
@@ -58,17 +64,16 @@ class Renaming:
         for index in range(len(called)):
             old = called[index]
             if old.name.endswith(FRESH):
-                continue  # a value that is one with another
+                continue  # a value that is one with another, or what all instances of a type have
             if old.kind == "message":
                 continue  # all nodes know it by its name
-            is_value = old.kind == "value"
-            found = usages(self.files, old, self.messages).found if is_value else ()
+            is_one_with_others = old.kind == "value" or any(file.startswith("types/") for file in self.files)
+            found = usages(self.files, old, self.messages).found if is_one_with_others else ()
             together = {old, *(each.part for each in found)}
             try:
                 changes = renamed(self.files, old, fresh(old).name, self.messages)
             except EditError as error:
-                assert is_value, f"{old.id}: {error}"
-                assert "by their names" in str(error) or "whose names are given" in str(error), f"{old.id}: {error}"
+                assert any(reason in str(error) for reason in REFUSED.get(old.kind, ())), f"{old.id}: {error}"
                 self.refused.append(old)
                 continue
             self.done.append((fresh(old), self.files))

@@ -87,7 +87,7 @@ def test_the_same_name_changes_nothing() -> None:
     [
         ("ability:robot.move", "move it", "`move it` is no name"),
         ("ability:robot.move", "1st", "`1st` is no name"),
-        ("ability:robot.move", "and", "`and` is no name"),
+        ("ability:robot.move", "and", "`and` is a word of the language"),
         ("ability:robot.move", "null", "no name that YAML would read as a text"),
         ("variable:robot.last", "executing", "a flag of every ability"),
         ("enumeration:pose", "bool", "a type already"),

@@ -50,6 +50,19 @@ def test_usages_are_where_they_are_written() -> None:
         assert line[each.column - 1 :].startswith("target"), each
 
 
+def test_a_field_of_a_topic_of_the_type_is_one_variable_of_all_instances() -> None:
+    part = parse_part("variable:robot_1.part_on_conveyor")
+    assert {each.part.id for each in usages(FILES, part, MESSAGES).found} == {
+        "variable:robot_1.part_on_conveyor",
+        "variable:robot_2.part_on_conveyor",
+    }
+    changes = renamed(FILES, part, "has_part", MESSAGES)
+    assert "pipeline: [{rename: {part_on_conveyor: has_part}}]" in (changes[TYPE] or "")
+    now = changed(FILES, changes)
+    back = renamed(now, parse_part("variable:robot_2.has_part"), "part_on_conveyor", MESSAGES)
+    assert changed(now, back) == FILES
+
+
 @pytest.mark.parametrize(("name", "new"), [("stops", "goals"), ("conveyor", "belt"), ("namespace", "prefix")])
 def test_a_parameter_is_renamed_in_the_type_and_in_the_arguments(name: str, new: str, tmp_path: Path) -> None:
     changes = renamed(FILES, parse_part(f"parameter:type:robot.{name}"), new, MESSAGES)

@@ -14,6 +14,7 @@ from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.feasibility import UNKNOWN, FeasibilityFinding, Possibility, Subject
 from sequence_planner.analysis.checks.large_reachability import from_afar
 from sequence_planner.analysis.checks.reachability import Questions, ReachabilityQuery, bits
+from sequence_planner.analysis.checks.unmeetable import never_brought
 from sequence_planner.analysis.checks.warning import ModelWarning, listed, place, told_together
 from sequence_planner.automaton.automaton import Ability, Automaton
 from sequence_planner.automaton.dependencies import read_variables
@@ -66,7 +67,8 @@ class SupervisionQuestion:
 
     def warnings(self) -> list[ModelWarning]:
         """Return what can never be done, by place, with traces; and what is not known."""
-        return sorted(_warnings(self._automaton, self._subjects, _without_consequences(self._found)))
+        found = _warnings(self._automaton, self._subjects, _without_consequences(self._found))
+        return sorted([*found, *never_brought(self._automaton, self._safe)])
 
 
 def check_supervision(

@@ -168,7 +168,7 @@ class StationSequences:
     def ordered(self, operations: Mapping[str, Operation]) -> dict[str, Operation]:
         """The operations in the order of all sequences."""
         terms = read_sequences(self.reader)
-        for name, term in terms.items():
+        for name, term in self.reader.terms.items():
             for each in term.operations():
                 self._places[f"{OPERATION}.{each.name}.sequence.{name}"] = each.text.place
         return in_sequences(terms, operations)

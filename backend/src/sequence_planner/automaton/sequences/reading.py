@@ -76,6 +76,7 @@ class SequenceReader:
         self.station = station
         self._operations = operations
         self.used: set[str] = set()  # sequences that stand in others
+        self.terms: dict[str, SequenceTerm] = {}  # of all sequences, by name, once they are read
 
     def term_of(self, part: SequencePart, *names: str) -> SequenceTerm | None:
         """What a part means, within the sequences `names`; None where it means nothing."""
@@ -151,7 +152,8 @@ class SequenceReader:
 def read_sequences(reader: SequenceReader) -> dict[str, SequenceTerm]:
     """The sequences that stand in no other, by name; orders that contradict each other are noted."""
     found = {str(name): reader.term_of(document, str(name)) for name, document in reader.station.sequences.items()}
-    terms = {name: term for name, term in found.items() if term is not None and name not in reader.used}
+    reader.terms = {name: term for name, term in found.items() if term is not None}
+    terms = {name: term for name, term in reader.terms.items() if name not in reader.used}
     before: dict[str, dict[str, tuple[str, SourceText]]] = {}
     for name, term in terms.items():
         for after, earlier in orders_within(term):

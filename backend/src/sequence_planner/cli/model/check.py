@@ -158,11 +158,12 @@ def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checke
         refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FINDINGS)
     automaton = model.automaton
     found = checked(automaton, model.connections, limits)
-    warnings = [*found.suspicious, *([] if station is None else station.suspicions())]
+    suspicious = list(found.suspicious)
     if found.unfinished is not None:
         where = place(automaton, *automaton.specifications, "rest")
-        warnings.append(ModelWarning(where, "not-finished", found.unfinished))
-    findings = [*findings_of(automaton, warnings), *(found.document.findings or ())]
+        suspicious.append(ModelWarning(where, "not-finished", found.unfinished))
+    written = [] if station is None else station.suspicions()
+    findings = [*findings_of(automaton, suspicious, written), *(found.document.findings or ())]
     return Checked(model, sorted(findings, key=lambda each: (each.file, each.line, each.column, each.kind)), found)
 
 

@@ -14,7 +14,7 @@ from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import record_activity, update_operations
 from sequence_planner.cli.analysing import Limits, read_within, supervisor_of
-from sequence_planner.cli.initial_state import StartingPoint, StateFile, moment, named
+from sequence_planner.cli.initial_state import StartingPoint, StateFile, moment, named, named_operation
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.export.sequential import ExportError, sequential
 from sequence_planner.export.unified import UnifiedPlanning, planners
@@ -418,12 +418,12 @@ def plan(
     limits = Limits(deadline)
     automaton = read_within(model, limits)
     before = moment(automaton, state)
+    circumstances = _circumstances(automaton, offline or [], restart, avoid or [], without or [])
+    start, goals = _asked(automaton, before, operations or [], goal or [])
     try:
         supervisor = supervisor_of(automaton, limits)
     except SynthesisError as error:
         refuse(str(error))
-    circumstances = _circumstances(automaton, offline or [], restart, avoid or [], without or [])
-    start, goals = _asked(automaton, before, operations or [], goal or [])
     wanted = contract if other is None else Contract.FAST
     request = PlanRequest(start, goals, limits.left, contract=wanted, circumstances=circumstances)
     if not automaton.one_at_a_time:
@@ -534,7 +534,7 @@ def _asked(
     automaton: Automaton, before: StartingPoint, operations: Sequence[str], texts: Sequence[str]
 ) -> tuple[State, tuple[Goal, ...]]:
     """The state to plan from, and the goals. What is planned for has just become active, as in step 4 of a tick."""
-    chosen = frozenset(named(automaton.operations, name, "operation").name for name in operations)
+    chosen = frozenset(named_operation(automaton, name) for name in operations)
     if not chosen and not texts:
         chosen = _active(automaton, before)
     state = record_activity(automaton, before.state, before.active | chosen)

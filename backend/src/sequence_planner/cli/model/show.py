@@ -38,6 +38,7 @@ from sequence_planner.language.syntax import (
 from sequence_planner.model.sequences import SequencePart
 
 Lines = Iterator[str]
+Reactions = Mapping[str, tuple[str, ...]]  # the effects of each ability, by their names
 Added = Mapping[str, list[str]]  # the lines about what the supervisor adds to each ability
 Said = Callable[[Expression], str]  # a condition as it is told
 
@@ -163,7 +164,7 @@ def _lines(
     for resource, title in (*automaton.resources.items(), (None, "The station")):
         variables = [v for v in automaton.variables.values() if v.resource == resource and _chosen(v.name, wanted)]
         abilities, effects = _of_resource(automaton, resource)
-        shown = [*_variables(variables), *_abilities(abilities, effects, added, wanted, said)]
+        shown = [*_variables(variables), *_abilities(abilities, effects, automaton.reactions, added, wanted, said)]
         if shown:
             yield from ("", title if resource is None else f"{title} ({resource})", *shown)
     if automaton.one_at_a_time:
@@ -292,16 +293,17 @@ def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
 
 
 def _abilities(
-    abilities: Iterable[Ability], effects: Iterable[Effect], added: Added, wanted: list[str], said: Said
+    abilities: Iterable[Ability], effects: Iterable[Effect], of: Reactions, added: Added, wanted: list[str], said: Said
 ) -> Lines:
+    """Abilities with their effects; one that several share stands below the first of them that is shown."""
     left = {effect.name: effect for effect in effects}
     for ability in abilities:
-        own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]
-        shown = [effect for effect in own if _chosen(ability.name, wanted) or _chosen(effect.name, wanted)]
-        if _chosen(ability.name, wanted):
+        is_chosen = _chosen(ability.name, wanted)
+        own = [name for name in of.get(ability.name, ()) if name in left and (is_chosen or _chosen(name, wanted))]
+        if is_chosen:
             yield from _ability(ability, added.get(ability.name, ()), said)
-        for effect in shown:
-            yield from _effect(effect, said)
+        for name in own:
+            yield from _effect(left.pop(name), said)
 
 
 def _ability(ability: Ability, added: Sequence[str], said: Said) -> Lines:

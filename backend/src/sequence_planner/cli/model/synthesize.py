@@ -36,7 +36,10 @@ Guards = Mapping[str, GuardDocument]  # by ability
 
 
 def described_automaton(automaton: Automaton, guards: Guards, chosen: Callable[[str], bool]) -> Json:
-    """Those parts whose names are chosen; `guards` are what the supervisor adds to the starts of abilities."""
+    """Those parts whose names are chosen, and the effects of abilities among them; `guards` are what the supervisor
+    adds to the starts of abilities.
+    """
+    reacting = {effect for ability, effects in automaton.reactions.items() if chosen(ability) for effect in effects}
     return {
         "name": automaton.name,
         "title": automaton.title,
@@ -57,7 +60,11 @@ def described_automaton(automaton: Automaton, guards: Guards, chosen: Callable[[
             for name, ability in automaton.abilities.items()
             if chosen(name)
         },
-        "effects": {effect.name: _described_effect(effect) for effect in automaton.effects if chosen(effect.name)},
+        "effects": {
+            effect.name: _described_effect(effect)
+            for effect in automaton.effects
+            if chosen(effect.name) or effect.name in reacting
+        },
         "operations": {
             name: {
                 "title": operation.title,

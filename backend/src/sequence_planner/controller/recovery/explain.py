@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import product
+from math import inf, prod
 from typing import Protocol
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
@@ -24,6 +26,7 @@ from sequence_planner.language.syntax import (
     Constant,
     Expression,
     Not,
+    Variable,
     conjunction,
     variables,
 )
@@ -251,6 +254,32 @@ def wanted(automaton: Automaton, condition: Expression, state: State, name: str)
     return tuple(value for value in domain if evaluate(condition, _Partly(automaton, {**values, name: value})) is True)
 
 
+MOST_TRIED = 2000  # combinations of values; where there are more, any other value counts as helpful
+
+
+def helpful(
+    automaton: Automaton, condition: Expression, state: State, name: str, decisive: Sequence[str]
+) -> tuple[Value, ...]:
+    """The values of a variable that bring what is missing: those that are `wanted`, or else those with which the
+    condition could be true for some values of the other `decisive` variables, for which it cannot be with the present.
+    """
+    if values := wanted(automaton, condition, state, name):
+        return values
+    domain, others = automaton.variables[name].type.domain, [each for each in decisive if each != name]
+    domains = [automaton.variables[each].type.domain for each in others]
+    if len(domain) * prod(map(len, domains)) > MOST_TRIED:
+        return tuple(value for value in domain if value != state[name])
+
+    unknown = dict.fromkeys(automaton.variables)
+
+    def may_hold(value: Value | None, beside: Mapping[str, Value]) -> bool:
+        return evaluate(condition, _Partly(automaton, {**unknown, **beside, name: value})) is not False
+
+    every = (dict(zip(others, combination, strict=True)) for combination in product(*domains))
+    lacking = [beside for beside in every if not may_hold(state[name], beside)]
+    return tuple(value for value in domain if any(may_hold(value, beside) for beside in lacking))
+
+
 @dataclass(frozen=True)
 class Changer:
     """An ability that can change a variable by its `start`, its `finish` or an `effect` of it."""
@@ -259,28 +288,42 @@ class Changer:
     ability: Ability
 
 
-def changers(automaton: Automaton, name: str, values: Sequence[Value]) -> Iterator[Changer]:
-    """The abilities that could give the variable one of the values; any other value if there are none."""
+def changers(automaton: Automaton, state: State, name: str, values: Sequence[Value]) -> Iterator[Changer]:
+    """The abilities that could give the variable one of the values, or bring it nearer to one step by step."""
+
+    def is_written(actions: Sequence[Assignment]) -> bool:
+        return any(target(action) == name and _leads(action.value, state, name, values) for action in actions)
+
     for ability in automaton.abilities.values():
-        if _writes(ability.start_actions, name, values):
+        if is_written(ability.start_actions):
             yield Changer("start", ability)
-        if _writes(ability.finish_actions, name, values):
+        if is_written(ability.finish_actions):
             yield Changer("finish", ability)
     seen: set[str] = set()
     for effect in automaton.effects:
         owner = automaton.abilities.get(effect.name.rpartition(".")[0])
-        if owner is None or effect.fault or owner.name in seen or not _writes(effect.actions, name, values):
+        if owner is None or effect.fault or owner.name in seen or not is_written(effect.actions):
             continue
         seen.add(owner.name)
         yield Changer("effect", owner)
 
 
-def _writes(actions: Sequence[Assignment], name: str, values: Sequence[Value]) -> bool:
-    return any(target(action) == name and _may_be(action.value, values) for action in actions)
+def _leads(written: Expression, state: State, name: str, values: Sequence[Value]) -> bool:
+    """Return whether what is written to a variable can be one of the values; of a step from its own value, whether it
+    is one of them or nearer to them.
+    """
+    if isinstance(written, Constant):
+        return written.value in values
+    if name not in variables(written):
+        return not isinstance(written, Variable) or any(value in written.type.domain for value in values)
+    now, then = state[name], evaluate(written, state)
+    return then is None or then in values or _distance(then, values) < _distance(now, values)
 
 
-def _may_be(written: Expression, values: Sequence[Value]) -> bool:
-    return not values or not isinstance(written, Constant) or written.value in values
+def _distance(value: Value | None, values: Sequence[Value]) -> float:
+    """The steps from a number to the nearest of others."""
+    numbers = (each for each in values if isinstance(each, int))
+    return min((abs(value - each) for each in numbers), default=inf) if isinstance(value, int) else inf
 
 
 # The variables that decide a condition, as they are now, and who could change them.
@@ -332,26 +375,27 @@ class Involving:
         """Yield the variables of each part that does not hold."""
         execution, told = self._execution, set[str]()
         for part in untrue(condition, execution.state) or [condition]:
-            for name in responsible(execution.automaton, part, execution.state):
+            decisive = responsible(execution.automaton, part, execution.state)
+            for name in decisive:
                 if name not in told:
                     told.add(name)
-                    yield self._involved(name, part)
+                    yield self._involved(name, part, decisive)
 
-    def _involved(self, name: str, condition: Expression) -> InvolvedView:
+    def _involved(self, name: str, condition: Expression, decisive: Sequence[str]) -> InvolvedView:
         automaton, state = self._execution.automaton, self._execution.state
         variable = automaton.variables[name]
-        values = wanted(automaton, condition, state, name)
+        helping = () if state[name] is None else helpful(automaton, condition, state, name, decisive)
         belief = self._around.beliefs.of(name) if variable.kind is Kind.ESTIMATED else None
         return InvolvedView(
             name=name,
             kind=str(variable.kind),
             resource=variable.resource,
             value=state[name],
-            wanted=list(values),
+            wanted=list(wanted(automaton, condition, state, name)),
             since=self._around.since(name),
             topic=self._around.feeds.get(name),
             unconfirmed_since=None if belief is None else belief.unconfirmed_since,
-            changers=[*(self._abilities(name, values) if state[name] is not None else ()), *self._people(name)],
+            changers=[*self._abilities(name, helping), *self._people(name)],
         )
 
     def _abilities(self, name: str, values: tuple[Value, ...]) -> list[ChangerView]:
@@ -360,7 +404,7 @@ class Involving:
             ChangerView(
                 how=each.how, name=each.ability.name, title=each.ability.title, title_message=None, running=is_running
             )
-            for each in changers(self._execution.automaton, name, values)
+            for each in changers(self._execution.automaton, self._execution.state, name, values)
             for is_running in (each.ability.name in running,)
         ]
         return sorted(found, key=lambda changer: not changer.running)[:MOST_CHANGERS]

@@ -27,7 +27,6 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.station import Before, MeantStation, read_station
 
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*", re.MULTILINE)
-_NAMED_SO = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _WORTH_A_NAME = 30  # characters that a predicate saves
 _PROPOSALS = (
     relation_proposals,
@@ -102,8 +101,8 @@ class FoldFinder:
             raise EditError(f"there is no fold `{wanted}`: look at those that there are now")
         if name is not None and proposal.name is None:
             raise EditError(f"the fold `{wanted}` adds nothing that could be called `{name}`")
-        if name is not None and _NAMED_SO.fullmatch(name) is None:
-            raise EditError(f"`{name}` is no name: letters, digits and `_`, and no digit first")
+        if name is not None and (fault := proposal.fault_of(name)) is not None:
+            raise EditError(fault)
         if name is not None and name != proposal.name and name in station.taken:
             raise EditError(f"`{name}` is the name of something else: take another one")
         if (fold := self._proven(files, meant, proposal, name or proposal.name)) is None:

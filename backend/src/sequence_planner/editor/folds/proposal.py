@@ -12,6 +12,7 @@ from sequence_planner.editor.draft import AddEntry, Edit, SetEntry
 from sequence_planner.editor.folds.texts import FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.syntax import Span
+from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.source import SourceText
 
 NAME = "\0"
@@ -50,6 +51,11 @@ class FoldProposal:
             *(f"{place.file} {edit}" for edit, place in self.entries),
         ]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:8]
+
+    def fault_of(self, name: str) -> str | None:
+        """Say why what it adds cannot have a name; return None where it can, or nothing is added."""
+        section = "" if self.added is None else str(self.added.path[0])
+        return fault_of_name(name, section.removesuffix("s"))
 
     def with_name(self, name: str) -> FoldProposal:
         """The same with a name in its place."""

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from sequence_planner.automaton.shorthand import RESERVED
 from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, part_of, with_replacements
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
@@ -19,6 +18,7 @@ from sequence_planner.editor.folds.texts import (
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import And, Comparison, Component, Expression, Name, Not, Or
+from sequence_planner.model.fields import RESERVED
 
 _THE_VALUE = Name((Component(NAME),))
 _FEWEST_IN_BRACES = 3

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sequence_planner.automaton.declarations import FLAGS, OPERATION
-from sequence_planner.automaton.shorthand import RESERVED
 from sequence_planner.editor.symbols.fields import inferred
 from sequence_planner.editor.symbols.texts import (
     OPERATIONS,
@@ -321,11 +320,6 @@ class Declared:
     def _note(self, part: ModelPart, of: Parameters, holder: str) -> None:
         self.parts.append(part)
         self.parts += [ModelPart("parameter", holder, name) for name in of]
-
-
-def is_reserved(name: str) -> bool:
-    """Return whether a text would take the name of a predicate, relation or map for something else."""
-    return name in RESERVED
 
 
 def own_values(document: object) -> list[SourceText]:

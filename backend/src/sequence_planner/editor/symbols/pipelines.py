@@ -210,18 +210,22 @@ def _with(text: str, binding: Binding, stages: list[object]) -> str:
 
 
 def unsaid(files: Mapping[str, str], part: ModelPart, messages: MessageRegistry | None) -> dict[str, str]:
-    """The files of a variable without the `rename` stages that say what its name alone says."""
-    file = file_of(part.owner or "")
-    text = files[file]
-    for pipeline in pipelines(ModelContent({file: text})[file], messages):
-        stages = items(pipeline.stages)
-        if part.name not in (pipeline.fields or {}) or part.name in pipeline.ignored or not stages:
+    """The files of a variable, and of the types of its resource, without the `rename` stages that say what its name
+    alone says.
+    """
+    file, content, new = file_of(part.owner or ""), ModelContent(files), dict[str, str]()
+    for pipeline in pipelines(content.whole.get(file, content[file]), messages):
+        if part.name not in (pipeline.fields or {}) or part.name in pipeline.ignored:
+            continue
+        home, path = Gathered(content).home_of(file, pipeline.path)
+        text = new.get(home, files[home])
+        if not (stages := items(entry(ModelContent({home: text})[home], *path))):
             continue
         index = _index(pipeline.incoming, stages)
         said_there = {str(field): str(name) for field, name in pairs(entry(stages[index], "rename"))}
         if said_there.get(part.name) == part.name:
-            text = _without(text, (*pipeline.path, index, "rename", part.name), len(said_there), len(stages))
-    return {} if text == files[file] else {file: text}
+            new[home] = _without(text, (*path, index, "rename", part.name), len(said_there), len(stages))
+    return new
 
 
 def _without(text: str, path: EntryPath, names: int, stages: int) -> str:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sequence_planner.automaton.declarations import FLAGS, OPERATION
 from sequence_planner.editor.symbols.definitions import gather
 from sequence_planner.editor.symbols.index import (
     ROS_KINDS,
@@ -18,14 +17,13 @@ from sequence_planner.editor.symbols.index import (
     Occurrence,
     belongs_to,
     following,
-    is_reserved,
     variable_of,
 )
 from sequence_planner.editor.symbols.pipelines import said, unsaid
 from sequence_planner.editor.symbols.texts import ModelContent, file_of
-from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import Place
+from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.map import ANY
@@ -104,10 +102,10 @@ def dependants(files: Mapping[str, str], part: ModelPart, messages: MessageRegis
 
 def one_with(part: ModelPart, gathered: Gathered) -> frozenset[ModelPart]:
     """The part, and those that it is one with: by texts that name both, in a type of resources or as values of two
-    enumerations, and for a value by comparisons.
+    enumerations, by the field of a message that a topic of a type has for both, and for a value by comparisons.
     """
     together = {part}
-    links = gathered.links | shared(gathered) if part.kind == "value" else shared(gathered)
+    links = shared(gathered) | (gathered.links if part.kind == "value" else _fed_together(gathered))
     while more := {other for link in links if link & together for other in link} - together:
         together |= more
     return frozenset(together)
@@ -120,6 +118,15 @@ def shared(gathered: Gathered) -> set[frozenset[ModelPart]]:
         if each.text is not None and (each.part.kind == "value" or each.home is not None):
             place = each.text.place
             found.setdefault((place.file, place.line, place.column, each.span.start), set()).add(each.part)
+    return {frozenset(parts) for parts in found.values() if len(parts) > 1}
+
+
+def _fed_together(gathered: Gathered) -> set[frozenset[ModelPart]]:
+    """Variables of several instances that are one field, since their names are that of it, in a topic of their type."""
+    found: dict[tuple[str, EntryPath, str], set[ModelPart]] = {}
+    for part, bindings in gathered.bindings.items():
+        for each in bindings:
+            found.setdefault((each.file, each.path, each.field), set()).add(part)
     return {frozenset(parts) for parts in found.values() if len(parts) > 1}
 
 
@@ -179,8 +186,6 @@ def usage_of(found: Occurrence) -> Usage:
 
 # Why a part cannot be called so: its new name is none, or taken, or not the model's alone.
 
-_SHORT = ("predicate", "relation", "map")
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 # Which have no names in common, of a resource or of the station.
 _SHARING = (("variable", "ability", "predicate", "relation", "map"), ("enumeration", "set"), ("operation", "sequence"))
 
@@ -195,20 +200,10 @@ def require_name(part: ModelPart, name: str) -> None:
         except ValueError as error:
             raise EditError(str(error).replace("'", "`")) from error
         return
-    if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
-        raise EditError(
-            f"`{name}` is no name: use letters, digits and `_`, no digit first, and none of the words of the language"
-        )
+    if (fault := fault_of_name(name, part.kind)) is not None:
+        raise EditError(fault)
     if scalar(name) != name:
         raise EditError(f"`{name}` is no name that YAML would read as a text: choose another")
-    if name in FLAGS and part.kind in ("variable", "parameter", "ability", *_SHORT):
-        raise EditError(f"`{name}` is a flag of every ability: choose another name")
-    if is_reserved(name) and part.kind in _SHORT:
-        raise EditError(f"`{name}` is a word of quantifiers and orders: choose another name")
-    if part.kind in ("enumeration", "set") and name == "bool":
-        raise EditError("`bool` is a type already: choose another name")
-    if part.kind == "resource" and name == OPERATION:
-        raise EditError(f"`{OPERATION}` stands for the operations in expressions: choose another name")
     if part.kind == "value" and name == ANY:
         raise EditError(f"`{ANY}` stands for every value in the rows of a table: choose another name")
 

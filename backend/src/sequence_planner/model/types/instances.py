@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping
 
 from pydantic import ValidationError
 
-from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import ResourceDocument, StationDocument
-from sequence_planner.model.fields import FLAGS
+from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.source import Finding, SourceText, with_given_at
 from sequence_planner.model.types.documents import ParameterDocument
 from sequence_planner.model.types.expansion import GivenArgument
 from sequence_planner.model.types.layers import Layer, WrittenInstance, content_of, document_of, layers_of
 from sequence_planner.model.validation import findings_of, shown
 
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _WANTED = {"number": "a number", "text": "a text", "value": "a value", "resource": "a resource"}
 
 
@@ -102,11 +99,8 @@ class Instances:
         before = len(self.findings)
         values = self._values(self._brought.get(type_.package, ()) if type_.package else self._enumerations)
         for name, parameter in type_.parameters.items():
-            if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
-                message = "is no name: use letters, digits and `_`, and none of the words of the language"
-                self._note(name, f"`{name}` {message}")
-            elif name in FLAGS:
-                self._note(name, f"`{name}` is a flag of every ability: give the parameter another name")
+            if (fault := fault_of_name(name, "parameter")) is not None:
+                self._note(name, fault)
             elif (hidden := type_.meanings.get(name)) is not None:
                 self._note(name, f"the parameter `{name}` hides the {hidden} `{name}`: rename one of them")
             elif not type_.package and name in self._station.estimated:
