@@ -28,10 +28,11 @@ class GapKind(Enum):
 
 @dataclass(frozen=True)
 class Gap:
-    """What differs: the word that each of the documents has there."""
+    """What differs: the word that each of the documents has there. Numbers alone are of the entry `of` one name."""
 
     words: tuple[str | int | float, ...]
     kind: GapKind
+    of: str = ""
 
 
 Written = tuple[str | Gap, ...]
@@ -75,23 +76,23 @@ class DocumentComparison:
 
     def of_documents(self, contents: Sequence[object], shape: DocumentShape) -> Likeness | None:
         """What documents have in common; None where that is nothing."""
-        return self._of(contents, shape, ("",) * len(contents), ())
+        return self._of(contents, shape, ("",) * len(contents), (), "")
 
     def _of(
-        self, contents: Sequence[object], shape: DocumentShape, names: tuple[str | int, ...], name: Written
+        self, contents: Sequence[object], shape: DocumentShape, names: tuple[str | int, ...], name: Written, key: str
     ) -> Likeness | None:
         first = contents[0]
         if all(isinstance(each, dict) for each in contents):
             return self._of_mappings([each for each in contents if isinstance(each, dict)], shape, names, name)
         if all(isinstance(each, list) for each in contents):
-            return self._of_lists([each for each in contents if isinstance(each, list)], shape, names, name)
+            return self._of_lists([each for each in contents if isinstance(each, list)], shape, names, name, key)
         if all(isinstance(each, str) for each in contents):
             written = self._of_texts([str(each) for each in contents], shape.text)
             return None if written is None else Likeness(names, name, written)
         if all(type(each) is type(first) and each == first for each in contents):
             return Likeness(names, name)
         numbers = tuple(each for each in contents if isinstance(each, int | float) and not isinstance(each, bool))
-        gap = Gap(numbers, GapKind.NUMBER)
+        gap = Gap(numbers, GapKind.NUMBER, key)
         if len(numbers) == len(contents) and shape.is_number and self.may_be(gap):
             return Likeness(names, name, (gap,))
         return None
@@ -107,7 +108,7 @@ class DocumentComparison:
         orders = [list(map(str, each)) for each in contents]
         for keys, written in self._paired(orders, shape.keys):
             values = [each[key] for each, key in zip(contents, keys, strict=True)]
-            found = self._of(values, shape.step_into(keys[0]), tuple(keys), written)
+            found = self._of(values, shape.step_into(keys[0]), tuple(keys), written, keys[0])
             if found is not None:
                 entries.append(found)
         if not entries and any(contents):
@@ -119,14 +120,19 @@ class DocumentComparison:
         return Likeness(names, name, entries=tuple(entries), partial_in=frozenset(partial_in))
 
     def _of_lists(
-        self, contents: Sequence[list[object]], shape: DocumentShape, names: tuple[str | int, ...], name: Written
+        self,
+        contents: Sequence[list[object]],
+        shape: DocumentShape,
+        names: tuple[str | int, ...],
+        name: Written,
+        key: str,
     ) -> Likeness | None:
         """Lists are alike as a whole, or not at all."""
         if len(set(map(len, contents))) > 1:
             return None
         entries: list[Likeness] = []
         for index, values in enumerate(zip(*contents, strict=True)):
-            found = self._of(values, shape.step_into(index), (index,) * len(contents), ())
+            found = self._of(values, shape.step_into(index), (index,) * len(contents), (), key)
             if found is None or found.partial_in:
                 return None
             entries.append(found)

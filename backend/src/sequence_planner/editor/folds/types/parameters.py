@@ -11,9 +11,11 @@ from sequence_planner.editor.folds.texts import FoldableStation
 from sequence_planner.editor.folds.types.likeness import Gap, GapKind, Likeness, Written
 from sequence_planner.language.lexer import KEYWORDS
 from sequence_planner.model.fields import FLAGS
+from sequence_planner.model.types.expansion import resource_shape
 from sequence_planner.model.yaml.reader import EntryPath
 
 Words = tuple[str | int | float, ...]
+_Meaning = tuple[str, Words, str]  # kind, words, and the name of the entries that numbers alone stand at
 _NUMBER = re.compile(r"0|[1-9]\d{0,8}")
 _PART = re.compile(r"[A-Za-z]+")
 _FEWEST_USES = 2  # of a parameter that stands for a word in texts for people
@@ -21,12 +23,15 @@ _FEWEST_USES = 2  # of a parameter that stands for a word in texts for people
 
 @dataclass(frozen=True)
 class FoundParameter:
-    """A parameter of a type, and what it is for each of the resources; `of` is that of a value."""
+    """A parameter of a type, and what it is for each of the resources; `of` is that of a value. One that stands for
+    numbers alone stands at entries of one name.
+    """
 
     name: str
     kind: str
     words: Words
     of: str | None = None
+    entry: str = ""
 
     @property
     def declared_as(self) -> object:
@@ -83,21 +88,24 @@ class Parameters:
     def __init__(self, likeness: Likeness, kinds: GapKinds, taken: Iterable[str]) -> None:
         self._kinds = kinds
         self._taken = {*taken, *FLAGS, *KEYWORDS}
-        self._uses: dict[tuple[str, Words], list[tuple[EntryPath, Gap]]] = defaultdict(list)
+        self._uses: dict[_Meaning, list[tuple[EntryPath, Gap]]] = defaultdict(list)
         in_braces: list[tuple[EntryPath, Gap]] = []
         for path, each in likeness.all_within():
-            self._taken |= {str(step) for step in path}
+            if _is_free(path):
+                self._taken.add(str(path[-1]))
             for gap in each.gaps:
                 if gap.kind is GapKind.IN_BRACES:
                     in_braces.append((path, gap))
                 elif (kind := kinds.of_gap(gap)) is not None:
-                    self._uses[kind, _as_given(kind, gap)].append((path, gap))
+                    self._uses[_meaning(kind, gap)].append((path, gap))
         for path, gap in in_braces:
-            known = next((kind for kind, words in self._uses if tuple(map(str, words)) == gap.words), None)
-            kind = known or kinds.of_gap(gap)
-            assert kind is not None, "a text can always stand in braces"
-            self._uses[kind, _as_given(kind, gap)].append((path, gap))
-        self._found = {(each.kind, each.words): each for each in self._all()}
+            known = next((each for each in self._uses if tuple(map(str, each[1])) == gap.words), None)
+            if known is None:
+                kind = kinds.of_gap(gap)
+                assert kind is not None, "a text can always stand in braces"
+                known = _meaning(kind, gap)
+            self._uses[known].append((path, gap))
+        self._found = {(each.kind, each.words, each.entry): each for each in self._all()}
 
     @property
     def all(self) -> list[FoundParameter]:
@@ -106,8 +114,8 @@ class Parameters:
 
     def needless(self) -> Iterator[Gap]:
         """The gaps that are better left to each instance: what differs in one place alone, and what cannot be."""
-        for (kind, words), uses in self._uses.items():
-            if (kind, words) not in self._found:
+        for meaning, uses in self._uses.items():
+            if meaning not in self._found:
                 yield from (gap for _, gap in uses)
                 continue
             is_text = all(gap.kind is GapKind.IN_BRACES for _, gap in uses)
@@ -124,28 +132,29 @@ class Parameters:
         if gap.kind is not GapKind.IN_BRACES:
             kind = self._kinds.of_gap(gap)
             assert kind is not None, "a gap is looked at before it is left"
-            return self._found[kind, _as_given(kind, gap)].name
+            return self._found[_meaning(kind, gap)].name
         return next(f"{{{each.name}}}" for each in self.all if tuple(map(str, each.words)) == gap.words)
 
     def _all(self) -> Iterator[FoundParameter]:
         """Enumerations first: values may be theirs."""
         enumerations: list[FoundParameter] = []
-        for (kind, words), uses in self._uses.items():
+        for (kind, words, _), uses in self._uses.items():
             if kind == "enumeration":
                 enumerations.append(FoundParameter(self._name(kind, words, uses), kind, words))
         yield from enumerations
-        for (kind, words), uses in self._uses.items():
+        for (kind, words, entry), uses in self._uses.items():
             if kind == "value":
                 own = (each.name for each in enumerations if self._kinds.have(each.words, words))
                 of = next(own, None) or self._kinds.smallest_with(words)
                 if of is not None:
                     yield FoundParameter(self._name(kind, words, uses, of), kind, words, of)
             elif kind != "enumeration":
-                yield FoundParameter(self._name(kind, words, uses), kind, words)
+                yield FoundParameter(self._name(kind, words, uses), kind, words, entry=entry)
 
     def _name(self, kind: str, words: Words, uses: list[tuple[EntryPath, Gap]], of: str = "") -> str:
         """A name that says what a parameter is for, and that nothing else has."""
         path = [step for step in uses[0][0] if isinstance(step, str)]
+        own = path[-1:] if len({each for each, _ in uses}) > 1 else path[-2:]
         common = _common_words(map(str, words))
         match kind:
             case "enumeration":
@@ -155,7 +164,7 @@ class Parameters:
             case "resource":
                 wanted = f"other_{common}" if common else "other"
             case "number":
-                wanted = "_".join(path[-2:]) if re.fullmatch(r"\w+", path[-1]) else "number"
+                wanted = "_".join(own) if all(re.fullmatch(r"\w+", step) for step in own) else "number"
             case _:
                 in_topics = any(each[0] in ("topics", "services", "actions") for each, _ in uses)
                 wanted = "namespace" if in_topics else common or "word"
@@ -167,9 +176,18 @@ class Parameters:
         return name
 
 
-def _as_given(kind: str, gap: Gap) -> Words:
-    """The words in a gap as an instance gives them."""
-    return tuple(int(each) if isinstance(each, str) else each for each in gap.words) if kind == "number" else gap.words
+def _is_free(path: EntryPath) -> bool:
+    """Return whether the name of an entry is one that somebody has given it."""
+    shape = resource_shape()
+    for step in path[:-1]:
+        shape = shape.step_into(step)
+    return shape.entries is not None
+
+
+def _meaning(kind: str, gap: Gap) -> _Meaning:
+    """What a parameter in a gap is for: its words are as an instance gives them."""
+    is_number = kind == "number"
+    return kind, tuple(int(each) if is_number and isinstance(each, str) else each for each in gap.words), gap.of
 
 
 def _common_words(texts: Iterable[str]) -> str:
