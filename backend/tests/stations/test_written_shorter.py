@@ -75,8 +75,10 @@ def test_its_pipelines_give_what_they_gave(stations: tuple[ReadyStation, ReadySt
             for at, given in enumerate(_whatever_comes(one[topic].chain, other[topic].chain)):
                 for bench in (first, second):
                     bench.give(dict(given), float(at))
-                names = same if side == "incoming" else first.came()
-                assert [first.came()[name] for name in names] == [second.came()[name] for name in names], (topic, given)
+                came, comes = first.came(), second.came()
+                names = same if side == "incoming" else came
+                assert [came[name] for name in names] == [comes[name] for name in names], (topic, given)
+                assert (first.trouble is None) == (second.trouble is None), (topic, given)
                 compared += 1
     assert compared > 500 or before.automaton.name != TRUCK
 
