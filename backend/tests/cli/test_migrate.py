@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,10 @@ import pytest
 from sequence_planner.cli.editing import migrate as command_module
 from sequence_planner.editor.folds.finder import Fold, FoldFinder
 from sequence_planner.model.files import Files
+from sequence_planner.model.paths import EditError
+from sequence_planner.model.yaml.saving import add_file
 from support.commands import as_json, command
+from support.places import MODELS, TESTS
 
 STATION = """\
 name: cell
@@ -128,3 +132,28 @@ def test_a_station_that_cannot_be_used_is_refused_with_the_place(cell: Path, tmp
     assert err.startswith(f"{cell}/operations.yaml:2:40: unknown variable `bolt[p2]`; did you mean `bolts[p2]`?")
     code, _, err = command("migrate", tmp_path / "nowhere")
     assert (code, err) == (2, f"{tmp_path}/nowhere: there is no such folder of a station\n")
+
+
+def test_a_type_is_written_into_a_file_of_its_own(tmp_path: Path) -> None:
+    robots = Path(shutil.copytree(MODELS / "robots_with_buffer", tmp_path / "robots"))
+    shutil.rmtree(robots / "types")
+    for written in (TESTS / "model" / "written_out").glob("*.yaml"):
+        shutil.copy(written, robots / "resources")
+    code, document = as_json("migrate", robots)
+    (mark,) = (fold["id"] for fold in document["folds"] if fold["kind"] == "type")
+    before = as_json("show", robots, "--expanded")
+    code, out, err = command("migrate", robots, "--write", mark, "--name", f"{mark}=arm")
+    assert (code, err) == (0, "")
+    assert f"+++ {robots}/types/arm.yaml\n" in out
+    assert "+type: arm\n+arguments: {sides: outfeed_side, own_side: outfeed, namespace: robot_2}\n" in out
+    assert (robots / "types" / "arm.yaml").read_text(encoding="utf-8").count("move_to:") == 1
+    assert as_json("show", robots, "--expanded")[1]["abilities"] == before[1]["abilities"]
+    assert command("check", robots)[0] == 0
+
+
+def test_a_file_that_somebody_has_made_meanwhile_is_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "types" / "robot.yaml"
+    assert "+++ " in add_file(path, "title: A robot\n")
+    with pytest.raises(EditError, match=r"robot\.yaml is there already: take another name, or look at it first"):
+        add_file(path, "title: Another robot\n")
+    assert path.read_text(encoding="utf-8") == "title: A robot\n"

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from support.editor import Editor
+from support.places import TESTS
 from support.waiting import until
 
 
@@ -298,6 +300,23 @@ def test_what_can_be_said_shorter_is_offered_where_it_is_written(editor: Editor,
     editor.close(uri)
     editor.close(other)
     editor.close(named)
+
+
+def test_a_type_of_resources_alike_is_a_file_of_its_own(editor: Editor, robots: Path) -> None:
+    shutil.rmtree(robots / "types")
+    for written in (TESTS / "model" / "written_out").glob("*.yaml"):
+        shutil.copy(written, robots / "resources")
+    uri = editor.open(robots / "resources" / "robot_1.yaml")
+    actions = {each["title"]: each for each in _asked(editor, uri, "part_on_conveyor", triggerKind=1)}
+    editor.apply(actions["Make `robot_1` and `robot_2` instances of a type `robot`"]["edit"])
+    assert "type: robot\n" in editor.text(uri)
+    assert (robots / "resources" / "robot_2.yaml").read_text(encoding="utf-8").count("type: robot\n") == 1
+    type_ = editor.open(robots / "types" / "robot.yaml")
+    assert "parameters:\n" in editor.text(type_)
+    editor.until_clean(type_)
+    editor.until_clean(uri)
+    editor.close(type_)
+    editor.close(uri)
 
 
 def test_a_lamp_beside_a_line_does_not_wait_for_proofs(editor: Editor, station: Path) -> None:

@@ -137,6 +137,47 @@ REST = "tolerance: 0.1, otherwise: unknown"
         ),
         ("member: {field: ‹mode, item: a, variable: valve}", "`mode` is text, and no list"),
         ("member: {field: levels, item: ‹a, variable: valve}", "`a` is no value of type 0..255"),
+        (
+            "member: {field: names, variable: ‹valve}",
+            "without `item` the variable is an enumeration: the list has its names",
+        ),
+        (
+            "member: {field: ‹levels, variable: control}",
+            "`levels` is 0..255[], and without `item` a list of texts is needed",
+        ),
+        ("member: {field: names, variable: control, if_none: ‹off}", "`off` is none of {manual, automatic}"),
+        (
+            "one_of: {variable: control, fields: {manual: ‹dor, automatic: door}}",
+            "there is no field `dor` here; did you mean `door`?",
+        ),
+        (
+            "one_of: {variable: control, fields: {manual: ‹count, automatic: door}}",
+            "`count` must be true or false, and is 0..255",
+        ),
+        (
+            "one_of: {variable: control, fields: {‹manul: door, automatic: 'slot[left]'}}",
+            "`manul` is none of {manual, automatic}; did you mean `manual`?",
+        ),
+        (
+            "one_of: {variable: control, fields: {manual: door, automatic: ‹door}}",
+            "`door` stands for two values: give each a field of its own",
+        ),
+        (
+            "one_of: {variable: control, fields: {manual: door, automatic: 'slot[left]'}, otherwise: ‹off}",
+            "`off` is none of {manual, automatic}",
+        ),
+        (
+            "table: {fields: [state], variables: [control], rows: [{when: [any], gives: [{field: ‹stat}]}]}",
+            "`stat` is none of the `fields` of the table; did you mean `state`?",
+        ),
+        (
+            "table: {fields: [mode], variables: [control], rows: [{when: [any], gives: [{field: ‹mode}]}]}",
+            "`mode` is text, and only what is one of a few values can be given by its name",
+        ),
+        (
+            "table: {fields: [door], variables: [control], rows: [{when: [true], gives: [{field: ‹door}]}]}",
+            "`door` can be `true` here, and that is none of {manual, automatic}",
+        ),
         ("remember: {variable: last, of: ‹sate, except: []}", "there is no field `sate` here; did you mean `state`?"),
         ("remember: {variable: ‹last, of: state}", "`last` cannot be automatic, manual: put it into `except`"),
         (
@@ -200,6 +241,19 @@ def test_incoming(text: str, message: str) -> None:
         (
             "map: {field: ‹count, variable: control, values: {manual: 1, automatic: 300}}",
             "`300` is no value of type 0..255",
+        ),
+        (
+            "one_of: {variable: ‹att, fields: {home: door, out: 'slot[left]'}}",
+            "there is no field `att` here; did you mean `at`?",
+        ),
+        (
+            "one_of: {variable: at, fields: {‹hom: door, out: 'slot[left]'}}",
+            "`hom` is none of {home, out, unknown}; did you mean `home`?",
+        ),
+        ("one_of: {variable: at, fields: {home: ‹force, out: door}}", "`force` must be true or false, and is real"),
+        (
+            "one_of: {variable: at, fields: {home: door, out: 'slot[left]'}, otherwise: ‹out}",
+            "`otherwise` is for incoming topics: for a value that is not listed no field is true",
         ),
         ("match: {field: ‹at, variable: mode, contains: a}", "`match` is for incoming topics"),
         ("member: {field: ‹at, item: a, variable: door}", "`member` is for incoming topics"),
@@ -280,6 +334,9 @@ STAGES = [
     "match: {field: mode, variable: valve, contains: a}",
     "match: {field: mode, variable: control, values: {manual: [a], automatic: [b]}, otherwise: manual}",
     "member: {field: names, item: a, variable: valve}",
+    "member: {field: names, variable: control, if_none: manual}",
+    "one_of: {variable: control, fields: {manual: door, automatic: valve}, otherwise: manual}",
+    "table: {fields: [state, door], variables: [control], rows: [{when: [any, true], gives: [{field: state}]}]}",
     "remember: {variable: last, of: state, except: [manual]}",
     "debounce: {fields: [door], seconds: 1}",
     "override: {name: x, fields: {force: {between: [0, 1]}, state: {in: [manual]}}, expires: 1}",

@@ -232,6 +232,65 @@ def test_a_list_contains_an_item_or_not() -> None:
     ]
 
 
+def test_the_name_of_which_a_list_has_one() -> None:
+    member = stage("member: {field: names, variable: control}")
+    assert given(member, {"names": ["x", "manual", "manual"]}) == ({"control": "manual"}, [])
+    assert given(member, {"names": None}) == ({"control": None}, [])
+    assert given(member, {"names": ["x"]}) == (
+        {"control": None},
+        ["names is ['x'], with none of manual, automatic, which is no value of control"],
+    )
+    assert given(member, {"names": ["manual", "automatic"]}) == (
+        {"control": None},
+        ["names is ['manual', 'automatic'], with manual and automatic at once, which is no value of control"],
+    )
+    or_manual = stage("member: {field: names, variable: control, if_none: manual}")
+    texts: list[list[str]] = [[], ["manual"], ["automatic"], ["automatic", "manual"]]
+    found = [given(or_manual, {"names": names})[0]["control"] for names in texts]
+    assert found == ["manual", "manual", "automatic", "automatic"]
+
+
+ONE_OF = "one_of: {variable: control, fields: {manual: door, automatic: 'slot[left]'}}"
+
+
+@pytest.mark.parametrize(
+    ("door", "slot", "is_so", "or_else"),
+    [
+        (True, False, "manual", "manual"),
+        (False, True, "automatic", "automatic"),
+        (False, False, None, "manual"),
+        (True, True, None, "manual"),
+        (None, True, None, None),
+        (True, None, None, None),
+    ],
+)
+def test_which_of_several_is_true(door: bool | None, slot: bool | None, is_so: str | None, or_else: str | None) -> None:
+    said = {"door": door, "slot[left]": slot}
+    found, troubles = given(stage(ONE_OF), said)
+    assert found == {"control": is_so}
+    assert len(troubles) == (is_so is None and None not in said.values())
+    assert given(stage(ONE_OF[:-1] + ", otherwise: manual}"), said) == ({"control": or_else}, [])
+
+
+def test_one_of_several_is_sent() -> None:
+    sent = outgoing("one_of: {variable: at, fields: {home: door, out: 'slot[left]'}}")
+    assert given(sent, {"at": "home"})[0] == {"door": True, "slot[left]": False}
+    assert given(sent, {"at": "out"})[0] == {"door": False, "slot[left]": True}
+    assert given(sent, {"at": "unknown"})[0] == {"door": False, "slot[left]": False}
+    assert given(sent, {"at": None})[0] == {"door": None, "slot[left]": None}
+
+
+def test_a_row_gives_what_a_field_is() -> None:
+    table = stage(
+        "table: {fields: [state, door], variables: [control], "
+        "rows: [{when: [any, true], gives: [{field: state}]}], otherwise: [automatic]}"
+    )
+    for state in ("manual", "automatic", None):
+        assert given(table, {"state": state, "door": True})[0] == {"control": state}
+    assert given(table, {"state": "manual", "door": False})[0] == {"control": "automatic"}
+    assert given(table, {"state": "manual", "door": None})[0] == {"control": None}
+
+
 def _values(choose: Choices) -> dict[str, object]:
     """Values that a device may say: those of the variables."""
     truth = [True, False]
@@ -260,6 +319,11 @@ INVERTIBLE = [
     "member: {field: names, item: clamp, variable: valve}",
     "member: {field: levels, item: 1, variable: valve}",
     "member: {field: joints, item: 1, variable: valve}",
+    "member: {field: names, variable: control}",
+    "member: {field: names, variable: control, if_none: automatic}",
+    ONE_OF,
+    ONE_OF[:-1] + ", otherwise: automatic}",
+    "table: {fields: [state], variables: [control], rows: [{when: [any], gives: [{field: state}]}]}",
     "expression: {valve: 'force > 0.5'}",
     "expression: {valve: 'force * 2 >= 3 and not door'}",
     "expression: {valve: 'mode == ''T1'' or count in {3, 4}'}",

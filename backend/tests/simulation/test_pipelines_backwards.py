@@ -57,6 +57,47 @@ def test_whatever_a_device_is_brought_to_is_read(tmp_path: Path) -> None:
             assert not heard.running.trouble("/arm")
 
 
+ONE_OF_SEVERAL = """
+topics:
+  /scene:
+    type: tank_msgs/msg/Scene
+    direction: in
+    pipeline: [member: {field: objects, variable: attached, if_none: nothing}]
+  /hand:
+    type: tank_msgs/msg/Hand
+    direction: in
+    pipeline:
+      - one_of: {variable: told, fields: {open: was_told_to_open, closed: was_told_to_close}, otherwise: neither}
+      - remember: {variable: grip, of: told, except: [neither]}
+  /command:
+    type: tank_msgs/msg/Command
+    direction: out
+    pipeline: [one_of: {variable: wanted, fields: {open: open, closed: close}}]
+measured:
+  attached: {type: things}
+  grip: {type: grips}
+output:
+  wanted: {type: grips}
+"""
+
+
+def test_one_of_several_is_said_and_understood(tmp_path: Path) -> None:
+    fields = {
+        "Scene": "string[] objects\n",
+        "Hand": "bool was_told_to_open\nbool was_told_to_close\n",
+        "Command": "bool open\nbool close\n",
+    }
+    station = station_with(tmp_path, ONE_OF_SEVERAL, fields, "things: [nothing, cup, pot]\ngrips: [open, closed]")
+    assert emulation_findings(station) == []
+    devices = EmulatedDevices(station.automaton, station.pipelines)
+    heard = Heard(station)
+    for name, topic in (("attached", "/scene"), ("grip", "/hand")):
+        for now, value in enumerate((*station.automaton.variables[f"tank.{name}"].type.domain,) * 2):
+            devices.set_value(f"tank.{name}", value)
+            assert heard.take(topic, float(now), **devices.report(topic))[f"tank.{name}"] == value
+            assert not heard.running.trouble(topic)
+
+
 def test_what_cannot_be_said_is_a_finding_of_emulate_and_of_check_where_devices_are_emulated(tmp_path: Path) -> None:
     resource = """
 topics:

@@ -158,6 +158,11 @@ class Editor:
         """Carry out an edit in all documents that are open, and on the files of the others."""
         by_document = dict(edit.get("changes") or {})
         for each in edit.get("documentChanges") or ():
+            if each.get("kind") == "create":
+                path = Path(each["uri"].removeprefix("file://"))
+                path.parent.mkdir(exist_ok=True)
+                path.touch(exist_ok=False)
+        for each in edit.get("documentChanges") or ():
             if "kind" not in each:
                 by_document[each["textDocument"]["uri"]] = each["edits"]
         for uri, edits in by_document.items():

@@ -166,9 +166,17 @@ class StationLanguageServer(LanguageServer):
     @property
     def can_move_files(self) -> bool:
         """True if the editor renames files where it is told to."""
+        return self._can(types.ResourceOperationKind.Rename)
+
+    @property
+    def can_create_files(self) -> bool:
+        """True if the editor creates files where it is told to."""
+        return self._can(types.ResourceOperationKind.Create)
+
+    def _can(self, operation: types.ResourceOperationKind) -> bool:
         workspace = self.client_capabilities.workspace
         edits = workspace and workspace.workspace_edit
-        return bool(edits and types.ResourceOperationKind.Rename in (edits.resource_operations or ()))
+        return bool(edits and operation in (edits.resource_operations or ()))
 
     def leave(self, station: EditedStation) -> None:
         """Nothing of a station is open any more, so that nothing is said of it either."""

@@ -165,6 +165,51 @@ def test_items_of_a_list_at_a_computed_place(messages: MessageRegistry) -> None:
         renamed(files, parse_part("value:pose.home"), "rest", messages)
 
 
+STAGES = """\
+topics:
+  /arm:
+    type: arm_msgs/msg/Arm
+    direction: in
+    pipeline:
+      - one_of: {variable: grip, fields: {open: is_open, closed: is_closed}}
+      - PIPELINE
+  /told:
+    type: arm_msgs/msg/Told
+    direction: out
+    pipeline:
+      - one_of: {variable: wanted, fields: {open: release, closed: close}}
+      - table: {fields: [wanted, grip], variables: [do], rows: [{when: [any, open], gives: [{field: wanted}]}]}
+measured:
+  grip: {type: grips}
+  holds: {type: things}
+output:
+  wanted: {type: orders}
+"""
+
+
+@pytest.mark.parametrize("pipeline", ["member: {field: names, variable: holds}", "map: {field: name, variable: holds}"])
+def test_stages_that_turn_several_into_one(pipeline: str, tmp_path: Path) -> None:
+    files = {
+        "station.yaml": "name: a\nenumerations: {grips: [open, closed], orders: [open, closed], things: [cup, pot]}",
+        "resources/arm.yaml": STAGES.replace("PIPELINE", pipeline),
+        "messages/arm_msgs/msg/Arm.msg": "bool is_open\nbool is_closed\nstring[] names\nstring name\n",
+        "messages/arm_msgs/msg/Told.msg": "bool release\nbool close\nstring do\n",
+    }
+    write(files, tmp_path)
+    registry = messages_of(tmp_path)
+    grips = renamed(files, parse_part("value:grips.closed"), "shut", registry)["resources/arm.yaml"]
+    assert grips is not None
+    assert "one_of: {variable: grip, fields: {open: is_open, shut: is_closed}}" in grips
+    assert "one_of: {variable: wanted, fields: {open: release, closed: close}}" in grips
+    variable = renamed(files, parse_part("variable:arm.wanted"), "asked", registry)["resources/arm.yaml"]
+    assert variable is not None
+    assert "one_of: {variable: asked, fields:" in variable
+    assert "table: {fields: [asked, grip], variables: [do]" in variable and "gives: [{field: asked}]" in variable
+    for part, said in (("value:orders.closed", "wanted"), ("value:things.cup", "holds")):
+        with pytest.raises(EditError, match=f"says the values of `{said}` by their names"):
+            renamed(files, parse_part(part), "other", registry)
+
+
 def test_messages_whose_definitions_are_not_known() -> None:
     files = {
         "resources/robot.yaml": "topics: {/r: {type: r_msgs/msg/R, direction: in}}\nmeasured: {pose: {type: bool}}\n"

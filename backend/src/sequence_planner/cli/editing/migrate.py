@@ -18,7 +18,7 @@ from sequence_planner.editor.folds.views import fold_view
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.files import Files, read_files
 from sequence_planner.model.paths import EditError
-from sequence_planner.model.yaml.saving import digest, edit_file
+from sequence_planner.model.yaml.saving import add_file, digest, edit_file
 
 _LONGEST = 60  # characters of what is written now that are shown
 
@@ -130,11 +130,12 @@ def _write(
             near = "" if wanted in marks else suggestion(wanted, marks)
             refuse(f"{error}{behind}{near}; nothing was written")
     try:
-        for file in sorted(writing.changed):  # all are as they were, or none is written
+        old, new = (sorted(each) for each in (writing.changed & known.keys(), writing.changed - known.keys()))
+        for file in old:  # all are as they were, or none is written
             edit_file(model / file, lambda text: text, expected=known[file])
-        difference = "".join(
-            edit_file(model / file, partial(_replaced, writing.files[file]), expected=known[file])
-            for file in sorted(writing.changed)
+        difference = "".join(add_file(model / file, writing.files[file]) for file in new)
+        difference += "".join(
+            edit_file(model / file, partial(_replaced, writing.files[file]), expected=known[file]) for file in old
         )
     except EditError as error:
         refuse(str(error))

@@ -5,38 +5,28 @@ from __future__ import annotations
 import re
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from sequence_planner.editor.draft import Edit, applied
-from sequence_planner.editor.folds.actions import action_proposals
-from sequence_planner.editor.folds.pipelines import list_proposals, pipeline_difference
-from sequence_planner.editor.folds.predicates import predicate_proposals
+from sequence_planner.editor.folds.all_proposals import all_proposals
+from sequence_planner.editor.folds.pipelines import pipeline_difference
 from sequence_planner.editor.folds.proposal import FoldProposal, WrittenPlace
-from sequence_planner.editor.folds.quantifiers import quantifier_proposals
-from sequence_planner.editor.folds.relations import relation_proposals
 from sequence_planner.editor.folds.sameness import difference
-from sequence_planner.editor.folds.sets import include_proposals, set_proposals
 from sequence_planner.editor.folds.texts import FoldableStation
 from sequence_planner.editor.schemas.draft import FoldKind
+from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
+from sequence_planner.model.yaml.editor import plain
 from sequence_planner.station import Before, MeantStation, read_station
 
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*", re.MULTILINE)
+_FOR_EDITORS = "# yaml-language-server:"
 _WORTH_A_NAME = 30  # characters that a predicate saves
-_PROPOSALS = (
-    relation_proposals,
-    quantifier_proposals,
-    action_proposals,
-    include_proposals,
-    list_proposals,
-    set_proposals,
-    predicate_proposals,
-)
 
 
 @dataclass(frozen=True)
@@ -81,7 +71,7 @@ class FoldFinder:
         """
         until = None if within is None else time.monotonic() + within
         meant, station = self._look(files)
-        proposed = sorted(filter(wanted, _proposed(station)), key=lambda each: -each.worth)
+        proposed = sorted(filter(wanted, all_proposals(station)), key=lambda each: -each.worth)
         found: list[Fold] = []
         for proposal in proposed:
             if until is not None and time.monotonic() > until:
@@ -96,7 +86,7 @@ class FoldFinder:
         Raises `EditError` where there is none, or it cannot have that name, and `ModelError`.
         """
         meant, station = self._look(files)
-        proposal = next((each for each in _proposed(station) if each.id == wanted), None)
+        proposal = next((each for each in all_proposals(station) if each.id == wanted), None)
         if proposal is None:
             raise EditError(f"there is no fold `{wanted}`: look at those that there are now")
         if name is not None and proposal.name is None:
@@ -126,13 +116,18 @@ class FoldFinder:
         changed = {file: text for file, text in after.items() if files.get(file) != text}
         lines = sum(files.get(file, "").count("\n") - text.count("\n") for file, text in changed.items())
         characters = sum(len(files.get(file, "")) - len(text) for file, text in changed.items())
-        if not _is_shorter(proposal.kind, lines, characters) or not _keep_comments(files, changed):
+        if not _is_shorter(proposal.kind, lines, characters) or not _keeps_comments(proposal.kind, files, changed):
             return None
         try:
             now = self._read(after)
         except ModelError:
             return None
-        if difference(meant.automaton, now.automaton) is not None or pipeline_difference(meant, now) is not None:
+        if difference(meant.automaton, now.automaton) is not None:
+            return None
+        if proposal.kind is FoldKind.TYPE:  # nothing is said in other words
+            if _resources(files) != _resources(after):
+                return None
+        elif pipeline_difference(meant, now) is not None:
             return None
         return Fold(proposal.id, proposal.kind, made.title, name, made.places, made.edits, changed, lines, characters)
 
@@ -149,6 +144,11 @@ def _in_order(folds: list[Fold]) -> list[Fold]:
     return sorted(folds, key=lambda fold: (-fold.saved_lines, -fold.saved_characters))
 
 
+def _resources(files: Files) -> Mapping[str, object]:
+    """What each resource says, with what it has of its types."""
+    return {name: plain(content) for name, _, content in ModelContent(files).resources()}
+
+
 def _is_shorter(kind: FoldKind, lines: int, characters: int) -> bool:
     """Return whether a fold is worth it; values that are named are written once, be that longer."""
     match kind:
@@ -161,14 +161,13 @@ def _is_shorter(kind: FoldKind, lines: int, characters: int) -> bool:
     return characters > 0
 
 
-def _proposed(station: FoldableStation) -> Iterator[FoldProposal]:
-    for find in _PROPOSALS:
-        yield from find(station)
-
-
-def _keep_comments(files: Files, changed: Mapping[str, str]) -> bool:
+def _keeps_comments(kind: FoldKind, files: Files, changed: Mapping[str, str]) -> bool:
+    """Return whether each file keeps its comments; with a type, whether they are kept anywhere."""
+    if kind is FoldKind.TYPE:
+        kept = set[str]().union(*(_comments(text) for text in changed.values()))
+        return all(kept.issuperset(_comments(files.get(file, ""))) for file in changed)
     return all(not _comments(files.get(file, "")) - _comments(text) for file, text in changed.items())
 
 
 def _comments(text: str) -> Counter[str]:
-    return Counter(found.strip() for found in _COMMENT.findall(text))
+    return Counter(found.strip() for found in _COMMENT.findall(text) if not found.startswith(_FOR_EDITORS))

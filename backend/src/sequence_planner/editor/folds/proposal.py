@@ -6,14 +6,16 @@ import hashlib
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
-from sequence_planner.editor.draft import AddEntry, Edit, SetEntry
+from sequence_planner.editor.draft import AddEntry, Edit, EditBase, SetEntry, WriteText
 from sequence_planner.editor.folds.texts import FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.source import SourceText
+
+_Named = TypeVar("_Named", bound=EditBase)
 
 NAME = "\0"
 """Stands for the name that what a fold adds is given."""
@@ -39,7 +41,7 @@ class FoldProposal:
     title: str
     replacements: tuple[Rewriting, ...] = ()
     entries: tuple[tuple[Edit, WrittenPlace], ...] = ()
-    added: AddEntry | None = None
+    added: AddEntry | WriteText | None = None
     name: str | None = None
 
     @property
@@ -65,14 +67,15 @@ class FoldProposal:
             self,
             title=self.title.replace(NAME, name),
             replacements=tuple(replace(each, now=each.now.replace(NAME, name)) for each in self.replacements),
-            added=self.added and AddEntry.model_validate(_named(self.added.model_dump(), name)),
+            entries=tuple((_with_name(edit, name), place) for edit, place in self.entries),
+            added=self.added and _with_name(self.added, name),
             name=name,
         )
 
     @property
     def worth(self) -> int:
         """About how many characters fewer are written with it, as far as that shows before it is made."""
-        added = 0 if self.added is None else len(str(self.added.value))
+        added = len(str(self.added.value)) if isinstance(self.added, AddEntry) else 0
         said = sum(len(each.was) - len(each.now) for each in self.replacements)
         return said - added + sum(len(str(edit)) for edit, _ in self.entries)
 
@@ -140,6 +143,11 @@ def place_between(file: str, first: SourceText, last: SourceText, was: str, now:
 def _place(part: Rewriting) -> WrittenPlace:
     at, end = (part.text.text.at(each) for each in (part.span, Span(part.span.end - 1, part.span.end)))
     return WrittenPlace(part.text.file, at.line, at.column, end.line, part.was, part.now)
+
+
+def _with_name(edit: _Named, name: str) -> _Named:
+    """An edit with a name in its place."""
+    return type(edit).model_validate(_named(edit.model_dump(), name))
 
 
 def _named(value: Any, name: str) -> Any:  # noqa: ANN401 (as JSON is)

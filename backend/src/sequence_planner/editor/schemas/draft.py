@@ -161,6 +161,7 @@ class FoldKind(StrEnum):
     INCLUDES = "includes"
     MAP = "map"
     ROWS = "rows"
+    TYPE = "type"
 
 
 class FoldPlaceView(View):

@@ -9,7 +9,16 @@ from sequence_planner.editor.symbols.collectors import Names, read_calculation
 from sequence_planner.editor.symbols.index import Declared, Where
 from sequence_planner.editor.symbols.texts import MarkedStages
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.marks import EntryPath, FormulaMark, Marked, NameMark, NameUse, TableMark, ValueMark
+from sequence_planner.model.stages.marks import (
+    EntryPath,
+    FormulaMark,
+    Marked,
+    NameMark,
+    NamesMark,
+    NameUse,
+    TableMark,
+    ValueMark,
+)
 
 T = TypeVar("T")
 
@@ -85,11 +94,14 @@ class Stages:
         }
         ranges = {path: each.enumeration for path, each in read.items()}
         for text, path, mark in marked:
+            if isinstance(mark, NamesMark):
+                self.tie(made.get(path) or ranges.get(path), self._spoken(text))
             if isinstance(mark, TableMark):
                 self.names.naming.note_table(mark.kind, where.to(*path), text, self.names.resource)
             if isinstance(mark, ValueMark) and text != mark.but:
-                enumeration = _of_entry(path, made if mark.of_given else ranges)
-                if enumeration is not None and not mark.of_given:  # a set may stand for several
+                is_of_given = mark.is_of_given(self.names.incoming)
+                enumeration = _of_entry(path, made if is_of_given else ranges)
+                if enumeration is not None and not is_of_given:  # a set may stand for several
                     self.names.naming.note_member(enumeration, where.to(*path), text)
                 else:
                     self.names.naming.note_value(enumeration, where.to(*path), text)

@@ -126,17 +126,30 @@ class CodeActions:
             types.CodeAction(
                 title=fold.title,
                 kind=types.CodeActionKind.RefactorRewrite,
-                edit=types.WorkspaceEdit(changes=self._changes(station, files, fold)),
+                edit=self._edit(station, files, fold),
             )
             for fold in found
+            if self._server.can_create_files or fold.files.keys() <= files.keys()
         ]
 
-    def _changes(self, station: EditedStation, files: dict[str, str], fold: Fold) -> dict[str, list[types.TextEdit]]:
+    def _edit(self, station: EditedStation, files: dict[str, str], fold: Fold) -> types.WorkspaceEdit:
+        """The edit that makes a fold; a file that is not there yet is created first."""
         encoding = self._server.stations.encoding
-        return {
-            self._server.uri(station, name): edits_between(DocumentText(files[name], encoding), text)
+        changes = {
+            self._server.uri(station, name): edits_between(DocumentText(files.get(name, ""), encoding), text)
             for name, text in fold.files.items()
         }
+        come = [self._server.uri(station, name) for name in fold.files if name not in files]
+        if not come:
+            return types.WorkspaceEdit(changes=changes)
+        documents: list[types.TextDocumentEdit | types.CreateFile | types.RenameFile | types.DeleteFile] = [
+            types.CreateFile(uri) for uri in come
+        ]
+        documents += [
+            types.TextDocumentEdit(types.OptionalVersionedTextDocumentIdentifier(uri), list(edits))
+            for uri, edits in changes.items()
+        ]
+        return types.WorkspaceEdit(document_changes=documents)
 
 
 def _touch(one: types.Range, other: types.Range) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Annotated, ClassVar
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from sequence_planner.language.records.field_paths import (
     FieldPath,
@@ -19,7 +19,8 @@ from sequence_planner.language.records.field_paths import (
     written,
 )
 from sequence_planner.language.records.record import FieldType, ListType, Record
-from sequence_planner.language.types import EnumerationType, Value
+from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, Value
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration
@@ -28,13 +29,19 @@ from sequence_planner.model.stages.marks import (
     CombinedField,
     ExampleValue,
     GivenField,
+    Marked,
     MessageField,
     ModelVariable,
     NamedMap,
     NamedRelation,
+    NameMark,
+    NamesMark,
+    NameUse,
     ReadValue,
     Scalar,
     ValueMark,
+    VariableValue,
+    with_names_said,
 )
 from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, as_key, some_values
 from sequence_planner.model.stages.support import (
@@ -77,6 +84,11 @@ class MapDocument(StageDeclaration):
     it each name is the same on both sides."""
     otherwise: Given[Annotated[Scalar, GIVEN_VALUE]] = None
     """What all other values become; without it they are unknown."""
+
+    @classmethod
+    def marked(cls, content: object) -> list[Marked]:
+        """The same, and that without a table the message has the names of values."""
+        return with_names_said(super().marked(content), content, "values")
 
     def check(self, context: Context) -> MapStage | None:
         """From field to variable for incoming topics, from variable to field for outgoing ones."""
@@ -255,14 +267,29 @@ class MapStage(ImmediateStage):
 ANY = "any"
 
 
+class TableCellDocument(DocumentPart):
+    """What one of the fields of a table is, as a value that it gives."""
+
+    field: Annotated[SourceText, NameMark(NameUse.COMBINED, NameUse.COMBINED), NamesMark()]
+    """The field, one of `fields`."""
+
+
 class TableRowDocument(DocumentPart):
     """One row of a table."""
 
     when: NamedRelation | Annotated[list[Annotated[Scalar, ValueMark(of_given=False, but=ANY)]], Field(min_length=1)]
     """A value for each of `fields`, or a named set of them; `any` fits everything. Or, of two fields, the name of a
     relation of the station, whose pairs fit."""
-    gives: Annotated[list[Annotated[Scalar, GIVEN_VALUE]], Field(min_length=1)]
-    """A value for each of `variables`."""
+    gives: Annotated[
+        list[
+            Annotated[
+                Annotated[Scalar, GIVEN_VALUE, Tag("value")] | Annotated[TableCellDocument, Tag("field")],
+                Discriminator(lambda cell: "field" if isinstance(cell, dict) else "value"),
+            ]
+        ],
+        Field(min_length=1),
+    ]
+    """A value for each of `variables`, or `{field: name}`: what this one of `fields` is."""
 
 
 class TableDocument(StageDeclaration):
@@ -282,8 +309,8 @@ class TableDocument(StageDeclaration):
 
     def check(self, context: Context) -> TableStage | None:
         """From several fields to several variables, whichever way the topic goes."""
-        sources = passing(context, self.marked(self))
-        right = [_has_cells(row, self, context) for row in self.rows]
+        sources = passing(context, (each for each in self.marked(self) if each.path[0] == "fields"))
+        right = [_has_cells(row, self, context) and _has_fields(row, self, context) for row in self.rows]
         if self.otherwise is not None and len(self.otherwise) != len(self.variables):
             place = place_of(self.otherwise, self.variables[0].place)
             context.found(place, f"`otherwise` needs {_cells(self.variables)}")
@@ -293,11 +320,11 @@ class TableDocument(StageDeclaration):
             context.found(name.place, f"`{name}` is given twice here")
         if sources is None or not all(right) or twice:
             return None
-        given = [row.gives for row in self.rows] + ([] if self.otherwise is None else [self.otherwise])
-        types = [
-            type_for(context, name, column)
-            for name, column in zip(self.variables, zip(*given, strict=True), strict=True)
-        ]
+        given: list[Sequence[object]] = [row.gives for row in self.rows]
+        given += [] if self.otherwise is None else [self.otherwise]
+        known_as = {source.path.text: source.type for source in sources}
+        columns = [[each for cell in column for each in _can_be(cell, known_as)] for column in zip(*given, strict=True)]
+        types = [type_for(context, name, column) for name, column in zip(self.variables, columns, strict=True)]
         gives = {str(name): type_ for name, type_ in zip(self.variables, types, strict=True) if type_ is not None}
         if len(gives) != len(types):
             return None
@@ -345,29 +372,78 @@ def _has_cells(row: TableRowDocument, document: TableDocument, context: Context)
     return True
 
 
+def _has_fields(row: TableRowDocument, document: TableDocument, context: Context) -> bool:
+    """Check whether the fields whose values a row gives are some of the table, and have few values."""
+    wrong = 0
+    for cell in row.gives:
+        if not isinstance(cell, TableCellDocument):
+            continue
+        if cell.field not in document.fields:
+            near = suggestion(cell.field, document.fields)
+            context.found(cell.field.place, f"`{cell.field}` is none of the `fields` of the table{near}")
+            wrong += 1
+        elif (found := context.field(cell.field)) is None or domain(found[1]) is None:
+            if found is not None:
+                why = "only what is one of a few values can be given by its name"
+                context.found(cell.field.place, f"`{cell.field}` is {found[1]}, and {why}")
+            wrong += 1
+    return wrong == 0
+
+
+def _can_be(cell: object, types: Mapping[str, FieldType]) -> Sequence[object]:
+    """The values that a cell can give."""
+    return domain(types[str(cell.field)]) or () if isinstance(cell, TableCellDocument) else (cell,)
+
+
 def _rows(
     row: TableRowDocument, sources: Sequence[Passing], gives: Mapping[str, FieldType], context: Context
 ) -> Iterator[Row | None]:
     """The row for each choice of values of the sets in it; None after a finding."""
     place = place_of(_cells_of(row), context.place)
-    meant = _values(row.gives, list(gives.values()), context)
     if isinstance(row.when, SourceText):
         pairs = pairs_of_relation(row.when, sources, context)
-        yield from (Row(pair, meant) for pair in pairs if meant is not None)
-        if meant is None or not pairs:
+        for pair in pairs:
+            meant = _given(row, pair, sources, gives, context)
+            yield None if meant is None else Row(pair, meant)
+        if not pairs:
             yield None
         return
-    columns = [
-        meant_by(cell, source.type, context) if isinstance(cell, SourceText) and cell != ANY else [cell]
+    named = {str(cell.field) for cell in row.gives if isinstance(cell, TableCellDocument)}
+    columns: list[Sequence[object]] = [
+        meant_by(cell, source.type, context)
+        if isinstance(cell, SourceText) and cell != ANY
+        else (domain(source.type) or ())
+        if source.path.text in named and cell == ANY
+        else [cell]
         for cell, source in zip(row.when, sources, strict=True)
     ]
     for cells in product(*columns):
-        when = [
+        when = tuple(
             None if cell == ANY else value_of(context, source.type, cell, place)
             for cell, source in zip(cells, sources, strict=True)
-        ]
+        )
         wrong = any(value is None and cell != ANY for value, cell in zip(when, cells, strict=True))
-        yield None if wrong or meant is None else Row(tuple(when), meant)
+        meant = None if wrong else _given(row, when, sources, gives, context)
+        yield None if meant is None else Row(when, meant)
+
+
+def _given(
+    row: TableRowDocument,
+    when: Sequence[object],
+    sources: Sequence[Passing],
+    gives: Mapping[str, FieldType],
+    context: Context,
+) -> tuple[object, ...] | None:
+    """What a row gives where the fields are these; None after a finding."""
+    values = {source.path.text: value for source, value in zip(sources, when, strict=True)}
+    cells = [values[str(cell.field)] if isinstance(cell, TableCellDocument) else cell for cell in row.gives]
+    for cell, value, type_ in zip(row.gives, cells, gives.values(), strict=True):
+        if isinstance(cell, TableCellDocument) and written(type_, value) is None:
+            context.found(
+                cell.field.place, f"`{cell.field}` can be `{as_written(value)}` here, and that is none of {type_}"
+            )
+            return None
+    return _values(cells, list(gives.values()), context)
 
 
 def _cells_of(row: TableRowDocument) -> list[object]:
@@ -444,7 +520,10 @@ class TableStage(ImmediateStage):
         record.values.update(zip(self.gives, found or (None,) * len(self.gives), strict=True))
         if found is None and None not in given:
             names = ", ".join(map(str, self.sources))
-            record.troubles.append(f"no row of the table fits {shown(list(given))} for {names}")
+            record.troubles.append(self._complaint(names, given))
+
+    def _complaint(self, names: str, given: tuple[object, ...]) -> str:
+        return f"no row of the table fits {shown(list(given))} for {names}"
 
     def meaning(self, given: tuple[object, ...]) -> tuple[object, ...] | None:
         """Return what the targets are; None where no row applies, or that depends on something unknown."""
@@ -472,3 +551,112 @@ class TableStage(ImmediateStage):
 
 def _is_given(value: object) -> bool:
     return value is not None
+
+
+# `one_of`: several truth values, one of which is true.
+
+
+def _is_boolean(type_: FieldType) -> bool:
+    return isinstance(type_, BooleanType)
+
+
+class OneOfDocument(StageDeclaration):
+    """Which of several truth values is true: each of them stands for a value."""
+
+    kind: ClassVar[str] = "one_of"
+    about: ClassVar[str] = "Of several truth values the one that is true: each stands for a value."
+
+    variable: ModelVariable
+    """The variable that has one of the values."""
+    fields: Annotated[
+        dict[
+            VariableValue,
+            Annotated[SourceText, NameMark(NameUse.CONSUMED, NameUse.GIVEN, fits=_is_boolean, what="true or false")],
+        ],
+        Field(min_length=2),
+        ExampleValue({"one": "first", "other": "second"}),
+    ]
+    """The field that is true for each value."""
+    otherwise: Given[Annotated[Scalar, GIVEN_VALUE]] = None
+    """For an incoming topic: the value where none of the fields is true, or several are; without it the variable is
+    unknown then. For an outgoing one no field is true for a value that is not listed."""
+
+    def check(self, context: Context) -> OneOfStage | None:
+        """From fields to the variable for incoming topics, from the variable to fields for outgoing ones."""
+        first: dict[str, SourceText] = {}
+        twice = [name for name in self.fields.values() if first.setdefault(str(name), name) is not name]
+        for name in twice:
+            context.found(name.place, f"`{name}` stands for two values: give each a field of its own")
+        sources = passing(context, self.marked(self))
+        if sources is None or twice:
+            return None
+        return self._incoming(sources, context) if context.is_incoming else self._outgoing(sources, context)
+
+    def _incoming(self, sources: Sequence[Passing], context: Context) -> OneOfStage | None:
+        rest = [] if self.otherwise is None else [self.otherwise]
+        type_ = type_for(context, self.variable, [*self.fields, *rest])
+        if type_ is None:
+            return None
+        meant = values_of(context, type_, [*self.fields, *rest], self.variable.place)
+        if meant is None:
+            return None
+        paths, kinds = (tuple(part) for part in zip(*((each.path, each.type) for each in sources), strict=True))
+        rows = tuple(
+            Row(tuple(other is name for other in self.fields.values()), (value,))
+            for name, value in zip(self.fields.values(), meant, strict=False)
+        )
+        otherwise = None if self.otherwise is None else (meant[-1],)
+        return OneOfStage(context.place, paths, kinds, {str(self.variable): type_}, rows, otherwise)
+
+    def _outgoing(self, sources: Sequence[Passing], context: Context) -> OneOfStage | None:
+        (variable,) = sources
+        if self.otherwise is not None:
+            place = place_of([self.otherwise], self.variable.place)
+            context.found(place, "`otherwise` is for incoming topics: for a value that is not listed no field is true")
+            return None
+        values = values_of(context, variable.type, list(self.fields), self.variable.place)
+        wrong = [
+            (name, type_)
+            for name in self.fields.values()
+            if not _is_boolean(type_ := wanted_type(context, name) or BOOLEAN)
+        ]
+        for name, type_ in wrong:
+            context.found(name.place, f"`{name}` must be true or false, and is {type_}")
+        if values is None or wrong:
+            return None
+        names = [str(name) for name in self.fields.values()]
+        rows = tuple(
+            Row((value,), tuple(name == own for name in names)) for value, own in zip(values, names, strict=True)
+        )
+        gives: dict[str, FieldType] = dict.fromkeys(names, BOOLEAN)
+        return OneOfStage(context.place, (variable.path,), (variable.type,), gives, rows, (False,) * len(names))
+
+    @classmethod
+    def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
+        if spot.is_incoming:
+            bits = [path for path, _ in spot.subjects(_is_boolean)]
+            for name, wanted in spot.open.items():
+                if isinstance(wanted, EnumerationType) and 1 < len(wanted.values) <= len(bits):
+                    fields = dict(zip(wanted.values, bits, strict=False))
+                    yield Candidate({cls.kind: {"variable": name, "fields": fields}})
+            return
+        bits = [name for name, wanted in spot.open.items() if _is_boolean(wanted)]
+        for path, type_ in spot.subjects(lambda each: isinstance(each, EnumerationType)):
+            if isinstance(type_, EnumerationType) and min(len(type_.values), len(bits)) > 1:
+                yield Candidate({cls.kind: {"variable": path, "fields": dict(zip(type_.values, bits, strict=False))}})
+
+    @classmethod
+    def _about(cls, name: str, spot: Spot) -> object:
+        if spot.is_incoming:
+            return {"variable": spot.name(f"{name}_is"), "fields": {"one": name, "other": f"{name}_2"}}
+        return {"variable": name, "fields": {"one": spot.target, "other": f"{spot.target}_2"}} if spot.open else None
+
+
+@dataclass(frozen=True)
+class OneOfStage(TableStage):
+    """A table in which one field is true in each row."""
+
+    kind: ClassVar[str] = "one_of"
+
+    def _complaint(self, names: str, given: tuple[object, ...]) -> str:
+        return f"not exactly one is true, but {shown(list(given))} for {names}"

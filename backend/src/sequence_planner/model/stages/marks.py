@@ -51,10 +51,22 @@ class NameMark:
 
 @dataclass(frozen=True)
 class ValueMark:
-    """Marks a text as a value of what the stage reads, or of what it gives; `but` is a word that is none."""
+    """Marks a text as a value of what the stage reads, or of what it gives; `but` is a word that is none. One that is
+    `of_variable` is of what is given in an incoming pipeline, and of what is read in an outgoing one.
+    """
 
     of_given: bool
     but: str | None = None
+    of_variable: bool = False
+
+    def is_of_given(self, is_incoming: bool) -> bool:
+        """Return whether it is a value of what the stage gives."""
+        return is_incoming if self.of_variable else self.of_given
+
+
+@dataclass(frozen=True)
+class NamesMark:
+    """Marks a name in the record whose values are said in messages as they are called in the model."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +101,7 @@ Scalar = SourceText | bool | int | float
 READ_VALUE, GIVEN_VALUE = ValueMark(of_given=False), ValueMark(of_given=True)
 ReadValue = Annotated[SourceText, READ_VALUE]
 GivenValue = Annotated[SourceText, GIVEN_VALUE]
+VariableValue = Annotated[SourceText, ValueMark(of_given=True, of_variable=True)]
 
 # Tables of the station, by their names.
 NamedMap = Annotated[SourceText, TableMark("map")]
@@ -102,7 +115,7 @@ class Within(Enum):
     ENTRIES = "entries"
 
 
-Mark = NameMark | ValueMark | FormulaMark | TableMark
+Mark = NameMark | ValueMark | FormulaMark | TableMark | NamesMark
 Steps = tuple[str | Within, ...]
 EntryPath = tuple[str | int, ...]
 
@@ -163,3 +176,10 @@ def texts_at(content: object, steps: Steps, path: EntryPath = ()) -> Iterator[tu
             fields = type(content).model_fields
             name = next(name for name, info in fields.items() if (info.alias or name) == step)
             yield from texts_at(getattr(content, name), rest, (*path, step))
+
+
+def with_names_said(marked: list[Marked], content: object, table: str) -> list[Marked]:
+    """What is marked in a stage; without a `table` messages have the names of its variable's values, which is added."""
+    written = content.get(table) if isinstance(content, dict) else getattr(content, table, None)
+    variables = [each for each in marked if each.path == ("variable",)] if written is None else []
+    return [*marked, *(each._replace(mark=NamesMark()) for each in variables)]

@@ -10,12 +10,21 @@ from pydantic import Field, model_validator
 
 from sequence_planner.language.records.field_paths import TEXT, FieldPath, is_number, is_textual, shown
 from sequence_planner.language.records.record import FieldType, ListType, RealType, Record
-from sequence_planner.language.types import BOOLEAN
+from sequence_planner.language.types import BOOLEAN, EnumerationType
 from sequence_planner.model.fields import Given
 from sequence_planner.model.source import SourceText
-from sequence_planner.model.stages.base import Context, StageDeclaration
+from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration
 from sequence_planner.model.stages.map import is_same
-from sequence_planner.model.stages.marks import ExampleValue, GivenValue, MessageField, ModelVariable, Scalar
+from sequence_planner.model.stages.marks import (
+    GIVEN_VALUE,
+    ExampleValue,
+    GivenValue,
+    Marked,
+    MessageField,
+    ModelVariable,
+    Scalar,
+    with_names_said,
+)
 from sequence_planner.model.stages.suggestions import Candidate, Spot, some_values
 from sequence_planner.model.stages.support import (
     ImmediateStage,
@@ -24,6 +33,7 @@ from sequence_planner.model.stages.support import (
     type_for,
     value_of,
     values_of,
+    wanted_type,
 )
 
 # `match`: texts that are recognised.
@@ -204,21 +214,34 @@ class MatchNamesStage(ImmediateStage):
 
 
 class MemberDocument(StageDeclaration):
-    """Whether a list contains an item."""
+    """Whether a list contains an item, or which of the names of a variable it contains."""
 
     kind: ClassVar[str] = "member"
-    about: ClassVar[str] = "Whether a list contains an item; for incoming topics."
+    about: ClassVar[str] = "Whether a list contains an item, or which of several; for incoming topics."
     direction: ClassVar = "incoming"
 
     field: MessageField
     """A list of the message."""
-    item: Annotated[Scalar, ExampleValue(0)]
-    """What is looked for."""
+    item: Annotated[Given[Scalar], ExampleValue(0)] = None
+    """What is looked for. Without it: whatever name a value of the variable has."""
     variable: ModelVariable
-    """True when it is there."""
+    """True when the item is there. Without `item`: the value whose name alone is there; unknown where several are."""
+    if_none: Given[Annotated[Scalar, GIVEN_VALUE]] = None
+    """Without `item`: the value where none of the others is there."""
 
-    def check(self, context: Context) -> MemberStage | None:
-        """Whether a list contains an item."""
+    @model_validator(mode="after")
+    def _names_or_one(self) -> MemberDocument:
+        if self.item is not None and self.if_none is not None:
+            raise ValueError("`if_none` stands where no `item` does: whether that is there is true or false")
+        return self
+
+    @classmethod
+    def marked(cls, content: object) -> list[Marked]:
+        """The same, and that without an item the message has the names of values."""
+        return with_names_said(super().marked(content), content, "item")
+
+    def check(self, context: Context) -> MemberStage | MemberNamesStage | None:
+        """Whether a list contains an item, or which of several."""
         if not self.is_for(context):
             return None
         found = context.field(self.field)
@@ -228,8 +251,24 @@ class MemberDocument(StageDeclaration):
         if not isinstance(type_, ListType):
             context.found(self.field.place, f"`{self.field}` is {type_}, and no list")
             return None
+        if self.item is None:
+            return self._of_names(path, type_, context)
         item = value_of(context, type_.element, self.item, self.field.place)
         return None if item is None else MemberStage(context.place, path, type_, item, str(self.variable))
+
+    def _of_names(self, path: FieldPath, type_: ListType, context: Context) -> MemberNamesStage | None:
+        wanted = wanted_type(context, self.variable)
+        if not isinstance(wanted, EnumerationType):
+            context.found(self.variable.place, "without `item` the variable is an enumeration: the list has its names")
+            return None
+        if not is_textual(type_.element):
+            context.found(self.field.place, f"`{self.field}` is {type_}, and without `item` a list of texts is needed")
+            return None
+        empty = None if self.if_none is None else value_of(context, wanted, self.if_none, self.variable.place)
+        if self.if_none is not None and empty is None:
+            return None
+        names = tuple(name for name in wanted.values if name != empty)
+        return MemberNamesStage(context.place, path, type_, str(self.variable), wanted, names, empty)
 
     @classmethod
     def _suggested(cls, spot: Spot) -> Iterator[Candidate]:
@@ -288,3 +327,50 @@ class MemberStage(ImmediateStage):
             else:
                 known = [item for item in known if not is_same(item, self.item)] + [self.item] * (wanted is True)
         values[self.field.text] = known
+
+
+@dataclass(frozen=True)
+class MemberNamesStage(ImmediateStage):
+    """The one of some names that a list contains, `if_none` where that is none; unknown where it is several."""
+
+    field: FieldPath
+    type: ListType
+    variable: str
+    variable_type: EnumerationType
+    names: tuple[str, ...]
+    if_none: object
+    kind: ClassVar[str] = "member"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The list."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The variable that has the name."""
+        return {self.variable: self.variable_type}
+
+    def apply(self, record: Record) -> None:
+        """Give the name that is there."""
+        items = self.field.get(record.values)
+        found = [name for name in self.names if name in items] if isinstance(items, list) else None
+        record.values[self.variable] = None
+        if found is not None and len(found) <= 1:
+            record.values[self.variable] = found[0] if found else self.if_none
+        if found is not None and record.values[self.variable] is None:
+            what = f"{' and '.join(found)} at once" if found else f"none of {', '.join(self.names)}"
+            record.troubles.append(f"{self.field} is {shown(items)}, with {what}, which is no value of {self.variable}")
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The list that there is, with this name alone of all; one of a fixed length has nothing else in it."""
+        wanted, items = values.get(self.variable), values.get(self.field.text)
+        if wanted is None:
+            return
+        if wanted not in self.names and wanted != self.if_none:
+            raise NotInvertibleError(f"no list `{self.field}` means {shown(wanted)}")
+        known = [item for item in items if item not in self.names] if isinstance(items, list) else []
+        own = [] if wanted == self.if_none else [wanted]
+        if self.type.length is not None:
+            known, own = [], (own or [""]) * self.type.length
+        values[self.field.text] = [*known, *own]

@@ -28,7 +28,7 @@ from sequence_planner.model.yaml.reader import EntryPath, MadePlaces, YamlDocume
 # What stands where in a document, as far as parameters are concerned.
 
 
-class _InText(IntEnum):
+class ParameterUse(IntEnum):
     """Where a parameter stands in a text; the later ones go first where a text may be several."""
 
     NAMES = 0  # in braces
@@ -41,9 +41,9 @@ class _InText(IntEnum):
 class DocumentShape:
     """What may stand at an entry: how its text is read, whether it can be a number, and what is within it."""
 
-    text: _InText = _InText.NAMES
+    text: ParameterUse = ParameterUse.NAMES
     is_number: bool = False
-    keys: _InText = _InText.NAMES
+    keys: ParameterUse = ParameterUse.NAMES
     fields: Mapping[str, DocumentShape] = field(default_factory=dict)
     entries: DocumentShape | None = None
 
@@ -63,7 +63,11 @@ class DocumentShape:
 
 
 ANYTHING = DocumentShape()
-_MARKED = {TextUse.TYPE: _InText.TYPE, TextUse.CONDITION: _InText.EXPRESSION, TextUse.ACTION: _InText.EXPRESSION}
+_MARKED = {
+    TextUse.TYPE: ParameterUse.TYPE,
+    TextUse.CONDITION: ParameterUse.EXPRESSION,
+    TextUse.ACTION: ParameterUse.EXPRESSION,
+}
 
 
 @cache
@@ -101,7 +105,7 @@ def _shape_of(annotation: object) -> DocumentShape:
             made = made.with_either(each)
         # A text beside numbers is a value, unless it is marked as something else.
         is_value = made.is_number and SourceText in map(_plain, arguments)
-        return replace(made, text=max(made.text, _InText.VALUE)) if is_value else made
+        return replace(made, text=max(made.text, ParameterUse.VALUE)) if is_value else made
     if origin in (dict, Mapping):
         return DocumentShape(keys=_shape_of(arguments[0]).text, entries=_shape_of(arguments[1]))
     if origin in (list, tuple):
@@ -110,7 +114,7 @@ def _shape_of(annotation: object) -> DocumentShape:
     if annotation in (int, float):
         return DocumentShape(is_number=True)
     if annotation is Any:
-        return DocumentShape(_InText.VALUE, True, entries=DocumentShape(_InText.VALUE, True))
+        return DocumentShape(ParameterUse.VALUE, True, entries=DocumentShape(ParameterUse.VALUE, True))
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         fields = annotation.model_fields.items()
         return DocumentShape(
@@ -128,9 +132,9 @@ def _plain(annotation: object) -> object:
 def _marked(shape: DocumentShape, marks: tuple[object, ...]) -> DocumentShape:
     for mark in marks:
         if isinstance(mark, FormulaMark):
-            return replace(shape, text=_InText.EXPRESSION)
+            return replace(shape, text=ParameterUse.EXPRESSION)
         if isinstance(mark, ValueMark):
-            return replace(shape, text=_InText.VALUE)
+            return replace(shape, text=ParameterUse.VALUE)
         if isinstance(mark, TextUse):
             return replace(shape, text=_MARKED[mark])
     return shape
@@ -250,16 +254,16 @@ class Expansion:
 
     def with_arguments(self, text: SourceText) -> SourceText:
         """A text that is given to another type."""
-        return self._text(text, _InText.VALUE)
+        return self._text(text, ParameterUse.VALUE)
 
     def _scalar(self, text: SourceText, shape: DocumentShape) -> object:
         if shape.is_number and (found := self._arguments.get(text)) is not None and found.kind == "number":
             return found.content
         return self._text(text, shape.text)
 
-    def _text(self, text: SourceText, use: _InText) -> SourceText:
+    def _text(self, text: SourceText, use: ParameterUse) -> SourceText:
         pieces: tuple[Piece, ...] = ()
-        if use == _InText.EXPRESSION:
+        if use == ParameterUse.EXPRESSION:
             if self._words is not None and self._words.search(text):
                 pieces = tuple(self._named(text))
         elif self._stands_for(text, use):
@@ -274,17 +278,17 @@ class Expansion:
             made += text[end : piece.begin] + self._arguments[name].text
             end = piece.stop
         is_whole = len(pieces) == 1 and pieces[0].stop - pieces[0].begin == len(text)
-        given = {piece.given for piece in pieces} if is_whole or use != _InText.EXPRESSION else set()
+        given = {piece.given for piece in pieces} if is_whole or use != ParameterUse.EXPRESSION else set()
         one = next(iter(given)) if len(given) == 1 else None
         place = text.place._replace(instance=with_given_at(self._instance, one))
         return ExpandedText(text, made + text[end:], pieces, place)
 
-    def _stands_for(self, text: SourceText, use: _InText) -> bool:
+    def _stands_for(self, text: SourceText, use: ParameterUse) -> bool:
         """Return whether a text that stands alone is the name of a parameter."""
         found = self._arguments.get(text)
-        if found is None or use == _InText.NAMES:
+        if found is None or use == ParameterUse.NAMES:
             return False
-        return found.kind in _VALUES if use == _InText.VALUE else found.kind == "enumeration"
+        return found.kind in _VALUES if use == ParameterUse.VALUE else found.kind == "enumeration"
 
     def _named(self, text: SourceText) -> Iterator[Piece]:
         """Parameters by their names: no parts of longer ones, and nothing that is called."""

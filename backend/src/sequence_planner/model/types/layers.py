@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -180,23 +180,27 @@ def content_of(
 
 
 def _merged(base: object, own: object) -> Any:  # noqa: ANN401 (content of any form)
-    """`base` with what `own` changes and adds: entries by their names, all else as a whole.
-
-    What is added stands behind the entry that is above it in `own`, or else before the one that is below it there.
-    """
+    """`base` with what `own` changes and adds: entries by their names, all else as a whole."""
     if not isinstance(base, dict) or not isinstance(own, dict):
         return own
+    return {
+        key: _merged(base[key], own[key]) if key in base and key in own else base[key] if key in base else own[key]
+        for key in merged_order(list(base), list(own))
+    }
+
+
+def merged_order(base: Sequence[str], own: Sequence[str]) -> list[str]:
+    """The names in `base` with those that `own` adds, each behind the one that is above it in `own`, or else before the
+    one that is below it there.
+    """
     order, above = list(base), None
     for key in own:
         if key not in base:
             below = None if above is not None else next((each for each in own if each in base), None)
-            at = len(order) if above is below is None else order.index(above or below) + (above is not None)
+            at = len(order) if above is below is None else order.index(above or below or "") + (above is not None)
             order.insert(at, key)
         above = key
-    return {
-        key: _merged(base[key], own[key]) if key in base and key in own else base[key] if key in base else own[key]
-        for key in order
-    }
+    return order
 
 
 def _without(content: Any, text: SourceText) -> str | None:  # noqa: ANN401

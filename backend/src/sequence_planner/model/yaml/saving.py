@@ -50,6 +50,21 @@ def edit_file(path: Path, change: Callable[[str], str], *, expected: str | None 
     return _difference(path, plain, new)
 
 
+def add_file(path: Path, text: str) -> str:
+    """Write a file that is not there yet, with the folder it is in; returns the difference. Raises `EditError`."""
+    try:
+        path.parent.mkdir(exist_ok=True)
+        with path.open("x", encoding="utf-8", newline="") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+    except FileExistsError:
+        raise EditError(f"{path} is there already: take another name, or look at it first") from None
+    except OSError as error:
+        raise EditError(f"{path} cannot be written: {error.strerror}") from error
+    return _difference(path, "", text)
+
+
 def _difference(path: Path, old: str, new: str) -> str:
     lines: list[str] = []
     for line in difflib.unified_diff(_LINE.findall(old), _LINE.findall(new), str(path), str(path)):

@@ -175,6 +175,7 @@ export const model = {
 		ends: 'Ends with',
 		equals: 'Equals',
 		item: 'Item',
+		if_none: 'If there is none',
 		of: 'Of',
 		except: 'Except',
 		to: 'To',

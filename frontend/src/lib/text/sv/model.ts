@@ -173,6 +173,7 @@ export const model: Text['model'] = {
 		ends: 'Slutar med',
 		equals: 'Är lika med',
 		item: 'Element',
+		if_none: 'Om inget finns',
 		of: 'Av',
 		except: 'Utom',
 		to: 'Till',

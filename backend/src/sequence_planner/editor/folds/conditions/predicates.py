@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from sequence_planner.editor.draft import AddEntry
+from sequence_planner.editor.folds.conditions.quantifiers import is_membership, over, quantified, runs, words_for
 from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, is_within
-from sequence_planner.editor.folds.quantifiers import is_membership, over, quantified, runs, words_for
 from sequence_planner.editor.folds.texts import (
     FoldableStation,
     FoldableText,

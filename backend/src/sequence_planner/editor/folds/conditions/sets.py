@@ -10,8 +10,8 @@ from functools import reduce
 from pydantic import JsonValue
 
 from sequence_planner.editor.draft import AddEntry, SetEntry
+from sequence_planner.editor.folds.conditions.quantifiers import is_membership, runs
 from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart, place_between
-from sequence_planner.editor.folds.quantifiers import is_membership, runs
 from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION, entry, pairs

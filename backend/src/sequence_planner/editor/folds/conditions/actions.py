@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from sequence_planner.core.immutable import replace
 from sequence_planner.editor.draft import Edit, RemoveEntry, SetEntry
+from sequence_planner.editor.folds.conditions.quantifiers import words_for
 from sequence_planner.editor.folds.proposal import NAME, FoldProposal, WrittenPlace, place_between
-from sequence_planner.editor.folds.quantifiers import words_for
 from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, with_word, words_of
 from sequence_planner.editor.language.field import FieldKind
 from sequence_planner.editor.schemas.draft import FoldKind

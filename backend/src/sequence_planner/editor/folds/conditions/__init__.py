@@ -1,0 +1,1 @@
+"""Folds of conditions, actions and lists of values."""
