@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from sequence_planner.automaton.automaton import Ability, Automaton, HumanTask, Kind, VariableDeclaration
 from sequence_planner.language.syntax import FALSE, TRUE, Assignment, Comparison, Constant, Or, Variable
-from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 from sequence_planner.mimic.layout import made_from
 from sequence_planner.mimic.motion import motions
 from sequence_planner.mimic.views import Box, MimicStop, MimicView
@@ -129,8 +129,10 @@ def stations(draw: st.DrawFn) -> Automaton:
     variables: dict[str, VariableDeclaration] = {}
     abilities: dict[str, Ability] = {}
 
-    def declare(name: str, of: Type, kind: Kind, resource: str | None) -> Variable:
-        variables[name] = VariableDeclaration(name, of, kind, of.domain[0], resource)
+    def declare(
+        name: str, of: BooleanType | EnumerationType | IntegerRange, kind: Kind, resource: str | None
+    ) -> Variable:
+        variables[name] = VariableDeclaration(name, of, kind, of.domain[0], of_whom)
         return Variable(name, of)
 
     pairs = tuple(f"pair_{number}" for number in range(draw(st.integers(0, 30))))
