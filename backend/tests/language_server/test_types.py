@@ -234,3 +234,14 @@ def test_what_the_supervisor_adds_stands_in_the_type_with_the_instances_that_it_
     ]
     assert told_of == list(about)
     editor.close(uri)
+
+
+def test_a_type_without_an_instance_is_checked_as_far_as_it_can_be(editor: Editor, robots: Path) -> None:
+    text = "parameters: {stop: text}\nmeasured: {up: {type: bool}}\nabilities:\n  go:\n    enabled: up and\n"
+    uri = editor.open(robots / "types" / "spare.yaml", text)
+    shown = editor.until_shown(uri, "expected a name, a value or `(`, found the end of the text")
+    assert shown["range"]["start"]["line"] == 4
+    editor.type(uri, "up and\n", "up\n    exec")
+    assert "executing" in labels(editor, uri, "\n    exec")
+    editor.type(uri, "    exec", "    executing: up")
+    editor.until_clean(uri)

@@ -484,6 +484,55 @@ def test_an_argument_that_a_name_of_the_resource_hides(robots: Path) -> None:
     assert f"{robots / ONE}:3:63: {message}" in findings(robots)
 
 
+_SPARE = """\
+parameters:
+  {name: text, topic: text, places: enumeration, first: {kind: value, of: places}, travel: number, other: resource}
+topics:
+  "{topic}": {type: buffer_msgs/msg/RobotState, direction: in}
+  "/{name}/state": {type: buffer_msgs/msg/RobotState, direction: in}
+measured: {at: {type: places, initial: first}}
+output: {busy: {type: bool}}
+abilities:
+  go:
+    enabled: at == first and not other.close_gripper
+    start: {do: [busy := true]}
+    until: at != first
+    finish: {do: [busy := false]}
+    effects:
+      arrives: {do: [at := first], takes: [2, travel]}
+predicates:
+  is_busy: busy
+alarms:
+  slow: {when: busy, title: "{name} is slow", delay: travel}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("    start: {do", "    ‹strt: {do", "`strt` is not known here; did you mean `start`?"),
+        (
+            "not other.close_gripper",
+            "not other.close_gripper and‹",
+            "expected a name, a value or `(`, found the end of the text",
+        ),
+        ("[busy := true]", "[busy ‹= true]", "`=` has no meaning here; write == (or := in an action)"),
+        ("is_busy: busy", "is_busy: busy ‹&& at == first", "`&&` has no meaning here; write and"),
+        ('"{name} is slow"', '"‹{nam} is slow"', "unknown parameter `nam`; did you mean `name`?"),
+        ("takes: [2, travel]", "takes: ‹[3, 2]", "from 3 to 2 seconds is no duration: write the fewest first"),
+    ],
+)
+def test_a_type_without_an_instance_is_checked_as_far_as_no_argument_is_needed(
+    robots: Path, old: str, new: str, message: str
+) -> None:
+    write(robots, "types/spare.yaml", _SPARE)
+    read_station(robots)
+    [place] = replace(robots, "types/spare.yaml", old, new)
+    [found] = findings(robots)
+    assert found.endswith(f": {message}")
+    assert found.startswith(place.rpartition(":")[0])
+
+
 def test_arguments_without_a_type(robots: Path) -> None:
     replace(robots, ONE, "type: robot\n", "")
     message = "`type` is missing here: `arguments` and `remove` are those of an instance of a type"

@@ -249,6 +249,7 @@ class _FolderReader:
     ) -> dict[str, object]:
         from sequence_planner.model.types.instances import Instances, InstancesBefore  # noqa: PLC0415
         from sequence_planner.model.types.layers import WrittenInstance  # noqa: PLC0415
+        from sequence_planner.model.types.unused import wrong_in_unused  # noqa: PLC0415
 
         if station is None:  # nobody knows its enumerations
             return {}
@@ -259,6 +260,8 @@ class _FolderReader:
             for name, each in found.items()
         }
         self.findings.extend(instances.findings)
+        for name in instances.unused:
+            self.findings += wrong_in_unused(name, types)
         self.layers = instances.layers
         return made
 

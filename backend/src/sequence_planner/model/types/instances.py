@@ -89,6 +89,16 @@ class Instances:
         self.findings += known[1]
         return known[0]
 
+    @property
+    def unused(self) -> list[str]:
+        """The types of the station itself that no instance has, and with which nothing is wrong so far."""
+        used = {layer.name for layers in self.layers.values() for layer in layers}
+        return [
+            name
+            for name, type_ in self._types.items()
+            if name in self._sound - used and type_ is not None and not type_.package
+        ]
+
     def _note(self, where: SourceText | Place, message: str) -> None:
         self.findings.append(Finding(where.place if isinstance(where, SourceText) else where, message))
 
