@@ -69,11 +69,10 @@ def test_titles_follow_what_they_are_of() -> None:
     said = "titles: {tight: firm}, title: {en: 'bolt {where}'}, phrase: '{where} is {value}'"
     written = SHORTHAND["station.yaml"].replace("initial: empty}", f"initial: empty, {said}}}")
     files = {**SHORTHAND, "station.yaml": written}
-    assert said.replace("tight", "fast") in (
-        renamed(files, parse_part("value:state.tight"), "fast")["station.yaml"] or ""
-    )
-    renaming = renamed(files, parse_part("parameter:bolts.where"), "spot_of")
-    assert said.replace("{where}", "{spot_of}") in (renaming["station.yaml"] or "")
+    value = renamed(files, parse_part("value:state.tight"), "fast")
+    assert said.replace("tight", "fast") in str(value["station.yaml"])
+    parameter = renamed(files, parse_part("parameter:bolts.where"), "spot_of")
+    assert said.replace("{where}", "{spot_of}") in str(parameter["station.yaml"])
 
 
 def test_all_of_it_is_in_the_graph() -> None:
