@@ -119,6 +119,7 @@ def test_poses_are_joined_as_the_robot_may_move() -> None:
         assert part.marks[0][0] == pytest.approx(stops[pose].x)
 
 
+LOOSE: st.SearchStrategy[Type] = st.sampled_from([BOOLEAN, IntegerRange(0, 3)])
 NAMES = st.text("abcdefghij_", min_size=1, max_size=80)
 
 
@@ -139,7 +140,7 @@ def stations(draw: st.DrawFn) -> Automaton:
     for pair in pairs:
         declare(f"bolts[{pair}]", EnumerationType(("empty", "placed", "tight")), Kind.ESTIMATED, None)
     for number in range(draw(st.integers(0, 30))):
-        declare(f"{draw(NAMES)}_{number}", draw(st.sampled_from((BOOLEAN, IntegerRange(0, 3)))), Kind.ESTIMATED, None)
+        declare(f"{draw(NAMES)}_{number}", draw(LOOSE), Kind.ESTIMATED, None)
     for resource in resources:
         kind = draw(st.sampled_from(("still", "person", "moves", "level")))
         if kind == "level":

@@ -38,4 +38,4 @@ def test_what_is_renamed_in_the_model_is_renamed_in_the_picture(tmp_path: Path, 
     picture = (tmp_path / "mimic.yaml").read_text(encoding="utf-8")
     assert re.search(rf"\b{new}\b", picture)
     assert len(picture.splitlines()) == len(files["mimic.yaml"].splitlines())
-    assert [str(each) for each in prepare_station(tmp_path).suspicions() if each.kind == "undrawn"] == []
+    assert [str(each) for each in prepare_station(tmp_path).suspicions() if each.kind == "not-drawn"] == []

@@ -43,7 +43,7 @@ def suspicious_in(station: Station | None, automaton: Automaton, pipelines: Stat
         places = {each.place for each in said}
         yield from (each for each in check_folded(station) if each.place not in places)
         for finding in undrawn_of(automaton, station):
-            yield ModelWarning(finding.place, "undrawn", finding.message)
+            yield ModelWarning(finding.place, "not-drawn", finding.message)
     yield from check_never_given(automaton, pipelines)
 
 
