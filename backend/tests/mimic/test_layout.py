@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from sequence_planner.automaton.automaton import Ability, Automaton, HumanTask, Kind, VariableDeclaration
 from sequence_planner.language.syntax import FALSE, TRUE, Assignment, Comparison, Constant, Or, Variable
-from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
+from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type
 from sequence_planner.mimic.layout import made_from
 from sequence_planner.mimic.motion import motions
 from sequence_planner.mimic.views import Box, MimicStop, MimicView
@@ -121,6 +121,7 @@ def test_poses_are_joined_as_the_robot_may_move() -> None:
 
 LOOSE: st.SearchStrategy[Type] = st.sampled_from([BOOLEAN, IntegerRange(0, 3)])
 NAMES = st.text("abcdefghij_", min_size=1, max_size=80)
+OF: tuple[Type, ...] = (BOOLEAN, IntegerRange(0, 3))
 
 
 @st.composite
@@ -130,9 +131,7 @@ def stations(draw: st.DrawFn) -> Automaton:
     variables: dict[str, VariableDeclaration] = {}
     abilities: dict[str, Ability] = {}
 
-    def declare(
-        name: str, of: BooleanType | EnumerationType | IntegerRange, kind: Kind, resource: str | None
-    ) -> Variable:
+    def declare(name: str, of: Type, kind: Kind, of_whom: str | None) -> Variable:
         variables[name] = VariableDeclaration(name, of, kind, of.domain[0], of_whom)
         return Variable(name, of)
 

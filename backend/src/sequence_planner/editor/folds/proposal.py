@@ -56,8 +56,8 @@ class FoldProposal:
 
     def fault_of(self, name: str) -> str | None:
         """Say why what it adds cannot have a name; return None where it can, or nothing is added."""
-        section = "" if self.added is None else str(self.added.path[0])
-        return fault_of_name(name, section.removesuffix("s"))
+        section = str(self.added.path[0]).removesuffix("s") if isinstance(self.added, AddEntry) else "type"
+        return fault_of_name(name, section)
 
     def with_name(self, name: str) -> FoldProposal:
         """The same with a name in its place."""
