@@ -30,7 +30,7 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 		await expect(mode).toContainText('Hold');
 		await press('Hold').click({ force: true });
 		await expect(press('Continue')).toBeVisible();
-		await expect(notice).toContainText('Nothing is started');
+		await expect(notice).toContainText('Nothing starts');
 		await picture(operate, 'operate-held');
 		await notice.getByRole('link', { name: 'To Restart' }).click();
 	});
