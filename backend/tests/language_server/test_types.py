@@ -55,7 +55,7 @@ def test_what_can_be_written_in_a_type_is_offered(editor: Editor, robots: Path) 
         ("resources/robot_2.yaml", "type: robot", 8, "**type** `robot`"),
         ("resources/robot_2.yaml", "  move_to:", 4, "declared in types/robot.yaml:19"),
         ("station.yaml", "  parts_on_buffer:", 4, "**estimated** `parts_on_buffer`: `0..2`"),
-        ("station.yaml", "  place: [between", 4, "{between, infeed, buffer, outfeed}"),
+        ("station.yaml", "  place:", 4, "{between, infeed, buffer, outfeed}"),
     ],
 )
 def test_what_a_name_is_where_it_is_declared(

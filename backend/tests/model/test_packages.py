@@ -47,7 +47,9 @@ def station(tmp_path: Path) -> Path:
         shutil.rmtree(folder / each)
     for name in ("robot_1", "robot_2"):
         replace(folder, f"resources/{name}.yaml", "type: robot\n", "type: robots.robot\n")
-    replace(folder, "station.yaml", "  place: [between, infeed, buffer, outfeed] # where a robot can be\n", "")
+    text = (folder / "station.yaml").read_text()
+    begin, end = text.index("  # Where a robot can be."), text.index("\n# No sensor sees the buffer")
+    (folder / "station.yaml").write_text(text[:begin] + text[end:])
     return folder
 
 

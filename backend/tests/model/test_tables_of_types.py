@@ -136,8 +136,7 @@ def with_package(tmp_path: Path) -> Path:
     station = Path(shutil.copytree(MODELS / "robots_with_buffer", tmp_path / "station"))
     write(tmp_path, "shared/package.yaml", SHARED)
     text = (station / "station.yaml").read_text()
-    line = next(each for each in text.splitlines() if each.startswith("  place:"))
-    without = text.replace(f"{line}\n", "")
+    without = text[: text.index("  place:\n")] + text[text.index("\n# No sensor sees the buffer") :]
     (station / "station.yaml").write_text(f"{without}\npackages:\n  places: {{path: ../shared}}\n")
     assert finished("packages", "fetch", str(station)).returncode == 0
     return station

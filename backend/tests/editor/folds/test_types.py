@@ -112,10 +112,18 @@ def _content(text: str) -> Any:  # noqa: ANN401 (content of any form)
 
 
 def _names(content: object) -> object:
-    """The names of entries, but for parameters and what they are."""
-    if isinstance(content, dict):
-        return {key: _names(each) for key, each in content.items() if key not in ("parameters", "arguments")}
-    return None
+    """The names of entries, but for parameters and what they are, and for the words of variables, which came later."""
+    if not isinstance(content, dict):
+        return None
+    left_out = {
+        "parameters",
+        "arguments",
+        "phrase",
+        "titles",
+        *(["title"] if isinstance(content.get("title"), dict) else []),
+    }
+    found = {key: _names(each) for key, each in content.items() if key not in left_out}
+    return {key: each for key, each in found.items() if each != {}}
 
 
 def _assert_same_connections(one: MeantStation, other: MeantStation) -> None:

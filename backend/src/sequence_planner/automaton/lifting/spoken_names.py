@@ -10,14 +10,14 @@ from functools import cached_property
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.lifting.normal_form import ValueLiteral
-from sequence_planner.language.shorthand.titles import VariableTitles, in_language
+from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE, VariableTitles, in_language
 from sequence_planner.language.types import BooleanType, IntegerRange, Type, Value
 from sequence_planner.texts.grammar import Clause, Grammar
 from sequence_planner.texts.names import in_words, within_sentence
 
 _ARGUMENTS = re.compile(r"[\[(]([^\])]*)[\])]")
 _NO_TITLES = VariableTitles()
-_VALUE = "{value}"
+_VALUE = f"{{{VALUE_IN_PHRASE}}}"
 
 Called = Iterable[tuple[str, Type | None, str]]
 """Parameters, each with its type and its value."""

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.language.types import EnumerationType, Value
 
+VALUE_IN_PHRASE = "value"  # what stands in braces in a phrase, where the value is said
+
 # A text by language; one that is written in no language in particular is under the empty one.
 Words = Mapping[str, str]
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE
 from sequence_planner.model.documents import ResourceDocument
 from sequence_planner.model.paths import EditError, missing, parse_path, resource_of, type_of
 from sequence_planner.model.source import Finding, SourceText
@@ -55,6 +56,11 @@ class WrittenInstance:
                 found[str(name)] = what
                 found |= dict.fromkeys((str(each) for each, _ in _entries(_at(part, "parameters"))), "parameter")
         return found
+
+    @cached_property
+    def has_phrases(self) -> bool:
+        """Whether people are told a variable's value by a phrase, in which `{value}` stands for it."""
+        return any("phrase" in each for section in SECTIONS for _, each in _entries(self.own.get(section)))  # type: ignore[call-overload, operator]
 
 
 def _at(content: object, name: str) -> object:
@@ -171,7 +177,9 @@ def content_of(
             for name in expansion.duplicates:
                 found.append(Finding(name.place, f"duplicate name `{name}`: other arguments make another one"))
             for name in expansion.unknown:
-                if str(name) not in layer.written.meanings:
+                if str(name) not in layer.written.meanings and not (
+                    name == VALUE_IN_PHRASE and layer.written.has_phrases
+                ):
                     near = suggestion(name, layer.written.parameters)
                     found.append(Finding(name.place._replace(instance=instance), f"unknown parameter `{name}`{near}"))
         content = _merged(content, own)
