@@ -27,7 +27,13 @@ test('a task is acknowledged with the keyboard alone, on either page', async ({ 
 		const task = await done(page).first().getAttribute('data-task');
 		const button = page.locator(`button[data-task="${task}"]`);
 
-		for (let presses = 0; presses < 30; presses++) {
+		// The rail has a way to every page: whoever wants none of them skips it.
+		if (page === operate) {
+			await page.keyboard.press('Tab');
+			await expect(page.getByRole('link', { name: 'Skip to the page' })).toBeFocused();
+			await page.keyboard.press('Enter');
+		}
+		for (let presses = 0; presses < 10; presses++) {
 			await page.keyboard.press('Tab');
 			if (await button.evaluate((element) => element === document.activeElement)) break;
 		}
