@@ -96,6 +96,10 @@ test.describe('a device that is silent', () => {
 		await expect(token(operate)).not.toHaveAttribute('data-at', '', { timeout: 60_000 });
 		await station.fault('robot silent');
 		await expect(picture(operate).locator('[data-symbol="robot"]')).toHaveAttribute('data-alarm', /high|medium/);
+		// The mark of the alarm is at the corner of the robot, and as small as in a list.
+		const [robot, mark] = [await picture(operate).locator('[data-symbol="robot"]').boundingBox(), await picture(operate).locator('.mark').boundingBox()];
+		expect(mark?.width).toBeLessThan(48);
+		expect(Math.abs((mark?.x ?? 0) - (robot ? robot.x + robot.width : 0))).toBeLessThan(48);
 		await expect(token(operate)).toHaveAttribute('data-at', '');
 		await expect(picture(operate).locator('[data-symbol="robot"]')).toHaveAccessibleName(/Nothing is heard of it/);
 		await station.fault('clear');

@@ -136,9 +136,9 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 });
 
 test('an enumeration comes to include others and to have an order', async ({ browse }) => {
-	const page = await browse(INA, at(STATION, 'enumerations', 'bolt_state'));
+	const page = await browse(INA, at(STATION, 'enumerations', 'request'));
 	await form(page).getByRole('button', { name: 'Include others, or give it an order' }).click();
-	await expect(field(page, 'values').getByRole('textbox').first()).toHaveValue('empty');
+	await expect(field(page, 'values').getByRole('textbox').first()).toHaveValue('none');
 	await field(page, 'ordered').getByRole('checkbox').check();
 	await expect(file(page)).toContainText('ordered: true');
 	await sound(page, 'ordered: true');
