@@ -122,6 +122,7 @@ export const frame = {
 	},
 	palette: {
 		title: 'Search or act',
+		missing: 'It could not be loaded. Load this page again.',
 		hint: 'A page, variable, ability, operation or act',
 		nothing: (typed: string): string => `Nothing is called “${typed}”.`,
 		why: (operation: string): string => `Why does “${operation}” wait?`,

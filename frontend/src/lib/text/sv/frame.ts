@@ -114,6 +114,7 @@ export const frame: Text['frame'] = {
 	},
 	palette: {
 		title: 'Sök eller agera',
+		missing: 'Det gick inte att läsa in. Ladda sidan igen.',
 		hint: 'En sida, variabel, förmåga, operation eller åtgärd',
 		nothing: (typed) => `Inget heter ”${typed}”.`,
 		why: (operation) => `Varför väntar ”${operation}”?`,
