@@ -13,7 +13,19 @@ from packaging.requirements import Requirement
 # By SPDX. Weak copyleft (MPL, EPL, LGPL) obliges to what was changed in the package itself alone.
 FINE: Final = frozenset(
     [
-        *("0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "CC0-1.0", "ISC", "MIT", "MIT-0", "PSF-2.0"),
+        *(
+            "0BSD",
+            "Apache-2.0",
+            "BSD-2-Clause",
+            "BSD-3-Clause",
+            "BSL-1.0",
+            "CC0-1.0",
+            "ISC",
+            "MIT",
+            "MIT-0",
+            "OFL-1.1",
+            "PSF-2.0",
+        ),
         *("Python-2.0", "Unlicense", "Zlib"),
         *("EPL-2.0", "LGPL-2.1-only", "LGPL-2.1-or-later", "LGPL-3.0-only", "LGPL-3.0-or-later", "MPL-2.0"),
     ]

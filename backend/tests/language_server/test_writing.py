@@ -134,8 +134,8 @@ PLACES = [
     ("resources/operator.yaml", "do: [requested_pair := pair]", "do: [requested_pair := |]", ["pair"]),
     (
         "resources/operator.yaml",
-        "acknowledged: {type: bool, initial: false}",
-        "acknowledged: {type: |}",
+        "acknowledged: {type: bool, initial: false",
+        "acknowledged: {type: |",
         ["bool", "pose"],
     ),
     (

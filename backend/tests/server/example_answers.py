@@ -6,6 +6,7 @@ from typing import Any
 
 from sequence_planner.controller.commands.command import CommandRefused, Query
 from sequence_planner.controller.commands.queries import (
+    AboutMimic,
     AboutWorkMasters,
     AskAbilityBlockers,
     AskAdvice,
@@ -46,7 +47,6 @@ from sequence_planner.controller.views.metrics import (
     JournalFiguresView,
     PlannerFiguresView,
 )
-from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.proposals import (
     AdviceView,
     EffortView,
@@ -56,7 +56,9 @@ from sequence_planner.controller.views.proposals import (
     ValueChangeView,
 )
 from sequence_planner.controller.views.station import BeliefView, SpecificationView
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.core.distribution import Distribution
+from sequence_planner.mimic.views import MimicView
 from sequence_planner.texts.message import as_it_was, message
 
 WORK_MASTERS = WorkMastersView(
@@ -238,11 +240,13 @@ def example_figures(*, behind: bool = False) -> FiguresView:
     )
 
 
-def example_answer(ask: Query[Any]) -> View:
+def example_answer(ask: Query[Any]) -> DataModel:
     """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
     match ask:
         case AboutWorkMasters():
             return WORK_MASTERS
+        case AboutMimic():
+            return MimicView(made_from="model", width=872, height=346, symbols=[], findings=[])
         case AskAdvice():
             return ADVICE
         case AskCorrection():

@@ -16,6 +16,7 @@ from sequence_planner.controller.commands.queries import AboutFlows, AboutPipeli
 from sequence_planner.controller.ipc import MOST_ASKS, ControllerClient, ControllerLink
 from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import FlowsView, PipelinesView
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.execution.vocabulary import Mode
 from support.example_view import example_view
 from support.waiting import until_async
@@ -33,7 +34,7 @@ class Answers:
         self.waiting = 0
         self.given_up = 0
 
-    async def answer(self, ask: Query[Any]) -> View:
+    async def answer(self, ask: Query[Any]) -> DataModel:
         if isinstance(ask, AboutPipelines):
             return PipelinesView(pipelines={})
         self.waiting += 1

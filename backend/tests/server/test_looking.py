@@ -22,8 +22,8 @@ from sequence_planner.controller.io.network import network_view, uses
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.details import NetworkView
-from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.pipelines import EdgeFlowView, FlowsView, PipelineFlowView
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.ros.transport import NetworkEndpoint
 from sequence_planner.server.settings import Settings
 from sequence_planner.texts.message import message
@@ -48,7 +48,7 @@ class Telling(Controller):
     preparing = False
     among: ClassVar[list[frozenset[str] | None]] = []
 
-    async def answer(self, ask: Query[Any]) -> View:
+    async def answer(self, ask: Query[Any]) -> DataModel:
         if self.preparing:
             raise CommandRefused("preparing", message("refused.preparing.again"), 503)
         if isinstance(ask, AboutPipelines):

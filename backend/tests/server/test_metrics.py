@@ -20,8 +20,8 @@ from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.controller.commands.command import Query
 from sequence_planner.controller.commands.queries import AskFigures
 from sequence_planner.controller.ipc import ControllerLink
-from sequence_planner.controller.views.part import View
 from sequence_planner.controller.views.station import StationView
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.location import SqliteFile
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.process.restarts import write_restarts
@@ -42,7 +42,7 @@ class Measured(Controller):
     behind = False
     asked = 0
 
-    async def answer(self, ask: Query[Any]) -> View:
+    async def answer(self, ask: Query[Any]) -> DataModel:
         if isinstance(ask, AskFigures):
             self.asked += 1
             return example_figures(behind=self.behind)

@@ -141,7 +141,7 @@ def test_edits_of_other_parts_go_together(eva: httpx.Client, adam: httpx.Client)
         {"kind": "text", "file": "stages/own.py", "was": None, "text": "import os"},
         {"kind": "text", "file": "resources/a.yaml", "was": None, "text": "a: \0"},
         {"kind": "add", "file": "station.yaml", "path": ["title"], "value": "x"},
-        {"kind": "add", "file": "station.yaml", "path": ["enumerations", "pose", "x"], "value": "x"},
+        {"kind": "add", "file": "station.yaml", "path": ["enumerations", "request", "x"], "value": "x"},
     ],
 )
 def test_what_cannot_be_edited_is_said_and_nothing_is_done(eva: httpx.Client, edit: dict[str, object]) -> None:

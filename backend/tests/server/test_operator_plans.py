@@ -21,7 +21,7 @@ from sequence_planner.controller.commands.queries import (
 )
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan, StopOperatorPlan
 from sequence_planner.controller.ipc import ControllerLink
-from sequence_planner.controller.views.part import View
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.server.settings import Settings
 from sequence_planner.texts.message import message
 from support.server import Controller, Loop, Server
@@ -39,7 +39,7 @@ class Asked(Controller):
         self.refusal: CommandRefused | None = None
         self.link = ControllerLink(settings.controller_socket, self.handle, self.answer)
 
-    async def answer(self, ask: Query[Any]) -> View:
+    async def answer(self, ask: Query[Any]) -> DataModel:
         if not isinstance(ask, AboutWorkMasters):
             self.asked.append(ask)
         if self.refusal is not None:

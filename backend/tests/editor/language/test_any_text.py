@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -58,6 +60,11 @@ def test_an_option_is_shown_with_its_kind_and_type() -> None:
 
 def test_a_draft_with_unknown_message_types_keeps_what_follows_from_the_others() -> None:
     station = draft("bolt_tightening").station
+    robot = station.resources["robot"]
+    undeclared = {name: each for name, each in robot.measured.items() if name != "moving"}  # it follows from a message
+    station = replace(
+        station, resources={**station.resources, "robot": robot.model_copy(update={"measured": undeclared})}
+    )
     path = ("topics", "/ur10/state", "type")
     broken, _ = with_text(station, "resources/robot.yaml", path, "truck_engine_msgs/msg/Nothing")
     lexicon = Lexicon.of(broken)

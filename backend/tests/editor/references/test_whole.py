@@ -41,8 +41,10 @@ def test_the_ties_are_what_is_found_of_each_thing(name: str, tmp_path: Path) -> 
     for thing in whole.things:
         found = usages(files, thing.part, messages)
         own = [tie for tie in whole.ties if tie.part == thing.part]
+        # The picture names values and variables, and nothing in the station rests on that.
+        named = [each for each in found.found if each.part == thing.part and each.file != "mimic.yaml"]
         assert {(tie.file, tie.line, tie.column) for tie in own if tie.written} == {
-            (each.file, each.line, each.column) for each in found.found if each.part == thing.part and not each.declares
+            (each.file, each.line, each.column) for each in named if not each.declares
         }, thing.part.id
         assert {(tie.file, tie.line, tie.column) for tie in own if not tie.written} == {
             (each.file, each.line, each.column) for each in found.unwritten
