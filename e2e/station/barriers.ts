@@ -32,9 +32,12 @@ export async function smallTargets(page: Page): Promise<string[]> {
 	});
 }
 
-/** How many pixels of the page lie to the right of the screen. */
+/** How many pixels of the page lie to the right of the screen, once it has heard how large that is. */
 export async function overflow(page: Page): Promise<number> {
-	return page.evaluate(() => Math.max(0, document.documentElement.scrollWidth - window.innerWidth));
+	return page.evaluate(async () => {
+		for (let frames = 0; frames < 2; frames++) await new Promise(requestAnimationFrame);
+		return Math.max(0, document.documentElement.scrollWidth - window.innerWidth);
+	});
 }
 
 /** The words on a round face that its circle cuts: all that are shown before it is scrolled, on buttons too. */
