@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
 from itertools import product
@@ -20,6 +21,7 @@ from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.records.field_paths import domain
 from sequence_planner.language.records.record import FieldType, ListType
+from sequence_planner.language.shorthand.titles import Titles, in_language
 from sequence_planner.language.syntax import (
     TRUE,
     And,
@@ -131,18 +133,28 @@ def test_it_means_what_it_meant(stations: tuple[ReadyStation, ReadyStation]) -> 
         each: (v.kind, v.initial, v.resource) for each, v in before.variables.items()
     }
     for table in ("abilities", "operations", "specifications", "work_masters", "alarms"):
-        _assert_same(getattr(before, table), getattr(now, table), table)
-    _assert_same({each.name: each for each in before.effects}, {each.name: each for each in now.effects}, "effects")
-    _assert_same({"rest": before.rest}, {"rest": now.rest}, "rest")
+        _assert_same(getattr(before, table), getattr(now, table), table, now.titles)
+    first, second = ({effect.name: effect for effect in each.effects} for each in (before, now))
+    _assert_same(first, second, "effects", now.titles)
+    _assert_same({"rest": before.rest}, {"rest": now.rest}, "rest", now.titles)
 
 
-def _assert_same(before: Mapping[str, object], now: Mapping[str, object], what: str) -> None:
+def _with_titles(text: str, titles: Titles) -> str:
+    """A text for people in which values are told by their titles."""
+    for words in titles.values.values():
+        for value in sorted(map(str, words), key=len, reverse=True):
+            said = in_language(words[value], "en") or value
+            text = re.sub(rf"\b(?:{value}|{value.replace('_', ' ')})\b", said, text)
+    return text
+
+
+def _assert_same(before: Mapping[str, object], now: Mapping[str, object], what: str, titles: Titles) -> None:
     assert before.keys() == now.keys(), what
     for name, part in before.items():
-        _assert_alike(part, now[name], f"{what} {name}")
+        _assert_alike(part, now[name], f"{what} {name}", titles)
 
 
-def _assert_alike(before: object, now: object, where: str) -> None:
+def _assert_alike(before: object, now: object, where: str, titles: Titles) -> None:
     """Two values are equal, where expressions within them need only have the same value in each state."""
     if before == now or (isinstance(before, Place) and isinstance(now, Place)):
         return
@@ -152,15 +164,17 @@ def _assert_alike(before: object, now: object, where: str) -> None:
         first, second = _by_target(before), _by_target(now)
         assert first.keys() == second.keys(), where
         for name, action in first.items():
-            _assert_alike(action.value, second[name].value, f"{where}: {name}")
+            _assert_alike(action.value, second[name].value, f"{where}: {name}", titles)
             _assert_equivalent(action.condition or TRUE, second[name].condition or TRUE, f"{where}: {name} if")
     else:
         assert isinstance(before, Immutable), f"{where}: {before} is {now} now"
         assert type(before) is type(now), where
         for field in before._compared:  # of what takes no part in a comparison nothing is asked either
-            if field in ("title", "text"):  # words for people: a model may find better ones
-                continue
-            _assert_alike(getattr(before, field), getattr(now, field), f"{where}.{field}")
+            one, other = getattr(before, field), getattr(now, field)
+            if field in ("title", "text") and isinstance(one, str):  # values are told by the titles that they have now
+                assert other in (one, _with_titles(one, titles)), f"{where}.{field}: {one} is {other} now"
+            else:
+                _assert_alike(one, other, f"{where}.{field}", titles)
 
 
 def _are_actions(value: object) -> bool:

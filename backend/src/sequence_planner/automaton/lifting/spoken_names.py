@@ -12,7 +12,7 @@ from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.lifting.normal_form import ValueLiteral
 from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE, VariableTitles, in_language
 from sequence_planner.language.types import BooleanType, IntegerRange, Type, Value
-from sequence_planner.texts.grammar import Clause, Grammar
+from sequence_planner.texts.grammar import ENGLISH, Clause, Grammar
 from sequence_planner.texts.names import in_words, within_sentence
 
 _ARGUMENTS = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -204,8 +204,6 @@ class SpokenNames:
     @cached_property
     def _levels(self) -> Mapping[str, int]:
         """How much of its name a variable without a title needs to be told from all others: see `_short`."""
-        from sequence_planner.texts.grammar import ENGLISH  # noqa: PLC0415
-
         families: dict[str, list[str]] = {}
         for name in self._automaton.variables:
             families.setdefault(without_arguments(name), []).append(name)

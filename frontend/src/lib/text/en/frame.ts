@@ -80,12 +80,6 @@ export const frame = {
 		gap: 'A message was lost. Loading again.',
 		silent: 'Nothing new has come from the server.'
 	},
-	carriedOut: 'Carried out',
-	by: (name: string): string => `by ${name}`,
-	active: 'Active',
-	noOperation: 'no operation',
-	next: 'Next',
-	more: (n: number): string => `and ${n} more`,
 	mayStart: 'may start now',
 	/** What is said in the place of the next start where there is none. */
 	nothingNext: {

@@ -75,12 +75,6 @@ export const frame: Text['frame'] = {
 		gap: 'Ett meddelande gick förlorat. Läser in igen.',
 		silent: 'Inget nytt har kommit från servern.'
 	},
-	carriedOut: 'Utförs',
-	by: (name) => `av ${name}`,
-	active: 'Aktivt',
-	noOperation: 'ingen operation',
-	next: 'Nästa',
-	more: (n) => `och ${n} till`,
 	mayStart: 'får starta nu',
 	nothingNext: {
 		idle: 'inget att planera',
