@@ -98,6 +98,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	// In a guard, with a wrong name first.
 	await page.goto(at(ROBOT, 'abilities', 'move_to_previous'));
 	const enabled = expression(page, 'Enabled');
+	await expect(enabled).toContainText('moving');
 	await enabled.fill('can_goo(home) and pose == pose_of[bolt_pair_1] and pose in at_engine');
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error').first()).toHaveText(/can_goo/);
