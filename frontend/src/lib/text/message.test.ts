@@ -1,10 +1,11 @@
 import { describe, expect, test } from 'vitest';
-import { en } from '#lib/text/en.ts';
+import refusals from '#lib/text/en/front.json';
+import messages from '#lib/text/en/messages.json';
 import { sv } from '#lib/text/sv.ts';
 import { alarm } from '#lib/testing/view.ts';
 import { tell, wordsOf } from './message.ts';
 
-const EN = { texts: en.messages, language: 'en' };
+const EN = { texts: { ...refusals, ...messages }, language: 'en' };
 const SV = { texts: sv.messages, language: 'sv' };
 
 const waiting = (...titles: string[]) => ({

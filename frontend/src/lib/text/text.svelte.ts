@@ -6,9 +6,11 @@
  * the station (titles of the model, sentences of the controller) is shown as it comes.
  *
  * The watch and the pages before the sign-in read only the rooms of the *front* catalogue; the station's pages `furnish`
- * all the others. That nothing at the front says more than is there is a test.
+ * those of operators, and the pages of engineers and of the plant's administration all the others. That no page says more
+ * than is there is a test.
  */
 import { front } from './en-front.ts';
+import type { station } from './en-station.ts';
 import type { en } from './en.ts';
 import { keepLanguage, keptLanguage, type Language } from './languages.ts';
 
@@ -19,6 +21,7 @@ type Said<T> = T extends string
 		: { readonly [Key in keyof T]: Said<T[Key]> };
 
 export type Text = Said<typeof en>;
+export type OfStation = Said<typeof station>;
 export type Front = Said<typeof front>;
 
 /** Where the texts of each language are read from. */
@@ -56,9 +59,9 @@ export async function showKept(): Promise<void> {
 	await show(keptLanguage()).catch(() => (number === asked ? show('en') : undefined));
 }
 
-/** From now on all rooms are there. */
-export async function furnish(all: Readonly<Record<Language, () => Text | Promise<Text>>>): Promise<void> {
-	sources = all;
+/** From now on the rooms of `more` are there. */
+export async function furnish(more: Readonly<Record<Language, () => OfStation | Promise<OfStation>>>): Promise<void> {
+	sources = more;
 	await showKept();
 }
 

@@ -1,6 +1,11 @@
 import { describe, expect, test } from 'vitest';
-import { en } from './en.ts';
+import { en as ofPages } from './en.ts';
+import refusals from './en/front.json';
+import messages from './en/messages.json';
 import { sv } from './sv.ts';
+
+/** With what the station says in English itself. */
+const en = { ...ofPages, messages: { ...refusals, ...messages } };
 
 /** Every text by where it stands; what takes arguments is there too. */
 function flat(texts: object, path = ''): [string, unknown][] {

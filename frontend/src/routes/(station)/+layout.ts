@@ -1,7 +1,7 @@
-/** The station's pages say more than the front: they bring the rest of the catalogue with them. */
-import { en } from '#lib/text/en.ts';
+/** The station's pages say more than the front, and bring that with them. */
+import { station } from '#lib/text/en-station.ts';
 import { furnish } from '#lib/text/text.svelte.ts';
 
 export function load(): Promise<void> {
-	return furnish({ en: () => en, sv: async () => (await import('#lib/text/sv.ts')).sv });
+	return furnish({ en: () => station, sv: async () => (await import('#lib/text/sv-station.ts')).station });
 }

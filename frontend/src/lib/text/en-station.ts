@@ -1,0 +1,16 @@
+/**
+ * The texts in English that are read with the station's pages, beside those of the front: what operators and the frame of
+ * all pages say. What the station tells it brings in English itself.
+ */
+import { front } from './en-front.ts';
+import { account } from './en/account.ts';
+import { alarms } from './en/alarms.ts';
+import { frame } from './en/frame.ts';
+import { history } from './en/history.ts';
+import { mimic } from './en/mimic.ts';
+import { operate } from './en/operate.ts';
+import { orders } from './en/orders.ts';
+import { restart } from './en/restart.ts';
+import { state } from './en/state.ts';
+
+export const station = { ...front, account, alarms, frame, history, mimic, operate, orders, restart, state };
