@@ -9,11 +9,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from hypothesis import settings
 
+from support.examples import examples
 from support.network import DOMAIN
 from support.places import TESTS
 
 pytest_plugins = ["support.databases"]
+
+# What does not say how many examples it wants has those of hypothesis, and as all others the same in every run.
+settings.register_profile("everywhere", examples(100))
+settings.load_profile("everywhere")
 
 # What runs a station, or measures how long something takes, would be disturbed by many tests beside it.
 HEAVY = (

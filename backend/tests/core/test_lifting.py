@@ -7,7 +7,7 @@ from itertools import product
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
@@ -31,6 +31,7 @@ from sequence_planner.language.syntax import (
     Variable,
 )
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from support.examples import examples
 
 PAIR = EnumerationType(("p1", "p2", "p3"))
 POSE = EnumerationType(("unknown", "home", "a", "b", "c", "p1", "p2", "p3"))
@@ -166,7 +167,7 @@ def states(seed: int) -> list[Mapping[str, Value]]:
     return [{name: chance.choice(type_.domain) for name, type_ in VARIABLES.items()} for _ in range(40)]
 
 
-@settings(deadline=None)
+@examples(100)
 @given(CONDITIONS, SEEDS)
 def test_what_is_told_means_the_same(condition: Expression, seed: int) -> None:
     told = ground(WORDING.in_words(condition))
@@ -174,7 +175,7 @@ def test_what_is_told_means_the_same(condition: Expression, seed: int) -> None:
         assert evaluate(told, state) == evaluate(condition, state)
 
 
-@settings(deadline=None)
+@examples(100)
 @given(CONDITIONS, CONDITIONS, SEEDS)
 def test_conditions_of_one_normal_form_are_equal(one: Expression, other: Expression, seed: int) -> None:
     forms = [(normal_form(each), each) for each in (one, other, Not(Not(one)), And((one, other)), And((other, one)))]
@@ -200,7 +201,7 @@ def test_what_lacks_is_told_by_a_predicate_or_by_the_values_it_is_not_so_for() -
     assert [phrase(part) for part in WORDING.lacking(unnamed, state)] == ["bolts[p3] == placed or at == p3"]
 
 
-@settings(deadline=None)
+@examples(100)
 @given(CONDITIONS, SEEDS)
 def test_what_lacks_is_what_keeps_it_from_being_so(condition: Expression, seed: int) -> None:
     for state in states(seed):
@@ -299,7 +300,7 @@ def test_names_of_all_instances_are_one() -> None:
     ]
 
 
-@settings(deadline=None)
+@examples(100)
 @given(st.lists(CONDITIONS, min_size=3, max_size=3), SEEDS)
 def test_each_is_told_once_and_means_the_same(conditions: list[Expression], seed: int) -> None:
     names = [f"robot.move({pair})" for pair in PAIR.values]

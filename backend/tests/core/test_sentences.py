@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.automaton.automaton import Ability, Automaton, Flag, Kind, Operation, State, VariableDeclaration
@@ -20,6 +20,7 @@ from sequence_planner.language.syntax import FALSE, TRUE, And, Expression, Varia
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type
 from sequence_planner.texts.message import Message, Sentence, message, waits_in_one
 from sequence_planner.texts.names import in_words
+from support.examples import examples
 
 from .choices import Choices, made_by
 from .random_expressions import predicate
@@ -166,7 +167,7 @@ def test_a_formula_has_a_sentence() -> None:
 
 
 @given(st.data())
-@settings(max_examples=200, deadline=None)
+@examples(200)
 def test_every_condition_has_a_sentence_of_words_alone(data: st.DataObject) -> None:
     """Also what has no title: names become words."""
     scope = [Variable(name, type_) for name, type_ in CELL.types.items()]
@@ -178,7 +179,7 @@ def test_every_condition_has_a_sentence_of_words_alone(data: st.DataObject) -> N
 
 
 @given(made_by(lambda choices: _with_titles(choices, random_automaton(choices))))
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_values_of_a_variable_are_told_apart(automaton: Automaton) -> None:
     """Whatever titles somebody has thought of, also the same for several values."""
     sentences = Sentences(automaton)
@@ -205,7 +206,7 @@ def _with_titles(choices: Choices, automaton: Automaton) -> Automaton:
 
 
 @given(st.data())
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_only_what_does_not_hold_is_told(data: st.DataObject) -> None:
     scope = [Variable(name, type_) for name, type_ in VARIABLES.items()]
     condition = And(tuple(data.draw(made_by(lambda c: predicate(c, scope, 1))) for _ in range(3)))

@@ -7,7 +7,7 @@ import re
 import tempfile
 from pathlib import Path
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from editor.models import bolts
@@ -19,6 +19,7 @@ from sequence_planner.editor.processes import LanguageQuestionKind, PlaceInText
 from sequence_planner.model.files import FolderReader, read_files, write_files
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import Before, read_station
+from support.examples import examples
 from support.places import CELL
 
 MODELS = (bolts(), read_files(CELL))
@@ -77,7 +78,7 @@ def told(draft: LanguageDraft, files: dict[str, str]) -> str:
     return "".join(answer(draft, kind, asked).model_dump_json() for kind in LanguageQuestionKind)
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(edited())
 def test_what_makes_a_draft_unusable_is_what_is_found_from_scratch(versions: list[dict[str, str]]) -> None:
     with tempfile.TemporaryDirectory() as folder:
@@ -91,7 +92,7 @@ def test_what_makes_a_draft_unusable_is_what_is_found_from_scratch(versions: lis
                 assert told(draft, files) == said
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(edited())
 def test_a_station_that_was_read_before_means_the_same_as_one_that_was_not(versions: list[dict[str, str]]) -> None:
     before = Before()

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.core.actor import SYSTEM
@@ -23,6 +23,7 @@ from sequence_planner.journal.entry import LONGEST_REASON, Entry
 from sequence_planner.journal.hash_chain import ChainPosition
 from sequence_planner.journal.last_accepted import LastEnding, LastWord, Word, ending, last_word_file, set_aside
 from sequence_planner.journal.writer import RunWriter
+from support.examples import examples
 
 BEGUN = "begun"
 OTHER = """
@@ -204,7 +205,7 @@ LIVES = st.lists(
 
 
 @given(LIVES)
-@settings(max_examples=25, deadline=None)
+@examples(25)
 def test_no_stop_that_was_accepted_is_ever_unknown_and_what_is_recorded_is_certain(
     drawn: list[tuple[int, list[int], int]],
 ) -> None:

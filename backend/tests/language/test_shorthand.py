@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
@@ -38,6 +38,7 @@ from sequence_planner.language.syntax import (
     Quantified,
 )
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
+from support.examples import examples
 
 from .marking import assert_refused
 
@@ -327,7 +328,7 @@ _STATES = valuations(24)
 
 
 @given(_conditions((), 2))
-@settings(max_examples=300)
+@examples(300)
 def test_it_means_what_it_says_in_each_state(text: str) -> None:
     tree = parse(text)
     assert parse(print_expression(tree)) == tree

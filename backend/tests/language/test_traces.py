@@ -6,7 +6,7 @@ from collections.abc import Callable
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from sequence_planner.language.ltl import progress, satisfies
 from sequence_planner.language.parser import parse_formula
@@ -26,6 +26,7 @@ from sequence_planner.language.syntax import (
     variables,
 )
 from sequence_planner.language.types import BOOLEAN, Value
+from support.examples import examples
 
 from .trees import VARIABLES, formulas, formulas_with_parameters, traces
 
@@ -84,7 +85,7 @@ LAWS: dict[str, Callable[[Expression, Expression], tuple[Expression, Expression]
 
 @pytest.mark.parametrize("law", LAWS)
 def test_laws(law: str) -> None:
-    @settings(max_examples=40)
+    @examples(40)
     @given(formulas, formulas, traces)
     def check(a: Expression, b: Expression, trace: Trace) -> None:
         one, other = LAWS[law](a, b)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from math import inf
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis.strategies import integers
 
 from mes.works import NOW, RESOURCES, Exclusive, best, check, objective, questions, shop
@@ -19,7 +19,7 @@ from sequence_planner.core.actor import SYSTEM
 from sequence_planner.mes.scheduling.dispatch import waits_among
 from sequence_planner.mes.scheduling.problem import JobWork, Schedule, WorkOperation
 from sequence_planner.mes.scheduling.scheduler import by_rule, sequence
-from support.examples import TIMED
+from support.examples import TIMED, examples
 
 ARM = frozenset({"arm"})
 
@@ -28,7 +28,7 @@ def one(job: str, seconds: float, due: float | None, priority: int = 0) -> JobWo
     return JobWork(job, priority, due, None, {"make": WorkOperation(frozenset(), seconds, ARM)})
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(questions())
 @example(([JobWork("a", 0, None, None, {})], []))
 @example(([JobWork("a", 0, NOW - 5, None, {}), one("b", 3, NOW - 2)], [frozenset({"a", "b"})]))
@@ -45,7 +45,7 @@ def test_it_is_the_best_that_there_is(question: tuple[list[JobWork], Exclusive])
     assert not schedule.fallback
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(questions(most=9))
 def test_the_order_by_rule_can_be_worked_too(question: tuple[list[JobWork], Exclusive]) -> None:
     works, exclusive = question
@@ -56,7 +56,7 @@ def test_the_order_by_rule_can_be_worked_too(question: tuple[list[JobWork], Excl
     assert schedule.bound <= schedule.tardiness + 1e-4
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(questions(most=9))
 def test_what_waits_for_what_is_all_and_no_more_than_is_needed(question: tuple[list[JobWork], Exclusive]) -> None:
     works, exclusive = question
@@ -206,7 +206,7 @@ def test_the_order_between_forty_jobs_fits_into_a_line_to_the_controller() -> No
     assert 64 * 1024 < len(line) <= LONGEST_COMMAND
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(questions(most=6), integers(1, 6))
 def test_with_a_horizon_it_can_be_worked_and_is_the_best_where_that_holds_all(
     question: tuple[list[JobWork], Exclusive], most: int

@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import select
 
@@ -24,6 +24,7 @@ from sequence_planner.mes.webhooks import endpoints as webhooks
 from sequence_planner.mes.webhooks.deliveries import Pace
 from sequence_planner.mes.webhooks.endpoints import MOST_WEBHOOKS, Seal, UnreadableSecretError, Webhook, key_file
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
+from support.examples import examples
 
 PACE = Pace(first=2.0, longest=60.0, longest_hold=8.0, attempts=3)
 URL = "https://mes.example/events"
@@ -180,7 +181,7 @@ def test_a_secret_is_of_no_use_without_the_key_beside_the_database(database: Dat
     moved.rename(file)
 
 
-@settings(max_examples=12, deadline=None)
+@examples(12)
 @given(st.lists(st.tuples(st.integers(0, 3), st.booleans(), st.floats(0.0, 30.0)), max_size=40))
 def test_every_event_is_delivered_once_or_given_up(steps: list[tuple[int, bool, float]]) -> None:
     taken: Counter[int] = Counter()

@@ -5,10 +5,11 @@ from __future__ import annotations
 from ipaddress import ip_address, ip_network
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from sequence_planner.mes.webhooks.targets import Target, TargetRefused, Targets, host_and_port, network
+from support.examples import examples
 
 LISTED = frozenset(map(host_and_port, ["mes.example", "mes.example:8443", "127.0.0.1:8080", "[::1]:8080"]))
 TARGETS, WITH_LOOPBACK = Targets(LISTED), Targets(LISTED, loopback=True)
@@ -94,7 +95,7 @@ def test_what_is_not_plainly_on_the_list_may_not(url: str, words: str) -> None:
         TARGETS.target(url)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.text(max_size=40).map("https://".__add__) | st.text(max_size=60))
 @example("https://[v1.a]/")
 @example("https://[::ffff:1%x]:8080/")

@@ -12,7 +12,7 @@ from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import make_idl_struct, types
 from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from ros_networks import Network, play, settle, standard
 from ros_processes import peer
@@ -25,6 +25,7 @@ from sequence_planner.ros.transports.cyclonedds_network import loopback_configur
 from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.simulation.faults import garbage
+from support.examples import examples
 from support.network import DOMAIN, free_domain
 from support.waiting import until_async
 
@@ -218,7 +219,7 @@ PATHS = st.fixed_dictionaries(
 )
 
 
-@settings(deadline=None)
+@examples(100)
 @given(PATHS)
 def test_the_bytes_are_those_of_cyclonedds_own_codec(path_registry: MessageRegistry, values: dict[str, Any]) -> None:
     points = [POINT(**point) for point in values["points"]]

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.ros.types.definitions import FieldType
@@ -17,6 +17,7 @@ from sequence_planner.ros.types.errors import (
     UnknownMessageTypeError,
 )
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.examples import examples
 
 
 @cache
@@ -177,21 +178,21 @@ def field_values(field: FieldType) -> st.SearchStrategy[object]:
     return st.lists(single, min_size=field.array, max_size=field.array)
 
 
-@settings(deadline=None)
+@examples(100)
 @given(messages())
 def test_what_is_encoded_is_decoded(message: tuple[str, dict[str, object]]) -> None:
     type_name, values = message
     assert standard().decode(type_name, standard().encode(type_name, values)) == values
 
 
-@settings(deadline=None)
+@examples(100)
 @given(messages(), st.binary(max_size=3))
 def test_padding_of_up_to_three_bytes_is_ignored(message: tuple[str, dict[str, object]], padding: bytes) -> None:
     type_name, values = message
     assert standard().decode(type_name, standard().encode(type_name, values) + padding) == values
 
 
-@settings(deadline=None)
+@examples(100)
 @given(st.sampled_from(standard().type_names()), st.binary(max_size=64))
 def test_any_bytes_are_a_message_or_malformed(type_name: str, garbage: bytes) -> None:
     for data in (garbage, b"\0\1\0\0" + garbage, b"\0\0\0\0" + garbage):

@@ -7,7 +7,7 @@ import math
 import random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.language.types import Value
@@ -213,7 +213,7 @@ def test_whatever_is_done_by_hand_is_what_is_reported(poses: list[str]) -> None:
         assert bench.reported()["arm.pose"] == pose
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(st.lists(st.tuples(st.sampled_from(["home", "out"]), st.floats(0, 2)), max_size=8), st.integers(0, 5))
 def test_it_ends_where_it_was_told_last_whatever_came_before(commands: list[tuple[str, float]], seed: int) -> None:
     bench = Bench(seed=seed)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 # Every run tries a part of what a law is to be tried with. `make campaign` tries all of it, and more.
-SHARE = float(os.environ.get("SHARE_OF_EXAMPLES", "0.15"))
+SHARE = float(os.environ.get("SHARE_OF_EXAMPLES", "0.1"))
 # How long work takes says something where nothing else is done: where others work too it takes three times as long.
 TIMED = SHARE >= 1
 ONLY_TIMED = pytest.mark.skipif(not TIMED, reason="how long it takes is for `make campaign`, on a quiet machine")
@@ -22,5 +22,5 @@ def examples(number: int, share: float = SHARE) -> settings:
         HealthCheck.large_base_example,
         HealthCheck.filter_too_much,
     )
-    tried = max(min(number, 20), round(share * number))
+    tried = max(min(number, 10), round(share * number))
     return settings(max_examples=tried, derandomize=True, deadline=None, database=None, suppress_health_check=slow)

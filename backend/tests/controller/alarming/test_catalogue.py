@@ -6,7 +6,9 @@ import ast
 import json
 import pickle
 import re
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -37,12 +39,21 @@ def places(text: str) -> set[str]:
     return {place[1] for place in PLACE.finditer(text)}
 
 
-def calls(name: str) -> Iterator[ast.Call]:
-    """Calls of a function or method of the program."""
+@cache
+def all_calls() -> Mapping[str, list[ast.Call]]:
+    """All calls with arguments in the program, by the name of the function or method."""
+    found: dict[str, list[ast.Call]] = defaultdict(list)
     for path in SOURCE.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and node.args and ast.unparse(node.func).split(".")[-1] == name:
-                yield node
+            match node:
+                case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=[_, *_]):
+                    found[name].append(node)
+    return found
+
+
+def calls(name: str) -> list[ast.Call]:
+    """Calls of a function or method of the program."""
+    return all_calls().get(name, [])
 
 
 def ids(node: ast.expr, given: set[str | None]) -> set[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
@@ -22,6 +22,7 @@ from sequence_planner.language.syntax import Expression, occurrences
 from sequence_planner.language.types import Type, Value
 from sequence_planner.model.files import write_files
 from sequence_planner.station import read_station
+from support.examples import examples
 
 STATION = """\
 name: cell # what is said of it stays
@@ -83,7 +84,7 @@ def stations(draw: st.DrawFn) -> dict[str, str]:
 
 
 @given(stations())
-@settings(max_examples=15, deadline=None)
+@examples(15)
 def test_whatever_is_offered_means_the_same(files: dict[str, str]) -> None:
     before = _read(files)
     with tempfile.TemporaryDirectory() as folder:
@@ -99,7 +100,7 @@ def test_whatever_is_offered_means_the_same(files: dict[str, str]) -> None:
 
 
 @given(stations(), st.data())
-@settings(max_examples=6, deadline=None)
+@examples(6)
 def test_one_after_the_other_until_nothing_is_left(files: dict[str, str], data: st.DataObject) -> None:
     before, number = _read(files), 0
     with tempfile.TemporaryDirectory() as folder:
@@ -112,7 +113,7 @@ def test_one_after_the_other_until_nothing_is_left(files: dict[str, str], data: 
 
 
 @given(predicates, predicates)
-@settings(max_examples=300, deadline=None)
+@examples(300)
 def test_what_counts_as_equivalent_has_one_value_in_each_state(one: Expression, other: Expression) -> None:
     names = {each.name: each.type for each in (*occurrences(one), *occurrences(other))}
     if len(names) > 4:

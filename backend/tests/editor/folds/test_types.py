@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.editor.draft import applied
@@ -20,6 +20,7 @@ from sequence_planner.model.files import read_files, write_files
 from sequence_planner.model.yaml.editor import plain
 from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import MeantStation, read_station
+from support.examples import examples
 from support.places import MODELS, TESTS
 
 ROBOTS = MODELS / "robots_with_buffer"
@@ -225,7 +226,7 @@ def belts(draw: st.DrawFn) -> dict[str, str]:
 
 
 @given(belts())
-@settings(max_examples=25, deadline=None)
+@examples(25)
 def test_what_was_written_out_is_folded_back_and_means_the_same(files: dict[str, str]) -> None:
     before = _read(files)
     (fold,) = _types(files)

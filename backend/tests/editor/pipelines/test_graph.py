@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given, reject, settings
+from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from sequence_planner.analysis.report import FindingDocument
@@ -23,6 +23,7 @@ from sequence_planner.model.yaml.editor import content_at
 from sequence_planner.pipelines.builder import build_pipelines, load_messages
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.pipelines.inference import with_inferred_variables
+from support.examples import examples
 
 from .drafts import MODELS, REACH, edited, files_of, graph_of, prepared, shipped
 
@@ -215,7 +216,7 @@ def broken(draw: st.DrawFn) -> tuple[dict[str, str], str, str]:
         reject()
 
 
-@settings(deadline=None)
+@examples(100)
 @given(broken())
 def test_no_junk_makes_the_graph_empty(drawn: tuple[dict[str, str], str, str]) -> None:
     """What the checker refuses is said by the graph too, and what is elsewhere stays."""

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import JsonValue
 
@@ -18,6 +18,7 @@ from sequence_planner.editor.pipelines.graph import DraftPipelines
 from sequence_planner.editor.pipelines.schemas import Examples, Recording, RunsView, Trial, TrialStep
 from sequence_planner.model.paths import EditError
 from sequence_planner.pipelines.runtime import RunningPipelines
+from support.examples import examples as so_many
 
 from .drafts import REACH, edited, files_of, graph_of, prepared, shipped
 
@@ -120,7 +121,7 @@ MESSAGES = st.fixed_dictionaries(
 )
 
 
-@settings(deadline=None, max_examples=60)
+@so_many(60)
 @given(st.lists(MESSAGES, min_size=1, max_size=4))
 def test_what_is_recorded_holds_in_the_draft(messages: list[dict[str, object]]) -> None:
     """Whatever was heard before it, the example passes, and expects nothing that the station has not had."""
