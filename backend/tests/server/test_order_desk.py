@@ -14,8 +14,9 @@ from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, Tak
 from sequence_planner.controller.ipc import ControllerLink
 from sequence_planner.controller.views.station import JobView
 from sequence_planner.execution.vocabulary import JobState, Mode
-from sequence_planner.mes import orders
+from sequence_planner.mes import orders, responses
 from sequence_planner.mes.order import OrderState
+from sequence_planner.mes.responses import JobOutcome, JobResponse
 from sequence_planner.server.services import orders as order_dispatch
 from sequence_planner.server.settings import Settings
 from support.example_view import example_view
@@ -144,3 +145,34 @@ def test_what_is_refused_is_not_said_at_every_look(mes: httpx.Client, controller
     given = len(controller.said(TakeJob))
     time.sleep(LOOKS)
     assert len(controller.said(TakeJob)) <= given + 1
+
+
+def test_when_orders_are_ready_is_told_by_what_was_made(mes: httpx.Client, controller: Working, server: Server) -> None:
+    handed_over(mes, controller, "first")
+    store(mes, "second", id="second", start=True)
+    assert mes.get(f"{ORDERS}/second").json()["expected_end"] is None, "none was ever made"
+    began = server.identity.now()
+    engine = JobResponse(
+        job_order="before",
+        work_master="truck_engine",
+        description="",
+        outcome=JobOutcome.COMPLETED,
+        began=1.0,
+        ended=301.0,
+        operations=[],
+        abilities=[],
+        deviations=[],
+        corrections=[],
+    )
+    with server.identity.database.writing() as connection:
+        responses.write(connection, engine, began)
+        running = orders.get(connection, "first")
+        orders.become(connection, running, OrderState.RUNNING, began, {"began": began})
+    controller.shows(first=JobState.RUNNING)
+    until(lambda: mes.get(f"{ORDERS}/first").json()["expected_end"] == began + 300)
+    until(lambda: mes.get(f"{ORDERS}/second").json()["expected_start"] == began + 300)
+    found = {each["id"]: each for each in mes.get(ORDERS).json()["job_orders"]}
+    assert found["second"]["expected_end"] == began + 600
+    assert found["second"]["expected_end_at"].endswith("Z")
+    controller.shows(first=JobState.PAUSED)
+    until(lambda: mes.get(f"{ORDERS}/second").json()["expected_end"] is None)

@@ -55,7 +55,7 @@ def queue(
     sequence: OrderOfWork = order_of_work,
 ) -> Queue:
     """Return what comes of the orders that are not over. Without a `view` the station is not heard."""
-    found, hindered = Queue(), _station_waits(view)
+    found, hindered = Queue(), station_waits(view)
     worked = _worked(orders, view)
     first: dict[str, str] = {}  # by work master, the title of the first that is not worked yet
     in_the_way_of: dict[str, list[Message]] = {}  # by work master, what is; there are few of these, and many orders
@@ -108,7 +108,8 @@ def in_the_way(masters: WorkMastersView, one: str, other: str) -> bool:
     return bool(operations) or not set(first.brought).isdisjoint(second.brought)
 
 
-def _station_waits(view: StationView | None) -> list[Message]:
+def station_waits(view: StationView | None) -> list[Message]:
+    """Return why the station begins no order now; empty where it does."""
     if view is None or view.production is Production.PREPARING:
         return [_UNHEARD if view is None else message("order-waits.preparing")]
     waits = [] if view.by_order else [message("order-waits.freely")]

@@ -73,6 +73,9 @@ class OrderAnswer(AnswerModel):
 
     `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
     `began` the station works on it. `waits_for` says in words why nothing is done for it now.
+
+    `expected_start` and `expected_end` follow from the median of how long orders of its work master took, if the
+    station goes on; null where nobody knows, as before one was completed.
     """
 
     id: str
@@ -96,6 +99,10 @@ class OrderAnswer(AnswerModel):
     began_at = iso("began", optional=True)
     ended: float | None
     ended_at = iso("ended", optional=True)
+    expected_start: float | None
+    expected_start_at = iso("expected_start", optional=True)
+    expected_end: float | None
+    expected_end_at = iso("expected_end", optional=True)
     waits_for: list[str]
     waits_for_messages: list[Message]
     sentence: Message | None  # what the station waits for with it, as one sentence
@@ -111,12 +118,14 @@ def answered(order: JobOrder, desk: OrderService) -> OrderAnswer:
 
 def all_answered(orders: Sequence[JobOrder], desk: OrderService) -> list[OrderAnswer]:
     """Orders as they are told to who asks `desk`."""
-    waits = desk.waits_for(orders)
+    waits, times = desk.waits_for(orders), desk.expected(orders)
     return [
         OrderAnswer(
             **each.model_dump(include=_KEPT),
             commanded=None if each.wish is None else _COMMANDS[each.wish],
             allowed=[] if each.removed is not None else list(each.allowed),
+            expected_start=times[each.id].start,
+            expected_end=times[each.id].end,
             waits_for=[*waits[each.id]],
             waits_for_messages=waits[each.id],
             sentence=waits_in_one(waits[each.id]),

@@ -21,6 +21,7 @@ from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.execution.vocabulary import JobState, Production
 from sequence_planner.mes import orders
+from sequence_planner.mes.expected import NOBODY_KNOWS, CycleTimes, ExpectedTimes, expected
 from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState, Wish
 from sequence_planner.mes.queue import OrderOfWork, Queue, order_of_work, queue
 from sequence_planner.mes.tracker import OrderTracker
@@ -199,6 +200,7 @@ class OrderService:
         self._asked = self._read = float("-inf")  # on the clock of `time.monotonic`
         self._orders: list[JobOrder] = []
         self._queue = Queue()
+        self._times = CycleTimes()
         self._dispatch = OrderDispatch(office, controller, self.poke)
         self._trouble = ""
         self.sequence: OrderOfWork = order_of_work
@@ -277,6 +279,15 @@ class OrderService:
             return []
         return queued.waits.get(order.id) or ([] if refused is None else [refused])
 
+    def expected(self, asked: Sequence[JobOrder]) -> dict[str, ExpectedTimes]:
+        """When orders are expected to begin and to be ready, as far as that is known. Any thread may ask."""
+        found: dict[str, ExpectedTimes] = {}
+        if not all(each.is_over for each in asked):
+            known = {each.id: each for each in [*self._orders, *asked] if not each.is_over}
+            in_order = self.sequence(list(known.values()))
+            found = expected(in_order, self._times, self._masters, self._view, self._office.now())
+        return {each.id: found.get(each.id, NOBODY_KNOWS) for each in asked}
+
     def require_control(self, actor: Actor) -> None:
         """Raises `CommandRefused` where a person lets something go on without being in control; a key never is."""
         control = None if self._view is None else self._view.control
@@ -294,6 +305,7 @@ class OrderService:
             return  # the station that commands looks after orders
         masters = await self.work_masters()
         await self._read_orders()
+        await self._office.read(self._times.read_on)
         at_station = [each for each in self._orders if each.is_at_station]
         if masters is not None and await self._follow(masters):
             await self._read_orders(anew=True)
