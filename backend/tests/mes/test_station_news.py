@@ -224,7 +224,7 @@ def test_what_lasts_for_a_moment_is_not_noted() -> None:
 
     look(0, PackML.EXECUTE, a=[])
     look(1, PackML.EXECUTE, a=[])
-    assert noted == [("packml", {"state": "execute", "since": 1000.0})]
+    assert noted == [("packml", {"state": "execute", "since": 1000.0, "monotonic": 1.0})]
     look(2, PackML.SUSPENDED, a=["a plan"])
     look(2.5, PackML.EXECUTE, a=[])
     look(6, PackML.EXECUTE, a=["x"])

@@ -263,6 +263,12 @@ def find(connection: Connection, id: str) -> JobOrder | None:
     return None if row is None else JobOrder.from_row(row)
 
 
+def due_times(connection: Connection, ids: Collection[str]) -> list[float]:
+    """Return when those of these orders were due that are to be done by some time, be they removed or not."""
+    known = select(JOB_ORDERS.c.due).where(JOB_ORDERS.c.id.in_(ids), JOB_ORDERS.c.due.is_not(None))
+    return [*connection.execute(known).scalars()]
+
+
 def _gone(connection: Connection, id: str) -> float | None:
     """Return when an order was over that is kept no more; None where there is none of this id."""
     return connection.execute(select(JOB_ORDERS_GONE.c.ended).where(JOB_ORDERS_GONE.c.id == id)).scalar_one_or_none()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from sqlalchemy import Connection, delete, insert, select
 
 from sequence_planner.controller.commands.audit import JOB_WAITS, PACKML
-from sequence_planner.controller.views.details import WorkMastersView
+from sequence_planner.controller.views.details import WorkMastersView, WorkMasterView
 from sequence_planner.controller.views.part import Value
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.database import Database
@@ -30,6 +30,7 @@ from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.events import EventKind
+from sequence_planner.mes.figures import DayFigures, MadeProduct
 from sequence_planner.mes.order import JobOrder, OrderState
 from sequence_planner.mes.responses import (
     AbilityMade,
@@ -84,6 +85,11 @@ class ReadRecord:
     runs: Mapping[tuple[str, float], float | None]
     correction: Mapping[str, Any] | None
     deviations: tuple[tuple[str, Mapping[str, Any]], ...]
+    monotonic: float | None  # when it was on the monotonic clock, as far as it says so
+    packml: str | None
+    by_order: bool | None
+    activated: tuple[str, ...]
+    completed: tuple[str, ...]
 
 
 def read(record: RunRecord) -> ReadRecord:
@@ -104,7 +110,19 @@ def read(record: RunRecord) -> ReadRecord:
         runs=_runs(content) if whole else {},
         correction=content["what"] if record.kind == CORRECTED else None,
         deviations=() if whole else tuple(_deviations(record.kind, content)),
+        monotonic=_monotonic(record.kind, content),
+        packml=content["state"] if record.kind == PACKML else None,
+        by_order=content.get("by_order") if whole or record.kind in KINDS else None,
+        activated=tuple(told.get("activated", ())),
+        completed=tuple(told.get("completed", ())),
     )
+
+
+def _monotonic(kind: str, content: Mapping[str, Any]) -> float | None:
+    """When a record was on the clock that nobody sets. At the beginning of a controller another one counts."""
+    if kind in (TICKED, SNAPSHOT):
+        return content["now"][1] if "now" in content else None
+    return content.get("monotonic") if kind == PACKML else None
 
 
 def _values(content: Mapping[str, Any], whole: bool) -> dict[str, Any]:
@@ -315,12 +333,14 @@ class Ledger(BaseModel):
     number: int = 0
     silent: int | None = None  # as of a program that told nothing of the station
     station: StationStanding = StationStanding()
+    figures: DayFigures = Field(default_factory=DayFigures)
     jobs: dict[str, JobMade] = {}
     values: dict[str, Value | None] = {}
 
     def copied(self) -> Ledger:
         """One that can go on without this one."""
-        return self.model_copy(update={"jobs": {id_: job.copied() for id_, job in self.jobs.items()}})
+        jobs = {id_: job.copied() for id_, job in self.jobs.items()}
+        return self.model_copy(update={"jobs": jobs, "figures": self.figures.copied()})
 
     def process(self, record: ReadRecord, masters: WorkMastersView) -> list[News]:
         """Take note of the next record. What it says of jobs that have become others comes back."""
@@ -329,8 +349,10 @@ class Ledger(BaseModel):
         if record.whole:
             self._settle(record)
         self._end(record)
+        had = {job.work_master for job in self.jobs.values() if not job.state.is_over}
         # Operations begin and are completed before abilities start, and what was active then is what they start for.
         news = list(self._jobs(record, masters))
+        self._count(record, news, {name: its for name, its in masters.work_masters.items() if name not in had})
         self._start(record, masters)
         self._record_deviations(record)
         return news
@@ -341,6 +363,27 @@ class Ledger(BaseModel):
         for job in [job for job in self.station.waits if job not in self.jobs or self.jobs[job].state.is_over]:
             self.station = self.station.without(job)
         return told if record.number > (self.silent or 0) else []
+
+    def _count(self, record: ReadRecord, news: Sequence[News], free: Mapping[str, WorkMasterView]) -> None:
+        """Keep the figures of the day. Of the work masters those are `free` of which no job was under way."""
+        figures = self.figures
+        if record.kind == BEGUN:
+            figures.begin(record.time)
+        else:
+            figures.pass_to(record.time, record.monotonic)
+        if record.packml is not None:
+            figures.turn(record.packml)
+        if record.by_order is not None:
+            figures.by_order = record.by_order
+        figures.idle = figures.by_order and all(job.state.is_over for job in self.jobs.values())
+        for each in news:
+            if each.what == "over" and each.job.state is JobState.ENDED:
+                product = MadeProduct(job=each.job.job, work_master=each.job.work_master, ended=each.time)
+                figures.complete(product)
+        if figures.by_order:
+            figures.open = {}
+        else:
+            figures.work_freely(free, record.activated, record.completed, record.time)
 
     def _jobs(self, record: ReadRecord, masters: WorkMastersView) -> Iterator[News]:
         for id_, job in record.jobs.items():
@@ -481,6 +524,12 @@ class OrderTracker:
         self._database = database
         self._ledger: Ledger | None = None
         self._kept = 0  # the number of the record up to which the database knows
+
+    @property
+    def figures(self) -> DayFigures:
+        """The figures of the day as of the last record that was read; nobody may change them. Any thread may ask."""
+        ledger = self._ledger
+        return DayFigures() if ledger is None else ledger.figures
 
     def read_on(self, masters: WorkMastersView) -> tuple[bool, bool]:
         """Take note of the next records: whether orders have changed by it, and whether there may be more records.

@@ -1,0 +1,186 @@
+"""The figures of the day: how long the station worked, what it has made, and how long a product takes."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Collection, Mapping, Sequence
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict
+
+from sequence_planner.controller.views.details import WorkMasterView
+from sequence_planner.controller.views.station import PackML
+
+# Kept as the records of the run's journal are read one after the other, together with what is made for jobs, so that
+# nothing is read twice and a server that is started anew knows them at once.
+#
+# Availability is that of ISO 22400-2, APT / PBT. Nobody plans the planned busy time (PBT) here, so that is all of the
+# day since the station worked first, without the time in which it works by order and has none. The actual production
+# time (APT) is that of PackML's `execute`. While the controller was away nothing was produced.
+#
+# How long something lasted is told by the monotonic clock, which nobody sets; only the day is that of the wall clock.
+
+EXECUTE: Final = PackML.EXECUTE.value
+SUSPENDED: Final = PackML.SUSPENDED.value
+CYCLES: Final = 20  # of a work master that are remembered
+_MASTERS: Final = 100  # of which there are cycles: work masters come and go with the model
+_TREND_EVERY: Final = 900.0  # seconds between two points
+_TREND: Final = 100  # points: a day of 25 hours
+_MADE: Final = 5000  # products whose orders are remembered
+_BACK: Final = 3600.0  # seconds by which a clock that is set back leaves the day as it is
+
+
+class MadeProduct(BaseModel):
+    """A product that was completed; `job` is null where the station worked freely."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    job: str | None
+    work_master: str
+    ended: float
+
+
+class DayFigures(BaseModel):
+    """The figures of the `day` that began then. `since` the station worked first `counted` seconds could have been
+    worked, and `available` were. `heard` is the time of the last record.
+
+    Of each work master there are the seconds that the last products took which were made freely (`cycles`), and since
+    when the next one is made (`open`): null from the end of one until the next has begun.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    heard: float | None = None
+    counted_to: float | None = None  # on the wall clock
+    monotonic: float | None = None  # the same instant; null where that is not known
+    state: str | None = None
+    by_order: bool = False
+    idle: bool = False  # works by order, and has none
+    day: float | None = None
+    since: float | None = None
+    counted: float = 0.0
+    available: float = 0.0
+    trend: list[tuple[float, float]] = []  # when, and the availability until then
+    count: int = 0
+    made: list[MadeProduct] = []  # the last of these
+    cycles: dict[str, list[float]] = {}
+    open: dict[str, float | None] = {}
+
+    def copied(self) -> DayFigures:
+        """One that can go on without this one."""
+        lists = {"trend": [*self.trend], "made": [*self.made], "open": dict(self.open)}
+        return self.model_copy(update={**lists, "cycles": {name: [*each] for name, each in self.cycles.items()}})
+
+    @property
+    def availability(self) -> float | None:
+        """The part of the time that was worked, from 0 to 1; None before anything could be."""
+        return self.available / self.counted if self.counted > 0 else None
+
+    def pass_to(self, time: float, monotonic: float | None) -> None:
+        """Let time pass until an instant, in the state as it is."""
+        elapsed = 0.0
+        if self.counted_to is not None:
+            elapsed = max(0.0, time - self.counted_to)
+            if monotonic is not None and self.monotonic is not None and monotonic >= self.monotonic:
+                elapsed = monotonic - self.monotonic
+        if monotonic is None and self.monotonic is not None:
+            monotonic = self.monotonic + elapsed
+        self.heard, self.counted_to, self.monotonic = time, time, monotonic
+        self._count(elapsed, time)
+
+    def begin(self, time: float) -> None:
+        """Note that the controller was started anew: nobody knows that it worked since it was heard last."""
+        if self.heard is not None:
+            self.pass_to(self.heard, None)
+        self.turn(None)
+        self.monotonic = None
+        self.pass_to(time, None)
+
+    def turn(self, state: str | None) -> None:
+        """Note that the state of PackML is another one from now on."""
+        self.state = state
+
+    def _count(self, seconds: float, now: float) -> None:
+        midnight = start_of_day(now)
+        if self.day is None or midnight > self.day or now < self.day - _BACK:
+            if self.day is not None:
+                self._new_day()
+            self.day = midnight
+            seconds = min(seconds, max(0.0, now - midnight))
+        if self.idle and self.state == SUSPENDED:
+            return
+        if self.since is None:
+            if self.state not in (EXECUTE, SUSPENDED):
+                return
+            self.since = now - seconds
+        self.counted += seconds
+        self.available += seconds if self.state == EXECUTE else 0.0
+        share = self.availability
+        if share is not None and (not self.trend or not 0 <= now - self.trend[-1][0] < _TREND_EVERY):
+            self.trend = [*self.trend, (now, share)][-_TREND:]
+
+    def _new_day(self) -> None:
+        self.since, self.counted, self.available, self.trend = None, 0.0, 0.0, []
+        self.count, self.made = 0, []
+
+    # What is made.
+
+    def complete(self, product: MadeProduct) -> None:
+        """Count a product."""
+        self.count += 1
+        self.made = [*self.made, product][-_MADE:]
+
+    def work_freely(
+        self, masters: Mapping[str, WorkMasterView], activated: Sequence[str], completed: Sequence[str], now: float
+    ) -> None:
+        """Note which operations became active and were completed while no job had them.
+
+        A product is done with the operation that comes after all others of its work master, and begun with one that
+        comes after none. Where there is no such operation, the model does not tell.
+        """
+        for name in completed:
+            ended = [master for master, its in masters.items() if last_operation(its) == name]
+            for master in ended:
+                began = self.open.get(master)
+                if began is not None and now > began:
+                    self._remember(master, now - began)
+                self.open[master] = None
+            if ended:
+                self.complete(MadeProduct(job=None, work_master=ended[0], ended=now))
+        for name in activated:
+            for master, its in masters.items():
+                first = first_operations(its)
+                # Where there are several, the first of them is known once the product before was seen to be done.
+                known = self.open[master] is None if master in self.open else len(first) == 1
+                if name in first and known:
+                    self.open[master] = now
+        for gone in [each for each in self.open if each not in masters]:
+            del self.open[gone]
+
+    def _remember(self, master: str, seconds: float) -> None:
+        known = self.cycles.pop(master, [])
+        self.cycles[master] = [*known, seconds][-CYCLES:]
+        for oldest in [*self.cycles][:-_MASTERS]:
+            del self.cycles[oldest]
+
+
+def last_operation(master: WorkMasterView) -> str | None:
+    """The operation of a work master that comes after all others; None where there is none."""
+    before = {each for operation in master.operations.values() for each in operation.after}
+    ends = [name for name in master.operations if name not in before]
+    return ends[0] if len(ends) == 1 else None
+
+
+def first_operations(master: WorkMasterView) -> Collection[str]:
+    """The operations of a work master that come after no other."""
+    return [name for name, operation in master.operations.items() if not operation.after]
+
+
+def start_of_day(time: float) -> float:
+    """When the day of an instant began, where the station stands: at the last midnight of its time zone."""
+    local = clock.localtime(time)
+    return clock.mktime((local.tm_year, local.tm_mon, local.tm_mday, 0, 0, 0, 0, 0, -1))
+
+
+def end_of_day(time: float) -> float:
+    """When the day of an instant ends."""
+    local = clock.localtime(time)
+    return clock.mktime((local.tm_year, local.tm_mon, local.tm_mday + 1, 0, 0, 0, 0, 0, -1))
