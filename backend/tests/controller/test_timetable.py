@@ -9,6 +9,7 @@ import pytest
 from controller.test_local_formulas import beginning
 from controller.test_receding_horizon import asked, ticks
 from sequence_planner.automaton.automaton import Automaton, HumanTask, Timeouts
+from sequence_planner.controller.views.wording import plan_preview
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
@@ -74,6 +75,23 @@ def test_steps_follow_one_another_as_the_plan_orders_them() -> None:
     watched = Watched(SLOW)
     watched.tick(0)
     assert watched.expected == {"aside": (0, 3), "onwards": (3, 6), "away": (6, 9)}
+
+
+def test_a_plan_that_nobody_follows_yet_is_shown_with_the_same_times() -> None:
+    station = replace(SLOW, effects=tuple(replace(each, resource="station") for each in SLOW.effects))
+    preview = plan_preview(station, Plan(TICKS, False, False))
+    assert {step.ability: (step.start, step.end) for step in preview.steps} == {
+        "aside": (0, 3),
+        "onwards": (3, 6),
+        "away": (6, 9),
+    }
+
+
+def test_a_start_that_no_effect_follows_takes_as_long_as_the_model_says() -> None:
+    said = replace(SLOW.abilities["away"], duration=(1.0, 2.0))
+    station = replace(SLOW, abilities={**SLOW.abilities, "away": said})
+    [step] = plan_preview(station, Plan(ticks(("", "away")), False, False)).steps
+    assert (step.start, step.end) == (0, 1.5)
 
 
 def test_nothing_moves_on_while_nothing_happens() -> None:

@@ -74,7 +74,9 @@ WORK_MASTERS = WorkMastersView(
     },
     abilities={"robot.move": WorkAbilityView(title="Move", writes=["robot.pose"], instant=False)},
 )
-STEP = PreviewStepView(tick=1, ability="robot.move", title="Move", resource="robot", human=False, restart=True)
+STEP = PreviewStepView(
+    tick=1, start=0.0, end=2.0, ability="robot.move", title="Move", resource="robot", human=False, restart=True
+)
 PAUSE_FIRST = message("refused.wrong-mode.try", mode=message("mode.automatic"))
 PLAN = PlanPreviewView(ticks=2, steps=[STEP], minimal_ticks=True, minimal_starts=False)
 OFFER = OfferView(

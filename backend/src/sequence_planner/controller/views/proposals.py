@@ -19,9 +19,13 @@ class ValueChangeView(View):
 
 
 class PreviewStepView(View):
-    """One start. `tick` counts from the tick in which the plan begins."""
+    """One start. `tick` counts from the tick in which the plan begins; `start` and `end`, in seconds after that, are
+    estimated by the middle of what each effect takes.
+    """
 
     tick: int
+    start: float
+    end: float
     ability: str
     title: str
     resource: str

@@ -24,7 +24,12 @@ from sequence_planner.language.resolver import NameScope, resolve_predicate, sug
 from sequence_planner.language.syntax import TRUE, Expression, ExpressionError
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
-from sequence_planner.planning.recovery.proposals import OfferKind, RecoveryProposal, ValueChange
+from sequence_planner.planning.recovery.proposals import (
+    OfferKind,
+    RecoveryProposal,
+    ValueChange,
+    estimated_times,
+)
 from sequence_planner.texts.message import Argument, Message, Sentence, as_it_was, message
 
 # Offers in the words of the people they are shown to.
@@ -192,9 +197,10 @@ def _so(automaton: Automaton, changes: Iterable[ValueChange]) -> list[Message]:
 
 def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
     """A plan as it is shown before anybody follows it."""
+    times = estimated_times(automaton, plan)
     return PlanPreviewView(
         ticks=len(plan.ticks),
-        steps=[_step(automaton, tick, name) for tick, name in plan.starts],
+        steps=[_step(automaton, tick, name, times[index]) for index, (tick, name) in enumerate(plan.starts)],
         minimal_ticks=plan.minimal_ticks,
         minimal_starts=plan.minimal_starts,
     )
@@ -224,10 +230,12 @@ def diagnosis_view(
     )
 
 
-def _step(automaton: Automaton, tick: int, name: str) -> PreviewStepView:
+def _step(automaton: Automaton, tick: int, name: str, times: tuple[float, float]) -> PreviewStepView:
     ability = automaton.abilities[name]
     return PreviewStepView(
         tick=tick,
+        start=times[0],
+        end=times[1],
         ability=name,
         title=ability.title,
         resource=ability.resource,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from functools import lru_cache
-from itertools import combinations
+from itertools import accumulate, combinations
 
 from sequence_planner.automaton.automaton import Automaton, Effect, Flag, Kind, Operation, State, target
 from sequence_planner.automaton.tick import effect_writes, writes
@@ -196,6 +196,25 @@ def expected_seconds(automaton: Automaton, ticks: Iterable[PlanTick]) -> float:
     """Estimate how long a plan takes when each device needs the middle of the time its effects are declared with."""
     takes = {effect.name: (effect.shortest + effect.longest) / 2 for effect in automaton.effects}
     return sum(max((takes[name] for name in tick.effects), default=0.0) for tick in ticks)
+
+
+def estimated_times(automaton: Automaton, plan: Plan) -> list[tuple[float, float]]:
+    """Estimate when each start of a plan comes and when it is over, in seconds after the plan begins.
+
+    It is over with the last effect of its resource before that is started again, or else as long as the model says.
+    """
+    resources = {effect.name: effect.resource for effect in automaton.effects}
+    comes = [*accumulate(expected_seconds(automaton, [tick]) for tick in plan.ticks)]
+    acts = [{resources[name] for name in tick.effects} for tick in plan.ticks]
+    times = list[tuple[float, float]]()
+    for index, (tick, name) in enumerate(plan.starts):
+        ability, start = automaton.abilities[name], comes[tick - 1]
+        later = (at for at, each in plan.starts[index + 1 :] if automaton.abilities[each].resource == ability.resource)
+        until = next(later, len(plan.ticks))
+        ends = [comes[at] for at in range(tick, until) if ability.resource in acts[at]]
+        lasts = 0.0 if ability.duration is None else sum(ability.duration) / 2
+        times.append((start, ends[-1] if ends else start + lasts))
+    return times
 
 
 def changes_between(automaton: Automaton, before: State, after: State, kind: Kind) -> tuple[ValueChange, ...]:
