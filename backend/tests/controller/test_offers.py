@@ -26,7 +26,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
-from sequence_planner.planning.recovery.proposals import Advice
+from sequence_planner.planning.recovery.proposals import Advice, ProposalEffort
 from sequence_planner.planning.recovery.request import AdviceRequest
 from sequence_planner.synthesis.supervisor import synthesise
 from support.automata import Does, automaton, predicate_of
@@ -62,6 +62,12 @@ def made(precondition: str = "loaded") -> Executor:
     at = replace(cart.variables["at"], resource="station")
     cart = replace(cart, operations={"deliver": operation}, variables={**cart.variables, "at": at})
     return Executor(cart, synthesise(cart))
+
+
+def test_what_only_weighs_takes_no_time() -> None:
+    effort = ProposalEffort(changes=1, physical=1, starts=2, seconds=5.0, left_out=1, breaks=1, unsupervised=True)
+    assert effort.time == 5 + 30 + 60 + 2 * 2
+    assert effort.cost > effort.time
 
 
 class Desk:

@@ -105,7 +105,7 @@ OFFER = OfferView(
     claims=[],
     records=[],
     only_if_checked=False,
-    effort=EffortView(cost=36.5, corrections=1, physical=0, returns=0, starts=1, seconds=4.5),
+    effort=EffortView(cost=36.5, corrections=1, physical=0, returns=0, starts=1, seconds=4.5, time=36.5),
     obstacle=None,
     obstacle_message=None,
 )

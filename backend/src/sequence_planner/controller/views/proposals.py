@@ -51,6 +51,7 @@ class EffortView(View):
     returns: int  # resources and abilities that a person brings back
     starts: int
     seconds: float  # that the devices are estimated to take
+    time: float  # the seconds that devices and people are estimated to take
 
 
 class OfferView(View):

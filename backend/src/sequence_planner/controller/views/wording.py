@@ -72,6 +72,7 @@ def offer_view(
             returns=offer.effort.returns,
             starts=offer.effort.starts,
             seconds=offer.effort.seconds,
+            time=offer.effort.time,
         ),
         obstacle=obstacle,
         obstacle_message=obstacle,

@@ -85,6 +85,9 @@ WEIGHTS = {
     "left_out": 600.0,  # a goal that is given up
 }
 
+# Of these, what people take time for; the others only weigh.
+PEOPLE_TAKE = ("changes", "physical", "returns", "starts")
+
 
 class OfferKind(StrEnum):
     """The things an offer asks for, besides what production does then."""
@@ -119,6 +122,11 @@ class ProposalEffort(Immutable):
     left_out: int = 0
     breaks: int = 0
     unsupervised: bool = False
+
+    @property
+    def time(self) -> float:
+        """The seconds that devices and people are estimated to take."""
+        return self.seconds + sum(WEIGHTS[name] * float(getattr(self, name)) for name in PEOPLE_TAKE)
 
     @property
     def cost(self) -> float:
