@@ -7,6 +7,7 @@ from typing import Any
 from sequence_planner.controller.commands.command import CommandRefused, Query
 from sequence_planner.controller.commands.queries import (
     AboutMimic,
+    AboutNames,
     AboutWorkMasters,
     AskAbilityBlockers,
     AskAdvice,
@@ -27,6 +28,7 @@ from sequence_planner.controller.views.details import (
     CorrectedView,
     CorrectionPreview,
     InvolvedView,
+    NamesView,
     PredicateView,
     ReactionView,
     ReadValueView,
@@ -249,6 +251,8 @@ def example_answer(ask: Query[Any]) -> DataModel:
             return WORK_MASTERS
         case AboutMimic():
             return MimicView(made_from="model", width=872, height=346, symbols=[], findings=[])
+        case AboutNames():
+            return NamesView(variables={}, values=[])
         case AskAdvice():
             return ADVICE
         case AskCorrection():

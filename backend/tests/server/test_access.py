@@ -87,6 +87,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/model/undo": ("engineer", None),
     "POST /api/v1/model/redo": ("engineer", None),
     "GET /api/v1/mimic": ("viewer", "read"),
+    "GET /api/v1/names": ("viewer", "read"),
     "GET /api/v1/ros/graph": ("viewer", "read"),
     "GET /api/v1/pipelines": ("viewer", "read"),
     "GET /api/v1/pipelines/edges": ("viewer", "read"),

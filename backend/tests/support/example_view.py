@@ -115,6 +115,7 @@ def example_view(**changes: object) -> StationView:
                 since=999.0,
                 awaits=None,
                 belief=None,
+                commanded_by=None,
             ),
             "bolts[bolt_pair_1]": VariableView(
                 resource=None,
@@ -125,6 +126,7 @@ def example_view(**changes: object) -> StationView:
                 since=None,
                 awaits=None,
                 belief=BeliefView(writer="the beginning", at=900.0, evidence=[], unconfirmed_since=None),
+                commanded_by=None,
             ),
         },
         abilities={

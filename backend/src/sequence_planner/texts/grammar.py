@@ -47,6 +47,12 @@ class Grammar:
     never: str
     words: Mapping[str, str]
     endings: tuple[tuple[str, str], ...] = ()
+    articles: tuple[str, ...] = ()
+
+    def bare(self, text: str) -> str:
+        """A name as it stands in a table: `the ladder frame` → `ladder frame`."""
+        article, _, rest = text.partition(" ")
+        return rest if rest and article.lower() in self.articles else text
 
     def clause(self, text: str, before: str = "") -> Clause:
         """A statement in its parts, divided at its first known verb, which stands before the word `before` if there is
@@ -194,6 +200,7 @@ ENGLISH: Final = Grammar(
         "not": "it is not so that {formula}",
     },
     endings=(("ch", "ches"), ("sh", "shes"), ("s", "ses"), ("x", "xes"), ("ty", "ties"), ("ry", "ries"), ("", "s")),
+    articles=("the", "a", "an"),
 )
 
 SWEDISH: Final = Grammar(

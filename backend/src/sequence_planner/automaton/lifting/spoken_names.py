@@ -11,7 +11,7 @@ from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.lifting.normal_form import ValueLiteral
 from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE, VariableTitles, in_language
-from sequence_planner.language.types import BooleanType, IntegerRange, Type, Value
+from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Type, Value
 from sequence_planner.texts.grammar import ENGLISH, Clause, Grammar
 from sequence_planner.texts.names import in_words, within_sentence
 
@@ -146,6 +146,23 @@ class SpokenNames:
         ability, _, flag = name.rpartition(".")
         title = grammar.quoted.format(title=self._automaton.abilities[ability].title)
         return f"{title} {grammar.be} {grammar.words[flag]}"
+
+    def heading(self, variable: str, grammar: Grammar) -> str:
+        """What a variable is called in a table, below the title of its resource: `Ladder frame`, `Target pose`."""
+        told = self.subject(variable, grammar) if self.is_titled(variable) else self._short(variable, 1, grammar)
+        bare = grammar.bare(told)
+        return bare[:1].upper() + bare[1:]
+
+    def entries(self, variable: str, grammar: Grammar) -> Mapping[Value, str]:
+        """What the values of a variable are called in a table, each otherwise than all others; only those of which the
+        model has words.
+        """
+        type_ = self._automaton.types[variable]
+        if not isinstance(type_, EnumerationType) and not self.titles(variable).values:
+            return {}
+        words = self.words(variable, type_, grammar)
+        bare = {value: grammar.bare(text) for value, text in words.items()}
+        return bare if len({each.casefold() for each in bare.values()}) == len(bare) else words
 
     def spoken_title(self, variable: str, grammar: Grammar) -> str:
         """What a variable is called that is told apart from its value: a statement in quotes."""

@@ -10,6 +10,7 @@ from sequence_planner.controller.commands.command import GivenValues, Query, Rou
 from sequence_planner.controller.views.details import (
     AbilityDefinitionView,
     CorrectionPreview,
+    NamesView,
     WhyNotView,
     WorkMastersView,
 )
@@ -43,6 +44,13 @@ class AboutMimic(Query[MimicView]):
 
     routes = (Route("GET", "/mimic", "mimic", tag="station", role="viewer", refusals=(504,)),)
     kind: Literal["about-mimic"] = "about-mimic"
+
+
+class AboutNames(Query[NamesView]):
+    """What people read in place of the names of variables and of their values, in each language, as the model says."""
+
+    routes = (Route("GET", "/names", "names", tag="station", role="viewer", refusals=(504,)),)
+    kind: Literal["about-names"] = "about-names"
 
 
 class AboutFlows(Query[FlowsView]):

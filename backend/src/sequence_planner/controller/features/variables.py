@@ -9,7 +9,11 @@ from pydantic import JsonValue, ValidationError
 from sequence_planner.automaton.automaton import Ability, Kind, reads, target
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.lifting.sentences import sentences_of
+from sequence_planner.controller.commands.command import answers
+from sequence_planner.controller.commands.queries import AboutNames
+from sequence_planner.controller.views.details import NamesView
 from sequence_planner.controller.views.station import BeliefView, VariableKind, VariableView
+from sequence_planner.controller.views.wording import names_view
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import CalledOff, Confirmed, Corrected, Heard, ModeChanged, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -203,14 +207,35 @@ class Variables:
         self._execution = execution
         self._feeds, self._beliefs = feeds, beliefs
         self._since: dict[str, tuple[Value | None, float]] = {}
+        self._commanded: dict[str, str] = {}
+        self._names: NamesView | None = None
 
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
-        """After a tick: remember what has changed."""
-        now = moment.epoch
-        for name in self._execution.automaton.variables:
+        """After a tick: remember what has changed, and who commanded it."""
+        automaton, now = self._execution.automaton, moment.epoch
+        changed = set()
+        for name in automaton.variables:
             value = self._execution.state[name]
             if name not in self._since or self._since[name][0] != value:
                 self._since[name] = (value, now)
+                changed.add(name)
+        if not changed:
+            return
+        abilities = automaton.abilities
+        acted = [
+            *((name, abilities[name].finish_actions) for name in outcome.finished),
+            *((name, abilities[name].cancel_actions) for name in outcome.called_off),
+            *((name, abilities[name].start_actions) for name in outcome.started),
+        ]
+        self._commanded.update(
+            {target(action): name for name, actions in acted for action in actions if target(action) in changed}
+        )
+
+    @answers(AboutNames)
+    def names(self, query: AboutNames) -> NamesView:
+        """What they are called. That is found out when somebody asks, and then kept: the model stays the same."""
+        self._names = self._names or names_view(self._execution.automaton, self._feeds)
+        return self._names
 
     def since(self, name: str) -> float | None:
         """Return when a variable was first seen with the value that it has; None before the first tick."""
@@ -237,5 +262,6 @@ class Variables:
                 since=since[1] if since else None,
                 awaits=self._feeds.get(name) if value is None else None,
                 belief=self._beliefs.of(name) if variable.kind is Kind.ESTIMATED else None,
+                commanded_by=self._commanded.get(name) if variable.kind is Kind.OUTPUT else None,
             )
         return views

@@ -52,6 +52,28 @@ class CorrectionPreview(View):
     obstacle_message: Message | None
 
 
+# What people read in place of the names of the model.
+
+
+class VariableNameView(View):
+    """What a variable is called in a table below the title of its resource, by language.
+
+    `values` is the place of the words for its values in `NamesView.values`; null where the model has none. `topic` is
+    the one that tells what it is; null for what is not measured.
+    """
+
+    title: dict[str, str]
+    values: int | None
+    topic: str | None
+
+
+class NamesView(View):
+    """What all variables are called. `values` has each set of words once: by value, and then by language."""
+
+    variables: dict[str, VariableNameView]
+    values: list[dict[str, dict[str, str]]]
+
+
 # How an ability is defined, and what of that holds in a state, most often that of the live station.
 
 

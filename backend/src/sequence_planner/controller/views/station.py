@@ -503,6 +503,7 @@ class VariableView(View):
     since: float | None
     awaits: str | None
     belief: BeliefView | None  # of an estimated one
+    commanded_by: str | None  # of an output: the ability that has written its value
 
 
 class AbilityView(View):
