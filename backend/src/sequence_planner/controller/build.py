@@ -88,7 +88,7 @@ def build_controller(
         lambda command, moment: bus.perform(command, moment),  # noqa: PLW0108
     )
     plan = LivePlan(execution, consequences, around, lambda: planner.trouble, lambda: links.untold)
-    operations = Operations(execution)
+    operations = Operations(execution, plan.timetable)
     jobs = JobViews(
         execution,
         lambda: records.jobs,

@@ -10,19 +10,17 @@ by then is expected at once.
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from statistics import median
 
 from sequence_planner.automaton.automaton import Automaton, target
-from sequence_planner.automaton.compiled_tick import CompiledRun
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.plan_tracker import PlanCursor, PlannedStart
+from sequence_planner.execution.outlook import Outlook, simulate_plan
+from sequence_planner.execution.plan_tracker import PlannedStart
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.syntax import variables
-from sequence_planner.planning.problem import Plan, PlanTick
-from sequence_planner.planning.recovery.proposals import expected_seconds
 from sequence_planner.synthesis.guards import SupervisorGuard
 
 # As many runs of an ability as are told from: devices change their pace, with a new tool or a slower override.
@@ -36,24 +34,6 @@ class Expected(Immutable):
     end: float
 
 
-class Outlook(Immutable):
-    """The things a plan says of time, counted in its ticks after `tick`, the one under way when it was looked through.
-
-    `first` is the number of its first step; `waits` is how long each tick is waited for, in seconds, and `ends` the
-    tick in which each step, by its number, is over.
-    """
-
-    plan: Plan | None
-    first: int
-    tick: int
-    waits: Mapping[int, float]
-    ends: Mapping[int, int]
-
-    def between(self, tick: int, later: int) -> float:
-        """The seconds from one tick to a later one."""
-        return sum(self.waits.get(each, 0.0) for each in range(tick + 1, later + 1))
-
-
 class Forecast:
     """Looks at an execution after every tick, and says when its steps are expected."""
 
@@ -63,12 +43,17 @@ class Forecast:
         self._counted: frozenset[int] = frozenset()  # the past steps that have ended and were looked at
         self._disturbed: frozenset[int] = frozenset()  # those that ran while the station did not go on by itself
         self._waiting = waiting_for_people(execution.automaton)
-        self._outlook = Outlook(None, 0, 0, {}, {})
+        self._outlook = Outlook()
         self._began = 0.0  # when the plan was seen first
         self._read: dict[
             str, tuple[SupervisorGuard | None, frozenset[str]]
         ] = {}  # by each ability, with the guard added then
         self._written: dict[str, frozenset[str]] = {}
+
+    @property
+    def outlook(self) -> Outlook:
+        """The things that the plan leads to."""
+        return self._outlook
 
     def update(self, now: float) -> None:
         """After a tick: remember how long has taken what ended, and look through a plan that is new."""
@@ -173,41 +158,3 @@ def waiting_for_people(automaton: Automaton) -> frozenset[str]:
         if ability.human is not None
         or (ability.finish_guard is not None and read_variables(automaton, (ability.finish_guard,)) & theirs)
     )
-
-
-def simulate_plan(order: PlanCursor, run: CompiledRun, automaton: Automaton) -> Outlook:
-    """Simulate what is left of the plan from where `run` stands; the run is changed by it."""
-    plan = order.plan
-    if plan is None:
-        return Outlook(None, 0, 0, {}, {})
-    first = max((step.number for step in (*order.past, *order.ahead)), default=0) - len(plan.starts) + 1
-    _, ticks = order.rest()
-    taken = max((step.tick for step in order.past if step.number >= first), default=0)
-    begin = len(plan.ticks) - len(ticks) if ticks else taken
-    waits = {number: expected_seconds(automaton, [tick]) for number, tick in enumerate(plan.ticks, 1)}
-    return Outlook(plan, first, begin, waits, _ends(order, run, ticks, begin))
-
-
-def _ends(order: PlanCursor, run: CompiledRun, ticks: Sequence[PlanTick], begin: int) -> dict[int, int]:
-    """In which tick each step is over."""
-    ends: dict[int, int] = {}
-    ahead = iter(order.ahead)
-    under_way: dict[str, list[int]] = defaultdict(list)
-    for step in order.running:
-        under_way[step.ability].append(step.number)
-
-    def start(count: int) -> None:
-        for _ in range(count):
-            if (step := next(ahead, None)) is not None:
-                run.start(step.ability)
-                under_way[step.ability].append(step.number)
-
-    start(len(order.ahead) - sum(len(tick.starts) for tick in ticks))
-    for number, tick in enumerate(ticks, begin + 1):
-        sensed = [run.effect(name) or {} for name in tick.effects]
-        run.sense({name: value for writes in sensed for name, value in writes.items()})
-        for ability in run.finish().finished:
-            ends |= dict.fromkeys(under_way.pop(ability, ()), number)
-        run.synchronise()
-        start(len(tick.starts))
-    return ends

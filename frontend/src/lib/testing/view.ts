@@ -31,6 +31,7 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 		ended: null,
 		expected_start: null,
 		expected_end: null,
+		after: null,
 		new: false,
 		waits_for: [],
 		waits_for_messages: [],

@@ -51,6 +51,11 @@ class LivePlan:
         self._timetable = Forecast(execution)
         self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
 
+    @property
+    def timetable(self) -> Forecast:
+        """When its steps are expected, and what they lead to."""
+        return self._timetable
+
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: remember what has changed."""
         self._timetable.update(moment.epoch)
@@ -118,6 +123,7 @@ class LivePlan:
             ended=_epoch(step.ended),
             expected_start=due.start if due and step.started is None else None,
             expected_end=due.end if due else None,
+            after=_id(self._timetable.outlook.after.get(step.number)),
             new=replacement is not None and step.number in replacement.new,
             waits_for=[*waits],
             waits_for_messages=waits,
@@ -205,6 +211,10 @@ def _contract(plan: Plan | None) -> Contract | None:
     return Contract.MINIMAL if plan.minimal_ticks and plan.minimal_starts else Contract.FAST
 
 
+def _id(number: int | None) -> str | None:
+    return None if number is None else str(number)
+
+
 def _epoch(moment: Timestamp | None) -> float | None:
     return None if moment is None else moment.epoch
 
@@ -212,9 +222,11 @@ def _epoch(moment: Timestamp | None) -> float | None:
 class Operations:
     """The operations of `execution`: which are active, since when, and how often each was completed."""
 
-    def __init__(self, execution: Executor) -> None:
+    def __init__(self, execution: Executor, timetable: Forecast) -> None:
         self._execution = execution
+        self._timetable = timetable
         self._active_since: dict[str, float] = {}
+        self._last: dict[str, tuple[float, float]] = {}  # when each began and ended the last time
         operations = execution.automaton.operations
         self._completed: dict[str, int] = dict.fromkeys(operations, 0)
         self._conditions = {
@@ -224,9 +236,10 @@ class Operations:
 
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: remember what has changed."""
+        now = moment.epoch
         for operation in outcome.completed:
             self._completed[operation] += 1
-        now = moment.epoch
+            self._last[operation] = self._active_since.get(operation, now), now
         self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
@@ -237,12 +250,17 @@ class Operations:
         jobs, automaton = execution.conduct.jobs, execution.automaton
         sentences = sentences_of(automaton)
         asking = {name: job.id for job in jobs.under_way for name in automaton.work_masters[job.work_master].operations}
+        outlook, never = self._timetable.outlook, (None, None)
         views = {
             operation.name: OperationView(
                 title=operation.title,
                 active=operation.name in active,
                 active_since=self._active_since.get(operation.name),
                 completed=self._completed[operation.name],
+                began=self._last.get(operation.name, never)[0],
+                ended=self._last.get(operation.name, never)[1],
+                first_step=_id(outlook.serves.get(operation.name, never)[0]),
+                last_step=_id(outlook.serves.get(operation.name, never)[1]),
                 goal=self._conditions[operation.name][0],
                 precondition=self._conditions[operation.name][1],
                 sentence=sentences.tell_operation(

@@ -523,13 +523,19 @@ class OperationView(View):
     """An operation: active until its goal holds.
 
     With `for_jobs` a work master has it: while the station works by order it is active only for a job under way. `job`
-    is the one that has it, whether it is its turn or not.
+    is the one that has it, whether it is its turn or not. It `began` and `ended` the last time it was completed, null
+    where that was never. What the plan does for it goes from the step `first_step` to `last_step`, which reaches its
+    goal.
     """
 
     title: str
     active: bool
     active_since: float | None
     completed: int
+    began: float | None
+    ended: float | None
+    first_step: str | None
+    last_step: str | None
     goal: str
     precondition: str
     sentence: Message | None  # what it waits for, or until when it is active: what of that is still missing
@@ -543,7 +549,9 @@ class PlanStepView(View):
     """One start of the plan. `tick` counts from the tick in which the plan was made.
 
     As long as it is not over it is expected to start and to end at these times, which are told from what happened last
-    and do not move on by themselves: what is late by now is expected at once, and what follows as much later.
+    and do not move on by themselves: what is late by now is expected at once, and what follows as much later. It is
+    possible `after` another step, whose start, end or effect is the last that it misses; null where it misses nothing,
+    or what it misses comes by itself.
     """
 
     id: str
@@ -556,6 +564,7 @@ class PlanStepView(View):
     ended: float | None
     expected_start: float | None
     expected_end: float | None
+    after: str | None
     new: bool  # the plan that was replaced last did not have it
     waits_for: list[str]  # for the next step: what keeps it from starting, in the model's language
     waits_for_messages: list[Message]
