@@ -218,7 +218,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scene]:
     controller.start()
     server.start()
     server.hear_controller()
-    with httpx.Client(base_url=server.address) as browser:
+    with httpx.Client(base_url=server.address, timeout=PATIENCE) as browser:
         yield Scene(server, browser, everybody(server))
     server.stop()
     controller.stop()
