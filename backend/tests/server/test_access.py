@@ -17,6 +17,7 @@ from fastapi.routing import iter_route_contexts
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.server.auth import allowed, check_declared
 from support.server import Controller, Loop, Server, settings_in
+from support.waiting import PATIENCE
 
 from .bearers import Bearer, Headers, everybody
 
