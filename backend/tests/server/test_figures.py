@@ -92,6 +92,9 @@ def test_what_was_made_of_what_is_due_and_how_long_the_station_worked(
     assert availability["available"] == 80
     assert 90 <= availability["counted"] < 120
     assert availability["share"] == availability["available"] / availability["counted"]
+    until(lambda: figures(mes)["cycle"] is not None, seconds=20)
+    cycle = figures(mes)["cycle"]
+    assert (cycle["work_master"], cycle["last"], cycle["median"]) == ("truck_engine", [90.0], 90.0)
     controller.show(example_view(jobs={"late": shown(now - 5)}))
     until(lambda: len(figures(mes)["in_work"]) == 1)
     in_work = figures(mes)["in_work"][0]

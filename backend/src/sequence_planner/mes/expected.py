@@ -36,8 +36,12 @@ class CycleTimes:
 
     def seconds(self, work_master: str) -> float | None:
         """Return how long an order takes: the median of the last ones; None before one was completed."""
-        made = self._seconds.get(work_master)
-        return median(tuple(made)) if made else None
+        made = self.last_seconds(work_master)
+        return median(made) if made else None
+
+    def last_seconds(self, work_master: str) -> list[float]:
+        """Return how long the last ones took, the oldest first."""
+        return list(self._seconds.get(work_master, ()))
 
     def read_on(self, connection: Connection) -> None:
         """Read what was made since, or the last of it where that is too much."""

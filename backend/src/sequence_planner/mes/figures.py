@@ -86,7 +86,7 @@ class DayFigures(BaseModel):
         self.heard, self.counted_to, self.monotonic = time, time, monotonic
         self._count(elapsed, time)
 
-    def begin(self, time: float) -> None:
+    def note_start(self, time: float) -> None:
         """Note that the controller was started anew: nobody knows that it worked since it was heard last."""
         if self.heard is not None:
             self.pass_to(self.heard, None)
@@ -123,7 +123,7 @@ class DayFigures(BaseModel):
 
     # What is made.
 
-    def complete(self, product: MadeProduct) -> None:
+    def count_product(self, product: MadeProduct) -> None:
         """Count a product."""
         self.count += 1
         self.made = [*self.made, product][-_MADE:]
@@ -144,7 +144,7 @@ class DayFigures(BaseModel):
                     self._remember(master, now - began)
                 self.open[master] = None
             if ended:
-                self.complete(MadeProduct(job=None, work_master=ended[0], ended=now))
+                self.count_product(MadeProduct(job=None, work_master=ended[0], ended=now))
         for name in activated:
             for master, its in masters.items():
                 first = first_operations(its)

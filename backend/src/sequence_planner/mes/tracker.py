@@ -13,7 +13,6 @@ from sqlalchemy import Connection, delete, insert, select
 from sequence_planner.controller.commands.audit import JOB_WAITS, PACKML
 from sequence_planner.controller.views.details import WorkMastersView, WorkMasterView
 from sequence_planner.controller.views.part import Value
-from sequence_planner.core.data_models import DataModel
 from sequence_planner.db.database import Database
 from sequence_planner.execution.events import (
     Corrected,
@@ -190,9 +189,10 @@ class StationEvent:
     content: Mapping[str, JsonValue]
 
 
-class StationStanding(DataModel):
+class StationStanding(BaseModel):
     """The standing of the station, as far as it was told: alarms that last by their keys, and what jobs wait for."""
 
+    model_config = ConfigDict(frozen=True, extra="forbid")
     mode: str | None = None
     packml: str | None = None
     alarms: dict[str, dict[str, JsonValue]] = Field(default={})
@@ -368,7 +368,7 @@ class Ledger(BaseModel):
         """Keep the figures of the day. Of the work masters those are `free` of which no job was under way."""
         figures = self.figures
         if record.kind == BEGUN:
-            figures.begin(record.time)
+            figures.note_start(record.time)
         else:
             figures.pass_to(record.time, record.monotonic)
         if record.packml is not None:
@@ -379,7 +379,7 @@ class Ledger(BaseModel):
         for each in news:
             if each.what == "over" and each.job.state is JobState.ENDED:
                 product = MadeProduct(job=each.job.job, work_master=each.job.work_master, ended=each.time)
-                figures.complete(product)
+                figures.count_product(product)
         if figures.by_order:
             figures.open = {}
         else:

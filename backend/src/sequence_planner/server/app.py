@@ -29,7 +29,6 @@ from sequence_planner.server import errors, metrics, openapi_document
 from sequence_planner.server import metrics as health
 from sequence_planner.server.api import (
     declared,
-    figures,
     history,
     job_orders,
     model,
@@ -83,7 +82,6 @@ PARTS = (
     watches.router,
     endpoints.watch_stream_router,
     job_orders.order_of_work_router,
-    figures.router,
     webhooks.router,
     webhooks.bodiless,
     storage.backups_router,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import Query, WebSocket
+from fastapi import Query, Request, WebSocket
 
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.auth.roles import Role, Scope
@@ -41,9 +41,10 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import AnswerModel, Controller, LiveView
+from sequence_planner.server.dependencies import AnswerModel, Controller, Identity, LiveView
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
+from sequence_planner.server.services.figures import FiguresAnswer, figures_of
 from sequence_planner.server.stream.broadcast import FlowsFeed, NetworkFeed
 from sequence_planner.server.stream.endpoints import serve
 from sequence_planner.texts.message import message
@@ -210,6 +211,14 @@ async def analysis(view: LiveView) -> AnalysisAnswer:
 async def alarms(view: LiveView) -> AlarmsAnswer:
     """Alarms that want a person's attention now."""
     return AlarmsAnswer(tick=view.tick, time=view.time, alarms=view.alarms)
+
+
+@router.get("/figures")
+async def figures(request: Request, office: Identity, view: LiveView) -> FiguresAnswer:
+    """The figures of the day, in the time zone of the station: what is in work, what was made, how long that takes, and
+    how long the station worked.
+    """
+    return await figures_of(request.app.state.order_desk, office, view)
 
 
 # The ROS graph, read once or as it changes.

@@ -18,12 +18,10 @@ from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.details import WorkMastersView
 from sequence_planner.controller.views.station import JobView, StationView
 from sequence_planner.core.actor import SYSTEM, Actor
-from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.storage_error import StorageError
 from sequence_planner.execution.vocabulary import JobState, Production
 from sequence_planner.mes import orders
 from sequence_planner.mes.expected import NOBODY_KNOWS, CycleTimes, ExpectedTimes, expected
-from sequence_planner.mes.figures import DayFigures
 from sequence_planner.mes.order import JobOrder, OrderRefused, OrderState, Wish
 from sequence_planner.mes.queue import OrderOfWork, Queue, order_of_work, queue
 from sequence_planner.mes.tracker import OrderTracker
@@ -289,17 +287,16 @@ class OrderService:
             in_order = self.sequence(list(known.values()))
             found = expected(in_order, self._times, self._masters, self._view, self._office.now())
         return {each.id: found.get(each.id, NOBODY_KNOWS) for each in asked}
-    def figures(self, now: Timestamp) -> DayFigures:
-        """The figures of the day until now, or until the controller was heard last. Any thread may ask."""
-        known = self._following.figures.copied()
-        if self._controller.heard and known.counted_to is not None:
-            known.pass_to(now.epoch, now.monotonic)
-        return known
 
-    def title_of(self, work_master: str) -> str:
-        """Return what people call a work master."""
-        known = None if self._masters is None else self._masters.work_masters.get(work_master)
-        return work_master if known is None else known.title
+    @property
+    def tracker(self) -> OrderTracker:
+        """Return what reads the run's journal for orders, and keeps the figures of the day."""
+        return self._following
+
+    @property
+    def times(self) -> CycleTimes:
+        """How long orders took."""
+        return self._times
 
     def require_control(self, actor: Actor) -> None:
         """Raises `CommandRefused` where a person lets something go on without being in control; a key never is."""

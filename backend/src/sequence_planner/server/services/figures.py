@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from statistics import median
 
-from fastapi import Request
-
-from sequence_planner.auth.roles import Role, Scope
+from sequence_planner.controller.views.details import WorkMasterView
 from sequence_planner.controller.views.station import StationView
-from sequence_planner.core.clock import Timestamp, iso
+from sequence_planner.core.clock import iso
 from sequence_planner.mes import orders
-from sequence_planner.mes.figures import DayFigures, end_of_day
+from sequence_planner.mes.expected import NOBODY_KNOWS
+from sequence_planner.mes.figures import DayFigures, MadeProduct, end_of_day, start_of_day
 from sequence_planner.mes.order import JobOrder
-from sequence_planner.server.api.job_orders import desk_of
-from sequence_planner.server.auth import allowed
-from sequence_planner.server.dependencies import AnswerModel, Identity, LiveView
-from sequence_planner.server.interface import interface
+from sequence_planner.server.dependencies import AnswerModel
+from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.orders import OrderService
-
-router = interface("/figures", tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
 
 class ProductInWork(AnswerModel):
@@ -90,35 +85,45 @@ class FiguresAnswer(AnswerModel):
     availability: DayAvailability | None
 
 
-@router.get("")
-async def figures(request: Request, identity: Identity, view: LiveView) -> FiguresAnswer:
-    """The figures of the day, as of now: of the time zone of the machine on which the station runs."""
-    desk = desk_of(request)
-    now = Timestamp(time.time(), time.monotonic())
-    known = desk.figures(now)
+async def figures_of(desk: OrderService, office: IdentityService, view: StationView) -> FiguresAnswer:
+    """The figures of the day as of now, of a station whose `view` is live."""
+    now = time.time()
+    known = desk.tracker.figures.copied()
+    if known.counted_to is not None:  # it still is as the journal said last
+        known.pass_to(now, time.monotonic())
     jobs = [each.job for each in known.made if each.job is not None]
-    due = await identity.read(lambda connection: orders.due_times(connection, jobs)) if jobs else []
-    in_work = _in_work(desk, known, view)
+    due = await office.read(lambda connection: orders.due_times(connection, jobs)) if jobs else []
+    masters = await desk.work_masters()
+    in_work = _in_work(desk, known, view, {} if masters is None else masters.work_masters)
     return FiguresAnswer(
-        time=now.epoch,
-        day=known.day if known.day is not None else now.epoch,
+        time=now,
+        day=start_of_day(now),
         in_work=in_work,
-        made=_made(known, due, desk.orders, now.epoch),
-        cycle=_cycle(known, in_work),
+        made=_made(known, due, desk.orders, now),
+        cycle=_cycle(desk, known, in_work),
         availability=_availability(known),
     )
 
 
-def _in_work(desk: OrderService, known: DayFigures, view: StationView) -> list[ProductInWork]:
+def _in_work(
+    desk: OrderService, known: DayFigures, view: StationView, masters: Mapping[str, WorkMasterView]
+) -> list[ProductInWork]:
+    expected = desk.expected([each for each in desk.orders if each.is_at_station])
     found = [
-        ProductInWork(job=id_, title=job.title, work_master=job.work_master, began=job.taken, expected_end=None)
+        ProductInWork(
+            job=id_,
+            title=job.title,
+            work_master=job.work_master,
+            began=job.taken,
+            expected_end=expected.get(id_, NOBODY_KNOWS).end,
+        )
         for id_, job in view.jobs.items()
         if not job.state.is_over
     ]
     found += [
-        ProductInWork(job=None, title=desk.title_of(master), work_master=master, began=began, expected_end=None)
-        for master, began in known.open.items()
-        if began is not None
+        ProductInWork(job=None, title=masters[name].title, work_master=name, began=began, expected_end=None)
+        for name, began in known.open.items()
+        if began is not None and name in masters
     ]
     return found
 
@@ -134,11 +139,14 @@ def _made(known: DayFigures, done: Sequence[float], still_open: Sequence[JobOrde
     return MadeToday(count=known.count, planned=planned, by_now=planned - later)
 
 
-def _cycle(known: DayFigures, in_work: Sequence[ProductInWork]) -> CycleFigures | None:
-    """Return how long products take of what is in work, or else was made last."""
-    asked = [each.work_master for each in in_work] or [each.work_master for each in known.made[-1:]] or [*known.cycles]
-    last = known.cycles.get(asked[0]) if asked else None
-    return None if not last else CycleFigures(work_master=asked[0], median=median(last), last=last)
+def _cycle(desk: OrderService, known: DayFigures, in_work: Sequence[ProductInWork]) -> CycleFigures | None:
+    """Return how long products take of what is in work, or else was made last, for an order or freely."""
+    asked: list[ProductInWork | MadeProduct] = [*in_work, *reversed(known.made)]
+    for each in asked[:1]:
+        last = known.cycles.get(each.work_master, []) if each.job is None else desk.times.last_seconds(each.work_master)
+        if last:
+            return CycleFigures(work_master=each.work_master, median=median(last), last=last)
+    return None
 
 
 def _availability(known: DayFigures) -> DayAvailability | None:
