@@ -20,6 +20,7 @@ from support.example_view import example_view
 from support.server import Server
 from support.waiting import until
 
+from .example_answers import WORK_MASTERS
 from .test_job_orders import controller, mes, store
 from .test_looking import Telling
 
@@ -136,6 +137,14 @@ def test_without_orders_the_products_are_counted_where_the_model_tells(mes: http
     assert found["made"]["planned"] is None
     assert (found["cycle"]["median"], found["cycle"]["last"]) == (30.0, [30.0])
     assert [(each["job"], each["began"]) for each in found["in_work"]] == [(None, now - 50)]
+
+
+def test_where_the_model_does_not_tell_what_a_product_is_no_number_is_made_up(
+    mes: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    engine = WORK_MASTERS.work_masters["truck_engine"]
+    monkeypatch.setitem(WORK_MASTERS.work_masters, "truck_engine", engine.model_copy(update={"operations": {}}))
+    until(lambda: figures(mes)["made"]["count"] is None, seconds=20)
 
 
 def test_a_silent_controller_has_no_figures(mes: httpx.Client, controller: Telling) -> None:

@@ -5,6 +5,7 @@
 import { front } from './en-front.ts';
 import { account } from './en/account.ts';
 import { alarms } from './en/alarms.ts';
+import { figures } from './en/figures.ts';
 import { frame } from './en/frame.ts';
 import { history } from './en/history.ts';
 import { mimic } from './en/mimic.ts';
@@ -13,4 +14,4 @@ import { orders } from './en/orders.ts';
 import { restart } from './en/restart.ts';
 import { state } from './en/state.ts';
 
-export const station = { ...front, account, alarms, frame, history, mimic, operate, orders, restart, state };
+export const station = { ...front, account, alarms, figures, frame, history, mimic, operate, orders, restart, state };

@@ -2,6 +2,7 @@
 import { front } from './sv-front.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
+import { figures } from './sv/figures.ts';
 import { frame } from './sv/frame.ts';
 import refusals from './sv/front.json';
 import { history } from './sv/history.ts';
@@ -13,4 +14,4 @@ import { restart } from './sv/restart.ts';
 import { state } from './sv/state.ts';
 import type { OfStation } from './text.svelte.ts';
 
-export const station: OfStation = { ...front, account, alarms, frame, history, mimic, operate, orders, restart, state, messages: { ...refusals, ...messages } };
+export const station: OfStation = { ...front, account, alarms, figures, frame, history, mimic, operate, orders, restart, state, messages: { ...refusals, ...messages } };

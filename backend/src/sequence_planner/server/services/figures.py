@@ -11,7 +11,7 @@ from sequence_planner.controller.views.station import StationView
 from sequence_planner.core.clock import iso
 from sequence_planner.mes import orders
 from sequence_planner.mes.expected import NOBODY_KNOWS
-from sequence_planner.mes.figures import DayFigures, MadeProduct, end_of_day, start_of_day
+from sequence_planner.mes.figures import DayFigures, MadeProduct, end_of_day, last_operation, start_of_day
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.server.dependencies import AnswerModel
 from sequence_planner.server.services.identity import IdentityService
@@ -34,10 +34,10 @@ class MadeToday(AnswerModel):
     """How many products were completed today.
 
     Of `planned` ones, with those whose orders are due today or are late; `by_now` are due by now. Both are null where
-    no order is due.
+    no order is due. `count` is null where nobody knows, as the model does not tell when a product is done.
     """
 
-    count: int
+    count: int | None
     planned: int | None
     by_now: int | None
 
@@ -94,12 +94,14 @@ async def figures_of(desk: OrderService, office: IdentityService, view: StationV
     jobs = [each.job for each in known.made if each.job is not None]
     due = await office.read(lambda connection: orders.due_times(connection, jobs)) if jobs else []
     masters = await desk.work_masters()
-    in_work = _in_work(desk, known, view, {} if masters is None else masters.work_masters)
+    products = {} if masters is None else masters.work_masters
+    in_work = _in_work(desk, known, view, products)
+    tells = known.count > 0 or view.by_order or any(last_operation(each) for each in products.values())
     return FiguresAnswer(
         time=now,
         day=start_of_day(now),
         in_work=in_work,
-        made=_made(known, due, desk.orders, now),
+        made=_made(known, due, desk.orders, now) if tells else MadeToday(count=None, planned=None, by_now=None),
         cycle=_cycle(desk, known, in_work),
         availability=_availability(known),
     )

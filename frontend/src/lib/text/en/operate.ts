@@ -4,18 +4,6 @@ const ticks = (n: number): string => (n === 1 ? '1 tick' : `${n} ticks`);
 
 export const operate = {
 	title: 'Operate',
-	glance: {
-		title: 'At a glance',
-		mode: 'Mode',
-		alarms: 'Alarms',
-		next: 'Next start',
-		task: 'For a person',
-		noTask: 'Nothing to do',
-		noTaskKnown: 'Nothing when last heard',
-		noAlarm: 'None',
-		alarmsOver: (n: number): string => `${n} over`,
-		nothing: 'Nothing'
-	},
 	plan: {
 		title: 'Plan',
 		asTable: 'as table',

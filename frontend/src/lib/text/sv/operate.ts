@@ -5,18 +5,6 @@ const runs = (running: boolean): string => (running ? ', som pågår' : '');
 
 export const operate: Text['operate'] = {
 	title: 'Drift',
-	glance: {
-		title: 'I korthet',
-		mode: 'Läge',
-		alarms: 'Larm',
-		next: 'Nästa start',
-		task: 'För en person',
-		noTask: 'Inget att göra',
-		noTaskKnown: 'Inget när stationen senast hördes',
-		noAlarm: 'Inga',
-		alarmsOver: (n) => `${n} över`,
-		nothing: 'Inget'
-	},
 	plan: {
 		title: 'Plan',
 		asTable: 'som tabell',

@@ -1,0 +1,42 @@
+import type { Text } from '../text.svelte.ts';
+
+export const figures: Text['figures'] = {
+	title: 'Dagens siffror',
+	unknown: 'Ännu inte känt',
+	inWork: 'I arbete',
+	orderOf: (n, all) => `I arbete · order ${n} av ${all}`,
+	more: (n) => `+${n}`,
+	noOrder: 'Ingen order',
+	noProduct: 'Ingen produkt',
+	ready: (time) => `klar ${time}`,
+	since: (time) => `sedan ${time}`,
+	made: 'Gjort i dag',
+	of: (n) => `av ${n}`,
+	madeOf: (count, planned, due) => `${count} av ${planned} är gjorda, ${due} skulle vara klara nu`,
+	cycle: 'Cykeltid',
+	cycleMedian: (median) => `Cykeltid · median ${median}`,
+	soFar: 'hittills',
+	last: 'den senaste',
+	trend: (n) => (n === 1 ? 'Den senaste produktens cykeltid' : `De ${n} senaste produkternas cykeltider, den senaste längst till höger`),
+	available: 'Tillgänglig i dag',
+	availableTrend: (since) => `Tillgänglighet sedan ${since}`,
+	wall: {
+		picture: 'Det som görs',
+		done: (n, all) => `${n} av ${all} klara`,
+		onSchedule: 'Enligt plan. Strecket är där det ska vara.',
+		behind: (n) => `${n} efter. Strecket är där det ska vara.`,
+		noneDue: 'Ingen order ska bli klar i dag',
+		freely: 'Arbetar utan order',
+		untold: 'Modellen säger inte när en produkt är klar',
+		thisProduct: 'Cykeltid, den här produkten',
+		lastProduct: 'Cykeltid, den senaste produkten',
+		median: (time) => `Strecket är medianen, ${time}`,
+		longer: (time) => `Längre än medianen, ${time}`,
+		firstOnes: 'Känt först när en är färdig',
+		then: (what) => `sedan ${what}`,
+		next: 'Sedan:',
+		notLive: 'Inte direkt',
+		fullScreen: 'Helskärm',
+		leave: 'Lämna helskärm'
+	}
+};
