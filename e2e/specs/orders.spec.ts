@@ -33,17 +33,21 @@ async function doTasks(page: Page, until: () => Promise<boolean>): Promise<void>
 
 test('an order is stored, waits and says why, is worked, interrupted and resumed, and what was made is told', async ({ browse, complaints }) => {
 	const eva = await browse(EVA, '/orders');
-	const row = (title: string, page = eva) => page.locator('[data-order]').filter({ has: page.locator('th', { hasText: title }) });
+	const row = (title: string, page = eva) => page.locator('[data-order]').filter({ has: page.getByRole('button', { name: title, exact: true }) });
 	const dialog = eva.getByRole('dialog');
-	const form = eva.getByRole('region', { name: 'A new order' });
+	const form = eva.getByRole('dialog', { name: 'New order' });
+	const newOrder = (): Promise<void> => eva.getByRole('button', { name: 'New order' }).click();
 	const store = async (description: string, priority: string): Promise<void> => {
+		if (!(await form.isVisible())) await newOrder();
 		await form.getByLabel('Description').fill(description);
 		await form.getByLabel('Priority').fill(priority);
 		await form.getByRole('button', { name: 'Store' }).click();
 		await expect(row(description)).toBeVisible();
+		await expect(form).toHaveCount(0);
 	};
 
 	await test.step('what cannot be is not sent, and what was typed stays', async () => {
+		await newOrder();
 		await expect(form.getByLabel('Work master')).toHaveValue('truck_engine');
 		await form.getByLabel('Description').fill('Engine 4711');
 		await form.getByLabel('Priority').fill('-3');
@@ -59,15 +63,16 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await expect(row('Engine 4711')).toContainText('production is not started');
 		await store('Engine 4712', '5');
 		await expect(eva.locator('[data-order]').first()).toContainText('Engine 4712');
-		await eva.getByRole('button', { name: 'Work by order' }).click();
+		await eva.getByRole('button', { name: 'By order' }).click();
 		await dialog.getByLabel('Reason').fill('The MES orders from now on');
 		await expect(dialog).toContainText('Take control first');
 		await dialog.getByRole('button', { name: 'Cancel' }).click();
+		await expect(eva.getByRole('button', { name: 'Freely' }), 'nothing was changed').toHaveAttribute('aria-pressed', 'true');
 		await takeControl(eva);
-		await eva.getByRole('button', { name: 'Work by order' }).click();
+		await eva.getByRole('button', { name: 'By order' }).click();
 		await dialog.getByLabel('Reason').fill('The MES orders from now on');
 		await dialog.getByRole('button', { name: 'Work by order' }).click();
-		await expect(eva.getByTestId('by-order')).toContainText('By order');
+		await expect(eva.getByRole('button', { name: 'By order' })).toHaveAttribute('aria-pressed', 'true');
 		await examine(eva, 'orders-waiting');
 	});
 
@@ -95,22 +100,30 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 	await test.step('a viewer sees the same, and nothing to press', async () => {
 		const vera = await browse(VERA, '/orders');
 		await expect(row('Engine 4712', vera)).toHaveAttribute('data-state', 'Running');
-		await expect(vera.getByRole('button', { name: /Engine 4712/ })).toHaveCount(0);
-		await expect(vera.getByRole('region', { name: 'A new order' })).toHaveCount(0);
+		await expect(vera.getByRole('button', { name: /: Engine 4712/ })).toHaveCount(0);
+		await expect(vera.getByRole('button', { name: /More for/ })).toHaveCount(0);
+		await expect(vera.getByRole('button', { name: 'New order' })).toHaveCount(0);
+		await expect(vera.getByTestId('by-order')).toHaveText('By order');
 	});
 
 	await test.step('it is worked to its end, and what was made is told', async () => {
+		await row('Engine 4711').getByRole('button', { name: 'More for Engine 4711' }).click();
 		await row('Engine 4711').getByRole('button', { name: 'Withdraw' }).click();
 		await dialog.getByRole('button', { name: 'Withdraw' }).click();
 		await expect(row('Engine 4711')).toHaveCount(0);
 		const response = eva.locator('[data-response]').filter({ hasText: 'Engine 4712' });
 		await doTasks(eva, async () => (await response.count()) > 0);
 		await expect(response).toContainText('completed');
-		await response.getByText('Engine 4712: completed').click();
-		await expect(response).toContainText('7 of 7 operations completed');
-		await expect(response.locator('tbody tr')).toHaveCount(7);
+		await expect(eva.getByRole('region', { name: 'Made today' }).getByRole('heading')).toContainText('1');
+		await store('Engine 4713', '0');
+		await expect(row('Engine 4713'), 'it is known by now how long one takes').toContainText(/ready \d/);
+		await expect(eva.getByTestId('order-line').getByText(/^Engine 4712, made from/)).toBeAttached();
+		await response.getByRole('button', { name: 'Engine 4712' }).click();
+		const told = eva.getByRole('dialog', { name: 'Engine 4712' });
+		await expect(told).toContainText('7 of 7 operations completed');
+		await expect(told.locator('tbody tr')).toHaveCount(7);
 		await examine(eva, 'orders-made');
-		await response.getByRole('button', { name: 'Clear' }).click();
+		await told.getByRole('button', { name: 'Clear' }).click();
 		await dialog.getByRole('button', { name: 'Clear' }).click();
 		await expect(response).toHaveCount(0);
 	});
@@ -144,13 +157,15 @@ test('another system is told of orders: made by an administrator, signed, seen t
 		await ada.getByRole('button', { name: 'I have kept it' }).click();
 
 		const eva = await browse(EVA, '/orders');
-		await eva.getByRole('region', { name: 'A new order' }).getByLabel('Description').fill('Told');
+		await eva.getByRole('button', { name: 'New order' }).click();
+		await eva.getByRole('dialog', { name: 'New order' }).getByLabel('Description').fill('Told');
 		await eva.getByRole('checkbox', { name: 'It may start at once' }).uncheck();
 		await eva.getByRole('button', { name: 'Store' }).click();
 		await expect.poll(() => heard.map(({ kind }) => kind), { timeout: 15_000 }).toContain('job-order-stored');
 		expect(heard[0]?.signature).toMatch(/^v1,/);
 		await expect(ada.locator('[data-webhook="MES"]')).toContainText('all is delivered');
-		await eva.getByRole('button', { name: 'Withdraw: Told' }).click();
+		await eva.getByRole('button', { name: 'More for Told' }).click();
+		await eva.getByRole('button', { name: 'Withdraw order: Told' }).click();
 		await eva.getByRole('dialog').getByRole('button', { name: 'Withdraw' }).click();
 
 		await ada.getByRole('button', { name: 'Delete MES' }).click();

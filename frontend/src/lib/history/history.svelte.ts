@@ -5,7 +5,7 @@ import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { actsPage } from './records.svelte.ts';
-import { USUAL, showing, within, type Window } from './window.ts';
+import { USUAL, showing, within, type Window } from '#lib/axis/window.ts';
 
 /** Milliseconds for a look back: the first one also prepares the station. */
 const PATIENCE = 70_000;

@@ -5,7 +5,7 @@ import { actText, actorText, subjectText } from '#lib/journal/wording.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import type { Names } from './names.ts';
 import { modeText, partOf, planWords, textsOf, told } from './told.ts';
-import { shareOf, type Window } from './window.ts';
+import { shareOf, type Window } from '#lib/axis/window.ts';
 
 /** Something that lasted. Without a number it began before the window; the end is open where it goes on. */
 export interface Bar {

@@ -1,7 +1,8 @@
 import { describe, expect, test } from 'vitest';
-import type { JobOrder, OrderOfWork } from '#lib/contract.ts';
+import type { JobOrder, JobResponse, OrderOfWork } from '#lib/contract.ts';
 import { view as viewOf } from '#lib/testing/view.ts';
-import { inOrder, lateOf, progressOf, secondsOf, titleOf } from './orders.ts';
+import { lineOf } from './line.ts';
+import { actsOf, inOrder, isOfDay, lastEnd, lateBy, progressOf, secondsOf, standing, titleOf } from './orders.ts';
 
 function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 	return {
@@ -26,6 +27,10 @@ function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 		began_at: null,
 		ended: null,
 		ended_at: null,
+		expected_start: null,
+		expected_start_at: null,
+		expected_end: null,
+		expected_end_at: null,
 		waits_for: [],
 		waits_for_messages: [],
 		sentence: null,
@@ -71,10 +76,81 @@ test('an order without a description is called by its id', () => {
 	expect(titleOf(order('e-1', { description: 'Engine 1' }))).toBe('Engine 1');
 });
 
-test('how late an order is expected to be', () => {
-	expect(lateOf(FOUND, 'c')).toBe(12);
-	expect(lateOf(FOUND, 'x')).toBe(0);
-	expect(lateOf(null, 'c')).toBe(0);
+describe('how late an order is', () => {
+	test('is told by when it is expected to be ready', () => {
+		expect(lateBy(order('a', { due: 100, expected_end: 160 }), 50)).toBe(60);
+		expect(lateBy(order('a', { due: 200, expected_end: 160 }), 50)).toBe(0);
+		expect(lateBy(order('a', { expected_end: 160 }), 50)).toBe(0);
+	});
+
+	test('is at least how long it should have been ready', () => {
+		expect(lateBy(order('a', { due: 100 }), 130)).toBe(30);
+		expect(lateBy(order('a', { due: 100, expected_end: 90 }), 130)).toBe(30);
+		expect(lateBy(order('a', { due: 100 }), 50)).toBe(0);
+	});
+});
+
+test('when all are ready is said only where it is known of each', () => {
+	expect(lastEnd([order('a', { expected_end: 10 }), order('b', { expected_end: 30 })])).toBe(30);
+	expect(lastEnd([order('a', { expected_end: 10 }), order('b')])).toBeNull();
+	expect(lastEnd([])).toBeNull();
+});
+
+test('each order stands in the column of its state', () => {
+	const orders = [order('a', { state: 'Running' }), order('b', { state: 'Interrupted' }), order('c'), order('d', { state: 'NotAllowedToStart' })];
+	const ids = (stand: 'stored' | 'waiting' | 'worked'): string => standing(orders, stand).map(({ id }) => id).join(' ');
+	expect([ids('stored'), ids('waiting'), ids('worked')]).toEqual(['d', 'c', 'a b']);
+});
+
+test('all that an order allows can be done, one act at once', () => {
+	expect(actsOf({ allowed: ['Stop', 'Pause', 'Abort'] })).toEqual({ first: 'Pause', rest: ['Stop', 'Abort'] });
+	expect(actsOf({ allowed: ['RevokeStart', 'Abort', 'Cancel'] })).toEqual({ first: null, rest: ['RevokeStart', 'Abort', 'Cancel'] });
+});
+
+test('what was made today was made since midnight here', () => {
+	const noon = new Date(2026, 10, 22, 12).getTime() / 1000;
+	expect(isOfDay(noon - 11.9 * 3600, noon)).toBe(true);
+	expect(isOfDay(noon - 12.1 * 3600, noon)).toBe(false);
+});
+
+describe('the order of work over time', () => {
+	const made: JobResponse = {
+		number: 1,
+		job_order: 'm',
+		work_master: 'truck_engine',
+		description: 'Made',
+		outcome: 'completed',
+		began: 100,
+		began_at: null,
+		ended: 200,
+		ended_at: '',
+		operations: [],
+		abilities: [],
+		deviations: [],
+		deviations_left_out: 0,
+		corrections: []
+	};
+
+	test('has what was made, what is in work and what is expected, by work master', () => {
+		const orders = [
+			order('run', { state: 'Running', began: 210, expected_end: 400 }),
+			order('next', { expected_start: 400, expected_end: 500, due: 450 }),
+			order('then', { expected_start: 500, expected_end: 600, due: 900 }),
+			order('pump', { work_master: 'pump', expected_start: 300, expected_end: 350 })
+		];
+		const { lanes, due, unknown } = lineOf(orders, [made, { ...made, job_order: 'never', began: null }], 300);
+		const bars = [...lanes].map(([name, all]) => `${name}: ${all.map(({ id, tone, from, to }) => `${id} ${tone} ${from}-${to}`).join(', ')}`);
+		expect(bars).toEqual(['truck_engine: m past 100-200, run run 210-400, next next 400-500, then plan 500-600', 'pump: pump plan 300-350']);
+		expect(due.map(({ id, at, late }) => `${id} ${at} ${late}`)).toEqual(['next 450 true', 'then 900 false']);
+		expect(unknown).toBe(0);
+	});
+
+	test('draws nothing of which nobody knows', () => {
+		const orders = [order('run', { state: 'Running', began: 210 }), order('a'), order('b', { expected_start: 900 }), order('c', { state: 'NotAllowedToStart' })];
+		const { lanes, unknown } = lineOf(orders, [], 300);
+		expect(lanes.get('truck_engine')).toMatchObject([{ id: 'run', from: 210, to: 300, open: true }]);
+		expect(unknown).toBe(2);
+	});
 });
 
 test('how far an order has come is told by its job', () => {

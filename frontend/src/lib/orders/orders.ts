@@ -1,8 +1,19 @@
-/** Job orders as they are shown: in which order, what they are called, and what there is to ask of them. */
-import type { JobOrder, OrderOfWork, StationView } from '#lib/contract.ts';
+/** Job orders as they are shown: in which order, what they are called, how far they are and how late they are. */
+import type { JobOrder, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
 
 /** The states of an order that is not over, those first that the station works on. */
 export const OPEN = ['Running', 'Interrupted', 'AllowedToStart', 'NotAllowedToStart'] as const;
+
+/** Where orders stand: a column of the board each. */
+export const STANDS = {
+	stored: ['NotAllowedToStart'],
+	waiting: ['AllowedToStart'],
+	worked: ['Running', 'Interrupted']
+} as const satisfies Readonly<Record<string, readonly JobOrder['state'][]>>;
+export type Stand = keyof typeof STANDS;
+
+/** What is most likely wanted of an order; all else that it allows is in its menu. */
+const FIRST: readonly OrderCommand[] = ['Start', 'Resume', 'Pause'];
 
 /** What an order is called. */
 export function titleOf({ description, id }: Pick<JobOrder, 'description' | 'id'>): string {
@@ -34,6 +45,17 @@ export function inOrder(orders: readonly JobOrder[], found: OrderOfWork | null):
 	});
 }
 
+/** Those of a column, in their order. */
+export function standing(orders: readonly JobOrder[], stand: Stand): JobOrder[] {
+	return orders.filter(({ state }) => STANDS[stand].some((each) => each === state));
+}
+
+/** The act that stands on the card, and those in its menu. */
+export function actsOf({ allowed }: Pick<JobOrder, 'allowed'>): { first: OrderCommand | null; rest: readonly OrderCommand[] } {
+	const first = FIRST.find((each) => allowed.includes(each)) ?? null;
+	return { first, rest: allowed.filter((each) => each !== first) };
+}
+
 export interface Progress {
 	readonly done: number;
 	readonly all: number;
@@ -53,9 +75,20 @@ export function progressOf(view: StationView | null, id: string): Progress | nul
 	};
 }
 
-/** Seconds by which an order is expected to be late; 0 where it is not, or nobody knows. */
-export function lateOf(found: OrderOfWork | null, id: string): number {
-	return found?.job_orders.find((each) => each.id === id)?.late ?? 0;
+/** Seconds by which an order is late, or expected to be; 0 where it is not, or nobody knows. */
+export function lateBy({ due, expected_end }: Pick<JobOrder, 'due' | 'expected_end'>, now: number): number {
+	return due === null ? 0 : Math.max(0, Math.max(expected_end ?? now, now) - due);
+}
+
+/** When all of them are expected to be ready; null where that is not known of each, or there are none. */
+export function lastEnd(orders: readonly Pick<JobOrder, 'expected_end'>[]): number | null {
+	const ends = orders.map(({ expected_end }) => expected_end);
+	return ends.length > 0 && ends.every((each) => each !== null) ? Math.max(...ends) : null;
+}
+
+/** Whether something was on the day of `now`, on this device. */
+export function isOfDay(moment: number, now: number): boolean {
+	return new Date(moment * 1000).toDateString() === new Date(now * 1000).toDateString();
 }
 
 /** The seconds since the epoch that a field for local date and time means; null where it is empty. */

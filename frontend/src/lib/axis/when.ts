@@ -1,5 +1,5 @@
 /** How moments of the past are said in the language of the page, in this device's time zone. */
-import { stepOf, ticksOf } from '#lib/axis/ticks.ts';
+import { stepOf, ticksOf } from './ticks.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import type { Window } from './window.ts';
 
