@@ -10,7 +10,7 @@ async function openRestart(operate: Page): Promise<Page> {
 	const page = await operate.context().newPage();
 	page.setDefaultTimeout(15_000); // what cannot be pressed shall not use up the time of the others
 	await page.goto(new URL('/restart', operate.url()).href);
-	await expect(page.getByTestId('next-act')).toBeVisible();
+	await expect(page.getByTestId('next-act')).toBeAttached();
 	return page;
 }
 
@@ -36,16 +36,19 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 	});
 
 	await test.step('in restart mode operations wait, and there is no way on but out of it', async () => {
+		// Held, it could go on as it is; whoever wants to look first enters restart mode all the same.
+		await expect(operate.getByTestId('next-act')).toHaveAttribute('data-next', 'continue');
 		await act('Enter restart mode').click();
-		await operate.getByRole('dialog').getByLabel('Reason').fill('to see what it is');
-		await operate.getByRole('dialog').getByRole('button', { name: 'Enter restart mode' }).click();
 		await expect(mode).toContainText('Restart');
-		await expect(act('Continue')).toHaveAttribute('aria-disabled', 'true');
 		await expect(operate.getByTestId('strip').getByRole('button', { name: 'Continue' })).toBeHidden();
+		await expect(operate.getByTestId('next-act')).toHaveAttribute('data-next', 'leave');
+		await expect(act('Continue')).toHaveCount(0);
+		await main.getByRole('button', { name: /Choose a way back/ }).click();
 		await expect(operate.getByTestId('offers')).toContainText('Go on as it is');
 		await acknowledge(watch);
 		await operate.waitForTimeout(2000);
-		await expect(operate.getByTestId('moves')).toContainText('Nothing');
+		await main.getByRole('button', { name: /Understand/ }).click();
+		await expect(operate.getByTestId('moves')).toContainText('All devices stand still');
 		await picture(operate, 'restart');
 		await operate.getByRole('link', { name: 'Operate' }).click();
 		await expect(operate.locator('[data-status="running"]')).toHaveCount(0);
@@ -54,7 +57,7 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 		await notice.getByRole('link', { name: 'To Restart' }).click();
 	});
 
-	await test.step('leaving it pauses', async () => {
+	await test.step('leaving it alone pauses', async () => {
 		await act('Leave restart mode').click();
 		await expect(mode).toContainText('Paused');
 		await operate.waitForTimeout(1000);
@@ -64,6 +67,7 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 	await test.step('and Continue goes on', async () => {
 		await act('Continue').click();
 		await expect(mode).toContainText('Automatic');
+		await expect(main).toContainText('The station works by itself');
 		await operate.getByRole('link', { name: 'Operate' }).click();
 		await expect(notice).toBeHidden();
 		await expect.poll(() => tightenings(operate), { timeout: 60_000 }).toBe(before + 1);
@@ -81,47 +85,50 @@ test('an operation is reset by a plan that is looked at first, and refused once 
 	await operate.getByRole('button', { name: 'Hold', exact: true }).click();
 	await operate.goto(`${station.url}/restart`);
 	const main = operate.locator('main');
-	const dialog = operate.getByRole('dialog');
+	const byHand = operate.getByRole('dialog', { name: 'None of these fits' });
+	const plan = byHand.getByTestId('way-plan');
 	await main.getByRole('button', { name: 'Enter restart mode' }).click();
-	await dialog.getByLabel('Reason').fill('the scene');
-	await dialog.getByRole('button', { name: 'Enter restart mode' }).click();
 	await expect(operate.getByTestId('mode')).toContainText('Restart');
 
-	await test.step('what is found lists each start, and is taken by a second act with a reason', async () => {
-		await main.getByText('Reset an operation ·').click();
-		await main.getByLabel('Operation').selectOption({ label: 'Prepare the planning scene' });
-		await main.getByRole('button', { name: 'Find a plan' }).first().click();
-		await main.getByRole('button', { name: 'Take… Reset Prepare the planning scene' }).click();
-		await expect(dialog.locator('[data-start]')).toHaveCount(1);
-		await dialog.getByLabel('Reason').fill('to have it anew');
-		await expect(dialog.getByRole('button', { name: 'Take it' })).toHaveAttribute('aria-disabled', 'true');
-		await dialog.getByRole('checkbox').check();
+	await test.step('what is found lists each start, and is taken once that was read', async () => {
+		await main.getByRole('button', { name: /Choose a way back/ }).click();
+		await main.getByRole('button', { name: 'None of these fits…' }).click();
+		await byHand.getByLabel('Operation').selectOption({ label: 'Prepare the planning scene' });
+		await byHand.getByRole('button', { name: 'Find a plan' }).first().click();
+		await expect(plan.locator('[data-start]')).toHaveCount(1);
+		await expect(plan.getByRole('button', { name: 'Reset Prepare the planning scene' })).toHaveAttribute('aria-disabled', 'true');
+		await plan.getByLabel('Note for the journal').fill('to have it anew');
+		await plan.getByRole('checkbox').check();
 	});
 
 	await test.step('while somebody reads, the station moves: it says so, and leads back to a fresh plan', async () => {
 		await acknowledge(watch);
-		await expect(dialog).toContainText('The station has moved since this was offered');
+		await expect(plan).toContainText('The station has changed');
 		await picture(operate, 'restart-moved');
-		await dialog.getByRole('button', { name: 'Back to fresh offers' }).click();
-		await main.getByRole('button', { name: 'Take… Reset Prepare the planning scene' }).click();
-		await dialog.getByRole('checkbox').check();
-		await dialog.getByLabel('Reason').fill('to have it anew');
-		await dialog.getByRole('button', { name: 'Take it' }).click();
+		await plan.getByRole('button', { name: 'Check again' }).click();
+		await plan.getByRole('checkbox').check();
+		await plan.getByRole('button', { name: 'Reset Prepare the planning scene' }).click();
+		await byHand.getByRole('button', { name: 'Close' }).click();
+		await main.getByRole('button', { name: /Understand/ }).click();
 		await expect(operate.getByTestId('last-errand')).toContainText('Reset Prepare the planning scene');
 		await expect(operate.getByTestId('last-errand')).toHaveAttribute('data-done', 'true');
 		await expect(operate.getByTestId('mode')).toContainText('Restart');
 	});
 
 	await test.step('a predicate that means nothing is marked where it does not', async () => {
-		await main.getByLabel('Predicate').fill('robot.pose == hom');
-		await main.getByRole('button', { name: 'Find a plan' }).last().click();
+		await main.getByRole('button', { name: /Choose a way back/ }).click();
+		await main.getByRole('button', { name: 'None of these fits…' }).click();
+		await byHand.getByLabel('Predicate').fill('robot.pose == hom');
+		await byHand.getByRole('button', { name: 'Find a plan' }).last().click();
 		await expect(operate.getByTestId('place').locator('mark')).toHaveText('hom');
+		await examine(operate, 'restart-by-hand');
+		await byHand.getByRole('button', { name: 'Close' }).click();
 	});
 
 	await examine(operate, 'restart');
 	await operate.setViewportSize({ width: 1440, height: 900 });
-	await main.getByRole('button', { name: 'Leave restart mode' }).click();
-	await main.getByRole('button', { name: 'Continue', exact: true }).click();
+	await main.getByRole('button', { name: /Go on/ }).click();
+	await main.getByRole('button', { name: 'Leave restart mode and continue' }).click();
 	expect(pair).toContain('place_bolt_pair');
 	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
 });
@@ -164,7 +171,8 @@ async function turnsSlowly(at: Place): Promise<void> {
 
 /** Work goes on until an alarm comes. */
 async function alarms({ restart, watch }: Place): Promise<void> {
-	await served(watch, async () => (await restart.locator(LASTING).count()) > 0, 40);
+	const next = restart.getByTestId('next-act');
+	await served(watch, async () => (await next.getAttribute('data-next')) !== 'nothing', 40);
 }
 
 /** A bolt pair is placed, and nobody is wanted for a restart. */
@@ -340,7 +348,10 @@ test.describe('a station of its own', () => {
 				try {
 					await strike(at);
 					const said = restart.locator(LASTING).filter(alarm === null ? {} : { hasText: alarm });
-					if (alarm !== null) await expect(said.first()).toBeVisible();
+					if (alarm !== null) {
+						await restart.getByRole('button', { name: /Understand/ }).click();
+						await expect(said.first()).toBeVisible();
+					}
 					await expect(operate.getByTestId('restart-notice')).toBeVisible();
 					await back.toWork();
 					expect(back.acts).toEqual(expect.arrayContaining(asks));

@@ -163,7 +163,7 @@ for (const plant of PLANTS)
 				restart.setDefaultTimeout(15_000);
 				const judged = new Judged(restart);
 				await restart.goto(new URL('/restart', operate.url()).href);
-				await expect(restart.getByTestId('next-act')).toBeVisible();
+				await expect(restart.getByTestId('next-act')).toBeAttached();
 				const at: Place = { station, operate, watch, restart, plant };
 				await strike(at);
 				// What nobody need do anything about is over by itself.

@@ -51,16 +51,16 @@ export class Back {
 
 	/** Does what comes next; false where there is nothing to do but wait. */
 	async #do(next: string): Promise<boolean> {
+		// Whoever has looked at another step comes back to the one that is next.
+		const shut = this.restart.locator('[data-restart-step][aria-current="step"][aria-expanded="false"]');
+		if ((await shut.count()) > 0) await shut.click({ timeout: PRESS }).catch(() => undefined);
 		switch (next) {
-			case 'control':
-				await this.restart.getByRole('button', { name: 'Take control' }).click();
-				return true;
 			case 'enter':
-				return this.#withReason('Enter restart mode');
+				return this.#pressActs('enter');
 			case 'answer':
-				return this.#answer();
+				return (await this.#pressActs('control')) || this.#answer();
 			case 'decide':
-				return this.#decide();
+				return (await this.#pressActs('control')) || this.#decide();
 			case 'look':
 			case 'physical':
 				if (this.#mended) return false;
@@ -74,11 +74,9 @@ export class Back {
 			case 'check':
 				return this.#take();
 			case 'leave':
-				return this.#press('Leave restart mode');
 			case 'start':
-				return this.#press('Start production');
 			case 'continue':
-				return this.#press('Continue');
+				return this.#pressActs(next === 'start' ? 'start' : 'go');
 			default:
 				return false;
 		}
@@ -92,15 +90,12 @@ export class Back {
 		return (await this.#dialog.count()) === 0;
 	}
 
-	/** An act of the page itself, not the one of the header by the same name. */
-	async #press(name: string): Promise<boolean> {
-		await this.restart.locator('main').getByRole('button', { name, exact: true }).click();
+	/** The one button that has such an act among those that it does; false where there is none, or it cannot be pressed now. */
+	async #pressActs(act: string): Promise<boolean> {
+		const button = this.restart.locator(`main button.wanted[data-acts~="${act}"]`);
+		if ((await button.count()) === 0) return false;
+		await button.first().click({ timeout: PRESS }).catch(() => undefined);
 		return true;
-	}
-
-	async #withReason(name: string): Promise<boolean> {
-		await this.#press(name);
-		return this.#send(name);
 	}
 
 	/** Where the station has moved meanwhile, what there is to see is looked at again first. */
@@ -151,9 +146,9 @@ export class Back {
 	 * nothing is taken.
 	 */
 	async #take(): Promise<boolean> {
-		const offers = this.restart.locator('[data-offer]').filter({ has: this.restart.getByRole('button', { name: /^Take…/ }) });
+		const offers = this.restart.locator('main [data-offer]');
 		if ((await offers.count()) === 0) return false;
-		const plain = offers.filter({ hasNotText: 'Only if it is so' });
+		const plain = offers.filter({ hasNotText: /\d+ corrections?:/ });
 		const corrects = (await plain.count()) === 0;
 		if (corrects && !this.#mended) {
 			this.#mended = true;
@@ -161,15 +156,20 @@ export class Back {
 			return false;
 		}
 		const chosen = (corrects ? offers : plain).first();
-		await chosen.getByRole('button', { name: /^Take…/ }).click();
-		for (const box of await this.#dialog.getByRole('checkbox').all()) await box.check();
-		await this.#dialog.getByLabel('Reason').fill(REASON);
-		const fresh = this.#dialog.getByRole('button', { name: 'Back to fresh offers' });
-		const take = this.#dialog.getByRole('button', { name: 'Take it' });
+		await chosen.getByRole('radio').check({ timeout: PRESS }).catch(() => undefined);
+		const plan = this.restart.getByTestId('way-plan');
+		const take = plan.getByTestId('take').locator('[data-acts]');
+		const fresh = plan.getByRole('button', { name: 'Check again' });
+		const gone = async (): Promise<boolean> => (await this.restart.locator('main [data-offer]').count()) === 0;
+		try {
+			for (const box of await plan.getByRole('checkbox').all()) await box.check({ timeout: PRESS });
+			if (!(await fresh.isVisible())) await take.click({ timeout: PRESS });
+		} catch {
+			return false; // what was offered is another by now
+		}
 		// It may move in the very moment in which it is pressed.
-		if (!(await fresh.isVisible())) await take.click({ timeout: PRESS }).catch(() => undefined);
-		await expect.poll(async () => (await this.#isClosed()) || (await fresh.isVisible()), { timeout: 4 * PRESS }).toBe(true);
-		if (await this.#isClosed()) return true;
+		await expect.poll(async () => (await gone()) || (await fresh.isVisible()), { timeout: 4 * PRESS }).toBe(true);
+		if (await gone()) return true;
 		await fresh.click();
 		return false;
 	}

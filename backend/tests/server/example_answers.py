@@ -91,7 +91,9 @@ OFFER = OfferView(
     online=[],
     in_service=[],
     assumed=[],
-    corrections=[ValueChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed")],
+    corrections=[
+        ValueChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed", so=as_it_was("pair 1 is placed"))
+    ],
     errand=PLAN,
     ends="robot.pose == home",
     ends_message=as_it_was("robot.pose == home"),

@@ -2,7 +2,7 @@ import { describe, expect, test } from 'vitest';
 import type { AdviceAnswer, StationView, WayOffer } from '#lib/contract.ts';
 import { offer, preview } from '#lib/testing/offer.ts';
 import { alarm, view } from '#lib/testing/view.ts';
-import { nextAct, type Next, type Standing } from './next.ts';
+import { nextAct, stepOf, type Next, type Standing } from './next.ts';
 
 const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [], because_messages: [] };
 const UNDECIDED = { 'robot.go': { value: true, reacts: [], reacts_messages: [], quiet: [false], unsafe: [] } };
@@ -17,16 +17,15 @@ function advice(...offers: WayOffer[]): AdviceAnswer {
 }
 
 function next(over: Partial<StationView>, answer: AdviceAnswer | null = null, who: Partial<Standing> = {}): Next {
-	return nextAct(view(over), { live: true, acts: true, mine: true, advice: answer, ...who });
+	return nextAct(view(over), { live: true, acts: true, advice: answer, ...who });
 }
 
 describe('what a person does next', () => {
 	test('is nothing while the station works by itself', () => expect(next({})).toBe('nothing'));
 
-	test('waits for a live view, a role, and control', () => {
+	test('waits for a live view and a role', () => {
 		expect(next({ mode: 'hold' }, null, { live: false })).toBe('live');
 		expect(next({ mode: 'hold' }, null, { acts: false })).toBe('viewer');
-		expect(next({ mode: 'hold' }, null, { mine: false })).toBe('control');
 	});
 
 	test('after a start: decide, answer, then start production', () => {
@@ -71,7 +70,7 @@ describe('what a person does next', () => {
 	});
 
 	test('is to look, where all that is left is said and not done', () => {
-		const corrections = [{ name: 'b', now: 'placed', then: 'empty' }];
+		const corrections = [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } }];
 		expect(next({ mode: 'restart' }, advice(offer({ kind: 'correction', corrections })))).toBe('check');
 		const tight = offer({ kind: 'correction', corrections, claims: ['tighten'], only_if_checked: true });
 		expect(next({ mode: 'restart' }, advice(tight))).toBe('check');
@@ -81,5 +80,19 @@ describe('what a person does next', () => {
 
 	test('is never told from ways back for another state', () => {
 		expect(next({ mode: 'restart', revision: 1 }, advice(offer()))).toBe('looking');
+	});
+});
+
+describe('the step in which it is done', () => {
+	test('is none while the station works by itself', () => expect(stepOf('nothing', view({}))).toBeNull());
+
+	test('has restart mode within it where it needs it', () => {
+		expect(stepOf('enter', view({ questions: [QUESTION] }))).toBe('state');
+		expect(stepOf('enter', view({ way_back: WAY_BACK }))).toBe('ways');
+		expect(stepOf('enter', view({}))).toBe('ways');
+	});
+
+	test('leads on with what is done', () => {
+		expect((['look', 'answer', 'take', 'leave'] as const).map((next) => stepOf(next, view({})))).toEqual(['understand', 'state', 'ways', 'on']);
 	});
 });

@@ -1,22 +1,70 @@
 /** How an offer is said in short. */
-import type { WayOffer } from '#lib/contract.ts';
-import type { Text } from '#lib/text/text.svelte.ts';
+import type { StationView, WayOffer } from '#lib/contract.ts';
+import { told } from '#lib/text/message.ts';
+import { say, type Text } from '#lib/text/text.svelte.ts';
+import { valueText, variableName } from '#lib/wording/values.ts';
+import { asksForHands, canBeTaken, onlySays } from './offer.ts';
+import { operationTitles, resourceTitle } from './titles.ts';
 
 type Ways = Text['restart']['ways'];
+type Known = Pick<StationView, 'operations' | 'resources'> | null;
+
+/** So many starts, or operations, are told of in a sentence; the rest is counted. */
+const TOLD = 3;
 
 /** What it asks for; a kind that this page does not know keeps its own word. */
 export function kindWord({ kinds }: Pick<Ways, 'kinds'>, kind: string): string {
 	return Object.entries(kinds).find(([name]) => name === kind)?.[1] ?? kind;
 }
 
-/** What it takes: nothing is said of what it does not. */
-export function effortWords(texts: Ways, effort: WayOffer['effort']): string[] {
-	const said: [number, string][] = [
-		[effort.physical, texts.acts(effort.physical)],
-		[effort.returns, texts.returns(effort.returns)],
-		[effort.corrections, texts.changes(effort.corrections)],
-		[effort.starts, texts.starts(effort.starts)],
-		[Math.ceil(effort.seconds), texts.seconds(Math.ceil(effort.seconds))]
-	];
-	return said.flatMap(([n, words]) => (n > 0 ? [words] : []));
+/** How long it takes: `≈ 13 s`, `≈ 1 min 20 s`; only minutes where they are many. */
+export function timeWords(texts: Pick<Ways, 'seconds' | 'minutes'>, seconds: number): string {
+	const whole = Math.ceil(seconds);
+	if (whole < 60) return texts.seconds(whole);
+	return whole < 600 ? texts.minutes(Math.floor(whole / 60), whole % 60) : texts.minutes(Math.round(whole / 60), 0);
+}
+
+/** What it is called; where it only says what is true, with the warning that somebody has to have looked. */
+export function titleOf(offer: WayOffer): string {
+	return offer.only_if_checked && onlySays(offer) ? say().restart.ways.onlyIf(saidOf(offer)) : told(offer.title_message, offer.title);
+}
+
+/** That a variable has the value it would get: `pair 4 is placed`. */
+export function soOf({ so, name, then }: WayOffer['corrections'][number]): string {
+	return told(so, say().restart.ways.is(variableName(name, null), valueText(then)));
+}
+
+/** What it says of the product. */
+export function saidOf({ corrections }: Pick<WayOffer, 'corrections'>): string {
+	return corrections.map(soOf).join(', ');
+}
+
+/** So much a person does by hand, before it or within it. */
+export function handsOf({ physical, online, in_service, errand }: WayOffer): number {
+	return physical.length + online.length + in_service.length + (errand?.steps.filter((step) => step.human).length ?? 0);
+}
+
+/** The resources that move in it, each once. */
+export function resourcesOf({ errand }: Pick<WayOffer, 'errand'>): string[] {
+	return [...new Set(errand?.steps.filter((step) => !step.human).map((step) => step.resource))];
+}
+
+/** What happens, in a sentence or two. */
+export function storyOf(view: Known, offer: WayOffer): string {
+	const texts = say().restart.ways;
+	const goals = operationTitles(view, offer.goals);
+	const then = goals.length === 0 ? texts.goalsPlain : texts.goals(few(texts, goals));
+	if (asksForHands(offer)) return offer.errand === null ? then : `${startsOf(view, offer)} ${then}`;
+	if (offer.errand !== null) return startsOf(view, offer);
+	return canBeTaken(offer) ? `${texts.correct}: ${saidOf(offer)}.` : `${texts.goOn} ${then}`;
+}
+
+function startsOf(view: Known, { errand }: WayOffer): string {
+	const texts = say().restart.ways;
+	const steps = (errand?.steps ?? []).map((step) => `${resourceTitle(view, step.resource)}: ${step.title}`);
+	return steps.length === 0 ? texts.waitsOnly : `${few(texts, steps)}.`;
+}
+
+function few({ more }: Pick<Ways, 'more'>, all: readonly string[]): string {
+	return all.length <= TOLD ? all.join(', ') : `${all.slice(0, TOLD - 1).join(', ')}, ${more(all.length - TOLD + 1)}`;
 }

@@ -2,9 +2,9 @@ import { expect, test } from 'vitest';
 import { offer, preview } from '#lib/testing/offer.ts';
 import { en } from '#lib/text/en.ts';
 import { asksForHands, canBeTaken, goesOn, mayBeWanted, onlySays } from './offer.ts';
-import { effortWords, kindWord } from './offer-words.ts';
+import { handsOf, kindWord, resourcesOf, timeWords } from './offer-words.ts';
 
-const CHANGE = { name: 'b', now: 'placed', then: 'empty' };
+const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } };
 
 test('an offer is to be taken, done by hand, or nothing but going on: one of these', () => {
 	const asked = (each: ReturnType<typeof offer>): boolean[] => [asksForHands(each), canBeTaken(each), goesOn(each)];
@@ -24,11 +24,19 @@ test('what only says what is true of the product is never shown as what to do', 
 	expect(mayBeWanted(offer({ errand: preview('move') }))).toBe(true);
 });
 
-test('what it takes is said, and what it does not take is not', () => {
+test('how long it takes is said as people say it', () => {
 	const { ways } = en.restart;
-	const effort = { cost: 9, corrections: 1, physical: 0, returns: 0, starts: 2, seconds: 8.2 };
-	expect(effortWords(ways, effort)).toEqual(['1 change', '2 starts', '≈ 9 s']);
-	expect(effortWords(ways, { ...effort, corrections: 0, starts: 0, seconds: 0, returns: 1 })).toEqual(['1 brought back']);
+	const said = (seconds: number): string => timeWords(ways, seconds);
+	expect([8.2, 59.2, 80, 119.5, 660].map(said)).toEqual(['≈ 9 s', '≈ 1 min', '≈ 1 min 20 s', '≈ 2 min', '≈ 11 min']);
+});
+
+test('what a person does by hand is counted, before it and within it', () => {
+	const { steps, ...rest } = preview('move', 'place');
+	const errand = { ...rest, steps: steps.map((step) => ({ ...step, human: step.ability === 'place' })) };
+	expect(handsOf(offer({ errand }))).toBe(1);
+	expect(handsOf(offer({ errand, physical: [CHANGE], online: ['robot'] }))).toBe(3);
+	expect(resourcesOf(offer({ errand }))).toEqual(['robot']);
+	expect(handsOf(offer())).toBe(0);
 });
 
 test('a kind has a word, whether this page knows it or not', () => {

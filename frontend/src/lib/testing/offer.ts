@@ -4,7 +4,7 @@ import type { PlanPreview, WayOffer } from '#lib/contract.ts';
 /** A plan of so many starts of the robot, one in each tick. */
 export function preview(...abilities: string[]): PlanPreview {
 	const steps = abilities.map((ability, tick) => {
-		return { tick, ability, title: ability, resource: 'robot', human: false, restart: false };
+		return { tick, start: tick, end: tick + 1, ability, title: ability, resource: 'robot', human: false, restart: false };
 	});
 	return { ticks: abilities.length, steps, minimal_ticks: true, minimal_starts: true };
 }
@@ -36,7 +36,7 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		claims: [],
 		records: [],
 		only_if_checked: false,
-		effort: { cost: 1, corrections: 0, physical: 0, returns: 0, starts: 0, seconds: 1 },
+		effort: { cost: 1, corrections: 0, physical: 0, returns: 0, starts: 0, seconds: 1, time: 1 },
 		obstacle: null,
 		obstacle_message: null,
 		...rest

@@ -11,11 +11,12 @@ from sequence_planner.texts.message import Message
 
 
 class ValueChangeView(View):
-    """A variable that gets another value; `now` is null where it is unknown."""
+    """A variable that gets another value; `now` is null where it is unknown. `so` says in words that it has it."""
 
     name: str
     now: ShownValue | None
     then: ShownValue
+    so: Message
 
 
 class PreviewStepView(View):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.dependencies import is_along
@@ -77,11 +77,11 @@ def offer_view(
         kind=str(offer.kind),
         title=(title := offer_title(automaton, offer)),
         title_message=title,
-        physical=_changes(told(automaton, offer.physical)),
+        physical=_changes(automaton, told(automaton, offer.physical)),
         online=list(offer.online),
         in_service=list(offer.in_service),
-        assumed=_changes(offer.assumed),
-        corrections=_changes(offer.corrections),
+        assumed=_changes(automaton, offer.assumed),
+        corrections=_changes(automaton, offer.corrections),
         errand=None if offer.operator_plan is None else plan_preview(automaton, offer.operator_plan),
         ends=None if offer.operator_plan is None else end_text(offer.goal, offer.into_safe),
         ends_message=None if offer.operator_plan is None else end_message(automaton, offer.goal, offer.into_safe),
@@ -95,7 +95,7 @@ def offer_view(
         goals=list(offer.goals),
         left_out=list(offer.left_out),
         claims=list(offer.claims),
-        records=_changes(offer.records),
+        records=_changes(automaton, offer.records),
         only_if_checked=offer.only_if_checked,
         effort=EffortView(
             cost=offer.effort.cost,
@@ -277,8 +277,11 @@ def _step(automaton: Automaton, tick: int, name: str, times: tuple[float, float]
     )
 
 
-def _changes(changes: Iterable[ValueChange]) -> list[ValueChangeView]:
-    return [ValueChangeView(name=change.name, now=change.old, then=change.new) for change in changes]
+def _changes(automaton: Automaton, changes: Sequence[ValueChange]) -> list[ValueChangeView]:
+    return [
+        ValueChangeView(name=change.name, now=change.old, then=change.new, so=so)
+        for change, so in zip(changes, _so(automaton, changes), strict=True)
+    ]
 
 
 # Why an offer cannot be made, or not be taken.

@@ -2,7 +2,7 @@ import { count } from '../count.ts';
 
 /** Restart. */
 export const restart = {
-	about: 'What happened, what is true, the ways back to production. Each act is its own: none implies another.',
+	about: 'Four steps lead a station that has stopped back to production. Each button says all that it does, and each act is recorded.',
 
 	/** The short notice on Operate. */
 	notice: {
@@ -30,10 +30,9 @@ export const restart = {
 		title: 'Next',
 		live: 'Wait until the station is heard again.',
 		preparing: 'Wait until the station is prepared.',
-		control: 'Take control, at the top of the page.',
 		errand: 'Wait until what was taken has ended, or stop it.',
 		decide: 'Decide on the outputs that came back.',
-		answer: 'Look at the station, and answer the question.',
+		answer: 'Look at the station, and say what is so.',
 		enter: 'Enter restart mode.',
 		start: 'Start production.',
 		physical: 'Do what the first way back asks of a person.',
@@ -45,13 +44,37 @@ export const restart = {
 		looking: 'Wait for the ways back.',
 		look: 'See to what the alarms say; the station goes on as far as it can.',
 		nothing: 'Nothing: the station works by itself.',
-		viewer: 'An operator gets the station back to work.',
-		there: 'Go there'
+		viewer: 'An operator gets the station back to work.'
 	},
+
+	steps: {
+		label: 'Restart in four steps',
+		titles: { understand: 'Understand', state: 'Make the state true', ways: 'Choose a way back', on: 'Go on' },
+		done: 'done',
+		still: 'All devices stand still.',
+		moving: (names: string): string => `Still at work: ${names}.`,
+		questions: (n: number): string => `${count(n, 'question', 'questions')} to answer.`,
+		outputs: (n: number): string => `${count(n, 'output', 'outputs')} to decide on.`,
+		confirm: 'Look whether it is still as before.',
+		said: (by: string, at: string, what: string): string => `${by} said at ${at}: ${what}.`,
+		ways: (n: number): string => `${count(n, 'way', 'ways')}, least effort first.`,
+		one: 'One way.',
+		none: 'No way is known yet.',
+		nothing: 'Nothing has to be carried out.',
+		afterwards: 'The ways follow from it.',
+		taken: (title: string, at: string): string => `${title}, done at ${at}.`,
+		runs: (title: string): string => `${title} is carried out.`,
+		works: 'Production goes on by itself then.',
+		to: (title: string): string => `Next: ${title}`,
+		calm: 'The station works by itself',
+		calmAbout: 'When it stops, this page leads back to production: understand, make the state true, choose a way back, go on.',
+		look: 'Show the steps'
+	},
+
 
 	happened: {
 		title: 'What happened',
-		none: 'There is no alarm.',
+		none: 'No alarms.',
 		alarms: 'Alarms',
 		plan: 'Plan',
 		outside: 'Outside the safe states',
@@ -67,7 +90,7 @@ export const restart = {
 	},
 	moves: {
 		title: 'What still moves',
-		nothing: 'Nothing.',
+		nothing: 'All devices stand still.',
 		since: (duration: string): string => `for ${duration}`,
 		person: 'a person does it'
 	},
@@ -84,8 +107,14 @@ export const restart = {
 	believed: {
 		title: 'Believed and measured',
 		agree: 'The state fits every measurement.',
-		ask: (name: string, value: string): string => `Look: is ${name} really ${value}?`,
-		why: 'The station believes so, but it does not go together with what is measured.',
+		ask: (name: string, value: string): string => `Is ${name} really ${value}?`,
+		why: 'The station believes so, and it does not fit what is measured.',
+		corrected: 'Corrected last',
+		change: 'Correct it again',
+		otherwise: 'Correct something else',
+		otherwiseMeaning: 'Where the station believes what is not so, and asks nothing.',
+		first: 'A correction needs restart mode. Operations wait in it, and running steps finish.',
+		firstControl: 'To say what is so needs control.',
 		so: (value: string): string => `Yes, ${value}`,
 		other: (value: string): string => `It is ${value}`,
 		more: (n: number): string => `Then ${count(n, 'more question', 'more questions')}. With each answer there may be fewer.`,
@@ -112,15 +141,15 @@ export const restart = {
 
 	ways: {
 		title: 'Ways back',
-		about: 'Each proven from the state at that moment, least effort first.',
-		asked: (revision: number): string => `Asked at state ${revision}.`,
-		looking: 'Looking.',
-		again: 'The station has moved since: looking again.',
-		kept: 'The station has moved since. It is looked again as soon as the dialog is closed.',
+		looking: 'Looking for ways.',
+		again: 'The station has changed. Looking again.',
+		kept: 'The station has changed.',
 		retry: 'Not answered: it is asked again by itself.',
 		lookAgain: 'Look again',
-		look: 'Look for ways on',
-		working: 'The station works by itself: nothing is looked for.',
+		found: (seconds: string): string => `All ways were looked for in ${seconds} s; there are no others.`,
+		noneFits: 'None of these fits…',
+		choose: 'Choose a way to see what happens then.',
+		least: 'Least effort',
 		during: 'While something is carried out nothing else is offered.',
 		operator: 'An operator is shown the ways back.',
 		incomplete: 'The search ended early; there may be more ways.',
@@ -144,15 +173,26 @@ export const restart = {
 		},
 		starts: (n: number): string => count(n, 'start', 'starts'),
 		seconds: (n: number): string => `≈ ${n} s`,
-		changes: (n: number): string => count(n, 'change', 'changes'),
-		acts: (n: number): string => count(n, 'act by hand', 'acts by hand'),
-		returns: (n: number): string => `${n} brought back`,
+		minutes: (n: number, seconds: number): string => (seconds === 0 ? `≈ ${n} min` : `≈ ${n} min ${seconds} s`),
 		rest: 'ends at rest',
 		restMeaning: 'It ends in a safe state of rest, the best place to begin from again.',
 		outside: 'starts outside the safe states',
 		outsideMeaning: 'The station is outside its safe states: until it is back there, starts go by the written conditions alone.',
-		first: 'A person does first',
-		see: (name: string, then: string, now: string): string => `See to it that ${name} is ${then} (now ${now}).`,
+		more: (n: number): string => `${n} more`,
+		goals: (titles: string): string => `Then the station goes on: ${titles}.`,
+		goalsPlain: 'Then the station goes on.',
+		waitsOnly: 'The devices do it by themselves.',
+		hand: 'Nothing by hand',
+		you: (n: number): string => `You, ${count(n, 'step', 'steps')}`,
+		corrections: (n: number, what: string): string => `${count(n, 'correction', 'corrections')}: ${what}`,
+		proven: 'Proven',
+		provenMeaning: 'Taken step by step from the state as it is, to a plan for what is to be done.',
+		unproven: 'Only if you have checked',
+		outsideShort: 'Starts outside the safe states',
+		leftOutShort: (n: number): string => `Gives up ${count(n, 'operation', 'operations')}`,
+		first: 'You do first',
+		see: (so: string): string => `See to it that ${so}.`,
+		now: (value: string): string => `(now ${value})`,
 		online: (title: string): string => `Bring ${title} back.`,
 		waits: (topics: string): string => `Waits for ${topics}; it is noticed by itself.`,
 		senseless: (topics: string): string => `It is heard, but not understood on ${topics}; when it is, that is noticed by itself.`,
@@ -164,18 +204,16 @@ export const restart = {
 		assumed: 'What it says then is taken to be what it last said:',
 		is: (name: string, value: string): string => `${name} is ${value}`,
 		correct: 'Only if it is so at the station',
-		to: (name: string, now: string, then: string): string => `${name}: ${now} → ${then}`,
 		breaks: 'On its way this is violated, which is not now:',
 		leftOut: 'Gives up:',
 		done: 'Done, check again',
-		take: 'Take…',
-		showPlan: 'Show plan',
-		showEffects: 'Show effects',
-		goOn: 'Nothing has to be carried out. Leave restart mode, then continue: see below.',
-		what: 'What it comes to'
+		goOn: 'Nothing has to be carried out.'
 	},
 	plan: {
-		errand: 'What is carried out',
+		title: 'What happens then',
+		ends: (time: string): string => `ends after ${time}`,
+		endsSafe: (time: string): string => `ends after ${time}, in a safe state`,
+		movesFirst: 'moves first',
 		nothing: 'Nothing is started: the devices do it by themselves.',
 		until: 'until',
 		safe: 'the station is back in its safe states',
@@ -184,37 +222,33 @@ export const restart = {
 		thenPlain: 'Then, in automatic mode',
 		unknown: 'What the station does afterwards was not looked for, or not found.',
 		none: 'Nothing has to be started for it.',
-		length: (ticks: number, starts: number): string => `${count(ticks, 'tick', 'ticks')}, ${count(starts, 'start', 'starts')}`,
+		length: (starts: number): string => count(starts, 'start', 'starts'),
 		minimal: 'the fewest possible',
-		tick: 'Tick',
-		resource: 'Resource',
-		step: 'Step',
 		person: 'a person',
 		restart: 'restart ability',
-		asLanes: 'as lanes',
-		steps: 'Steps',
-		lanes: 'Lanes'
+		steps: 'Steps'
 	},
 	take: {
-		title: (title: string): string => `Take: ${title}?`,
-		only: 'Nothing but this is carried out. Restart mode stays on.',
-		onlyPaused: 'Nothing but this is carried out. The station stays paused.',
-		starts: (n: number): string => `${count(n, 'start', 'starts')}, in this order:`,
-		noStarts: 'No start: it only waits until the devices have done what they do.',
+		only: 'Only this is carried out. Restart mode stays on.',
+		onlyPaused: 'Only this is carried out. The station stays paused.',
 		onlyCorrects: 'No start. Only what the station believes is changed.',
 		until: 'It ends when',
 		haveRead: (n: number): string => (n === 1 ? 'This start may be carried out.' : `All ${n} starts may be carried out.`),
 		mayWait: 'It may be waited for.',
-		haveSeen: (name: string, then: string): string => `I have looked: ${name} is ${then}.`,
-		confirm: 'Confirm each start and each correction.',
+		haveSeen: (so: string): string => `I have looked: ${so}.`,
+		confirm: 'Confirm what is above.',
 		moved: 'The station has changed. Check the ways again.',
-		fresh: 'Back to fresh offers',
-		word: 'Take it'
+		fresh: 'Check again',
+		note: 'Note for the journal',
+		why: 'Why this way? (optional)',
+		noNote: 'Taken on the page Restart, without a note',
+		word: 'Take this way',
+		enter: 'Restart mode is needed for it. The ways are looked for again then.'
 	},
 
 	byHand: {
-		title: 'None of these?',
-		about: 'A plan to what you ask for; it is shown, and taken, like the ways back above.',
+		title: 'None of these fits',
+		about: 'A plan to what you ask for is shown first, and taken like the others.',
 		reset: 'Reset an operation',
 		resetMeaning: 'The station is brought to where the operation begins, and it begins again.',
 		operation: 'Operation',
@@ -226,9 +260,10 @@ export const restart = {
 		predicate: 'Predicate',
 		engineer: 'An engineer can bring the station to a goal by hand.',
 		finding: 'Looking',
-		offered: 'Found:',
+		offered: 'Found.',
 		correct: 'Correct the state by hand',
-		correctMeaning: 'Where the station believes what is not so, and no way back says it.'
+		correctMeaning: 'Where the station believes what is not so, and no way back says it.',
+		enterMeaning: 'Operations wait, and you decide what starts.'
 	},
 	why: {
 		title: (title: string): string => `Why not: ${title}`,
@@ -243,25 +278,35 @@ export const restart = {
 	},
 
 	acts: {
-		enter: 'Enter restart mode',
-		enterTitle: 'Restart mode',
-		enterMeaning: 'Operations wait, what runs may finish. Nothing is started by it, and nothing is taken back.',
-		enterAsk: 'Enter restart mode?',
-		entered: 'The station is in restart mode.',
-		leave: 'Leave restart mode',
-		leaveMeaning: 'The station is paused then. Nothing is started by it.',
-		left: 'The station is not in restart mode.',
-		start: 'Start production',
-		startMeaning: 'From then on commands are sent to the devices.',
-		startNow: 'The mode is automatic: the station works as soon as it is started.',
-		started: 'Production is started.',
-		preparing: 'The station is still being prepared.',
+		/** What one does, to be said after another: take control, leave restart mode and continue. */
+		words: {
+			control: 'take control',
+			enter: 'enter restart mode',
+			leave: 'leave restart mode',
+			start: 'start production',
+			go: 'continue'
+		},
+		/** Said of what was done, where the next one was refused. */
+		done: {
+			control: 'You have control.',
+			enter: 'The station is in restart mode.',
+			leave: 'The station is paused.',
+			start: 'Production is started.',
+			go: 'The station goes on.'
+		},
+		then: 'Then it stopped:',
+		meaning: {
+			enter: 'Operations wait, running steps finish. Nothing starts by it.',
+			leave: 'The station is paused then. Nothing starts by it.',
+			start: 'From then on commands are sent to the devices.',
+			startNow: 'Commands are sent to the devices, and the station works at once.',
+			go: 'Operations are carried out again.'
+		},
+		title: 'Go on',
+		alone: 'Or one act alone',
+		works: 'Production is started, in automatic mode.',
+		preparing: 'The station is still getting ready.',
 		decideFirst: 'Decide on the outputs first.',
-		go: 'Continue',
-		goMeaning: 'Operations are carried out again.',
-		works: 'The station is in automatic mode.',
-		leaveFirst: 'Leave restart mode first.',
-		errandFirst: 'Something is being carried out.',
-		backTitle: 'Back to production'
+		errandFirst: 'Something is being carried out.'
 	}
 };

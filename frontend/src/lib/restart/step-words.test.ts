@@ -1,0 +1,22 @@
+import { expect, test } from 'vitest';
+import { alarm, view } from '#lib/testing/view.ts';
+import { en } from '#lib/text/en.ts';
+import { sv } from '#lib/text/sv.ts';
+import { sayActs } from './act-words.ts';
+import { doneSteps } from './step-words.ts';
+
+test('all that a button does is said on it, as one sentence', () => {
+	expect(sayActs(['control', 'enter'], null, en)).toBe('Take control and enter restart mode');
+	expect(sayActs(['control', 'leave', 'go'], null, en)).toBe('Take control, leave restart mode and continue');
+	expect(sayActs(['control'], 'Wait for the robot', en)).toBe('Take control and wait for the robot');
+	expect(sayActs([], 'Wait for the robot', en)).toBe('Wait for the robot');
+	expect(sayActs(['control', 'start'], null, sv)).toBe('Ta kontrollen och starta produktionen');
+});
+
+test('steps before the next one are done, but for a state that is still asked about', () => {
+	const late = { alarms: { late: alarm() } };
+	expect(doneSteps(view(late), 'understand')).toEqual({ understand: false, state: false, ways: false, on: false });
+	expect(doneSteps(view(late), 'ways')).toEqual({ understand: true, state: true, ways: false, on: false });
+	expect(doneSteps(view({ ...late, unconfirmed: true }), 'ways').state).toBe(false);
+	expect(doneSteps(view({ mode: 'restart' }), 'on')).toEqual({ understand: true, state: true, ways: true, on: false });
+});

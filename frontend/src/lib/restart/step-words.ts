@@ -1,0 +1,85 @@
+/** How the four steps stand: which are done, and a sentence for each. */
+import type { AdviceAnswer, StationView } from '#lib/contract.ts';
+import { runs } from '#lib/resource/running.ts';
+import { told, wordsOf } from '#lib/text/message.ts';
+import { say } from '#lib/text/text.svelte.ts';
+import { modeMeaning } from '#lib/wording/station.ts';
+import { clockText } from '#lib/wording/time.ts';
+import { sayActs } from './act-words.ts';
+import { openQuestions } from './answers.ts';
+import { correctedText } from './happened.ts';
+import { actsTo } from './mode-acts.ts';
+import { STEPS, type Next, type Step } from './next.ts';
+import { goesOn } from './offer.ts';
+import { lastingAlarms } from './shown.ts';
+import { resourceTitle } from './titles.ts';
+
+/** Those that lie behind, or in which nothing is to be done; what happened is understood as soon as something else comes next. */
+export function doneSteps(view: StationView, step: Step | null): Record<Step, boolean> {
+	const at = step === null ? STEPS.length : STEPS.indexOf(step);
+	return {
+		understand: at > 0,
+		state: at > 0 && isTrue(view),
+		ways: at > STEPS.indexOf('ways'),
+		on: at > STEPS.indexOf('on')
+	};
+}
+
+/** Nothing is asked of a person about what is so. */
+function isTrue(view: StationView): boolean {
+	return openQuestions(view).length === 0 && !view.unconfirmed && Object.keys(view.undecided).length === 0;
+}
+
+export interface Known {
+	readonly view: StationView;
+	readonly next: Next;
+	readonly step: Step | null;
+	readonly advice: AdviceAnswer | null;
+	/** The time of the station. */
+	readonly now: number;
+}
+
+/** A sentence for each: what was done, or what there is to do. */
+export function stepWords({ view, next, step, advice, now }: Known): Record<Step, string> {
+	const { next: acts } = say().restart;
+	const said = { understand: happened(view), state: state(view, now), ways: ways(view, advice, now), on: on(view) };
+	// What a person does next is said where it is done, unless the step says more.
+	if (step !== null && next !== 'take' && next !== 'looking' && next !== 'enter') said[step] = acts[next];
+	return said;
+}
+
+function happened(view: StationView): string {
+	const texts = say().restart.steps;
+	const [first] = lastingAlarms(view);
+	const moving = Object.values(view.abilities).filter(runs).map(({ resource }) => resourceTitle(view, resource));
+	return `${first ? ended(wordsOf(first[1]).text) : modeMeaning(view)} ${moving.length === 0 ? texts.still : texts.moving([...new Set(moving)].join(', '))}`;
+}
+
+/** With the full stop that a sentence has before another. */
+const ended = (text: string): string => (/[.!?]$/.test(text) ? text : `${text}.`);
+
+function state(view: StationView, now: number): string {
+	const texts = say().restart.steps;
+	const [outputs, questions] = [Object.keys(view.undecided).length, openQuestions(view).length];
+	if (outputs > 0) return texts.outputs(outputs);
+	if (questions > 0) return texts.questions(questions);
+	if (view.unconfirmed) return texts.confirm;
+	const said = view.last_correction;
+	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(said)) : say().restart.believed.agree;
+}
+
+function ways(view: StationView, advice: AdviceAnswer | null, now: number): string {
+	const texts = say().restart.steps;
+	const last = view.last_errand;
+	if (view.errand) return texts.runs(told(view.errand.title_message, view.errand.title));
+	const found = advice !== null && advice.revision === view.revision ? advice.offers : null;
+	if (found?.[0] && goesOn(found[0])) return last?.done ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
+	if (!isTrue(view)) return texts.afterwards;
+	if (found === null) return say().restart.ways.looking;
+	return found.length === 0 ? texts.none : found.length === 1 ? texts.one : texts.ways(found.length);
+}
+
+function on(view: StationView): string {
+	const acts = actsTo('production', view, true);
+	return acts.length === 0 ? say().restart.steps.works : `${sayActs(acts)}.`;
+}
