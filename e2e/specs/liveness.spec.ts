@@ -74,7 +74,7 @@ test.describe('when a part of the station dies', () => {
 		await takeControl(operate);
 		await operate.getByRole('button', { name: 'Start production' }).click();
 		await expect(operate.getByRole('alert').filter({ hasText: 'requested_pair' })).toBeVisible();
-		await operate.getByTestId('restart-notice').getByRole('link', { name: 'To Restart' }).click();
+		await operate.getByTestId('restart-notice').getByRole('link', { name: 'Decide on the outputs' }).click();
 		await operate.getByRole('button', { name: 'Decide', exact: true }).click();
 		const dialog = operate.getByRole('dialog');
 		await dialog.getByRole('radio', { name: /^bolt pair/ }).check();

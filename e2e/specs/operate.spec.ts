@@ -9,7 +9,7 @@ test('mode, alarms, task and plan are in sight at once, beside Pause and Hold', 
 	for (const name of ['Pause', 'Hold'])
 		await expect(operate.getByRole('button', { name, exact: true })).toBeInViewport({ ratio: 1 });
 	await expect(operate.getByRole('button', { name: /^Done: Place bolt pair/ })).toBeInViewport({ ratio: 1 });
-	await expect(operate.locator('[data-operation]').first()).toBeInViewport({ ratio: 1 });
+	await expect(operate.locator('[data-operation], [data-operations]').first()).toBeInViewport({ ratio: 1 });
 	const lanes = operate.getByRole('group', { name: 'Plan as lanes' }).getByRole('group');
 	await expect(lanes).toHaveCount(4);
 	// Its name is as high as the lane, of which only a part is in sight sideways.

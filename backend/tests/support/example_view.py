@@ -171,6 +171,7 @@ def example_view(**changes: object) -> StationView:
         },
         plan=PlanView(
             status=PlanStatus.FOLLOWED,
+            since=990.0,
             reason="planned for tighten",
             reason_message=as_it_was("planned for tighten", "plan."),
             steps=[

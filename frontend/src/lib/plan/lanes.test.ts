@@ -103,7 +103,7 @@ describe('the lanes of any plan', () => {
 			fc.property(steps, (list) => {
 				for (const lane of drawn(list)) {
 					const order = list.filter((each) => each.resource === lane.resource && !hasBegun(each));
-					for (const row of [0, 1]) {
+					for (let row = 0; row < lane.rows; row++) {
 						const mine = lane.blocks.filter((block) => block.row === row && !hasBegun(block.step));
 						const places = mine.map((block) => order.indexOf(block.step));
 						expect(places).toEqual([...places].sort((a, b) => a - b));

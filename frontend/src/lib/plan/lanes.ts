@@ -7,9 +7,6 @@
  */
 import type { PlanStep } from '#lib/contract.ts';
 
-/** Rows that every lane has, so that the page stays where it is when a short step needs a second one. */
-export const ROWS = 2;
-
 /** So many times what is in sight is the axis long at most, whatever is expected of the plan. */
 export const MOST_SPANS = 10;
 
@@ -18,9 +15,11 @@ export const MOST_MARKS = 36;
 
 export interface Block {
 	readonly step: PlanStep;
-	/** Where it is drawn: this covers the time it takes. */
+	/** Where it is drawn with its words: this covers the time it takes. */
 	readonly from: number;
 	readonly to: number;
+	/** Until when it takes time. */
+	readonly until: number;
 	/** Row within the lane, from 0: blocks of one row never overlap. */
 	readonly row: number;
 }
@@ -39,8 +38,6 @@ export interface Room {
 
 interface Drawn extends Block {
 	to: number;
-	/** Until when it takes time. */
-	readonly until: number;
 }
 
 /** Whether a step has been started. */
@@ -78,7 +75,7 @@ export function layOut(all: readonly PlanStep[], resources: readonly string[], n
 	}
 	return [...lanes].map(([resource, steps]) => {
 		const rows = pack(steps, now, late, room);
-		return { resource, rows: Math.max(ROWS, rows.length), blocks: rows.flat() };
+		return { resource, rows: Math.max(1, rows.length), blocks: rows.flat() };
 	});
 }
 
@@ -88,7 +85,7 @@ export function cutAt(lanes: readonly Lane[], limit: number): { lanes: Lane[]; l
 	const cut = lanes.map((lane) => {
 		const blocks = lane.blocks.filter((block) => block.from < limit);
 		later += lane.blocks.length - blocks.length;
-		return { ...lane, blocks: blocks.map((block) => ({ ...block, to: Math.min(block.to, limit) })) };
+		return { ...lane, blocks: blocks.map((block) => ({ ...block, to: Math.min(block.to, limit), until: Math.min(block.until, limit) })) };
 	});
 	return { lanes: cut, later };
 }
@@ -121,7 +118,6 @@ function place(rows: Drawn[][], step: PlanStep, from: number, until: number, to:
 	const over = (row: Drawn[]): boolean => (last(row)?.until ?? -Infinity) <= from;
 	const cut = (row: Drawn[]): boolean => over(row) && (last(row)?.from ?? -Infinity) + room.mark <= from;
 	let index = rows.findIndex(free);
-	if (index === -1 && rows.length < ROWS) index = rows.length;
 	if (index === -1) index = rows.findIndex(cut);
 	let moved = 0;
 	if (index === -1 && movable) {

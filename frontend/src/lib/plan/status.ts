@@ -1,5 +1,6 @@
 /** How the status of a step is drawn, whose turn it is, and why it is nobody's. */
-import type { Plan, PlanStep, StationView, StepStatus } from '#lib/contract.ts';
+import { byUrgency, isOver, type Alarms } from '#lib/alarm/priority.ts';
+import type { Alarm, Plan, PlanStep, Priority, StationView, StepStatus } from '#lib/contract.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
 
 /** A shape for each status, so that none has to be told by colour. */
@@ -20,4 +21,20 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 	if (plan.status === 'followed') return 'followed';
 	// What is active is planned for as soon as the controller comes to it.
 	return Object.values(view.operations).some((operation) => operation.active) ? 'planning' : 'idle';
+}
+
+/** Kinds of alarms that tell that a device does not do what it should. */
+const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
+
+/** The most urgent alarm that lasts about the devices of a resource. */
+export function failing(resource: string, alarms: Alarms): Alarm | undefined {
+	return byUrgency(alarms).find(([, alarm]) => alarm.group === 'device' && !isOver(alarm) && alarm.resources.includes(resource))?.[1];
+}
+
+/** How urgent it is that a run does not come to its end: it is the last of its resource, of which an alarm tells it since then. */
+export function stoppedBy(step: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Priority | null {
+	const { started, resource } = step;
+	if (started === null || steps.some((other) => other.resource === resource && (other.started ?? -Infinity) > started)) return null;
+	const alarm = failing(resource, alarms);
+	return alarm !== undefined && STUCK.has(alarm.kind) && alarm.since >= started ? alarm.priority : null;
 }

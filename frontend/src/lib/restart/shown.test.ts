@@ -1,25 +1,9 @@
 import { describe, expect, test } from 'vitest';
-import type { Operation, StationView } from '#lib/contract.ts';
-import { PLAN, estimate, view } from '#lib/testing/view.ts';
+import type { StationView } from '#lib/contract.ts';
+import { estimate, operation, PLAN, view } from '#lib/testing/view.ts';
 import { concernsRestart, unconfirmed, wantedFor } from './shown.ts';
 
-const active: Operation = {
-	title: 'Tighten',
-	active: true,
-	active_since: 990,
-	completed: 0,
-	began: null,
-	ended: null,
-	first_step: null,
-	last_step: null,
-	goal: 'b == tightened',
-	precondition: 'b == placed',
-	sentence: null,
-	left_out: false,
-	repeat: true,
-	for_jobs: false,
-	job: null
-};
+const active = operation({ active: true, active_since: 990 });
 
 describe('the page speaks of a restart', () => {
 	const cases: [string, Partial<StationView>][] = [

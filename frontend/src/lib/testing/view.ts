@@ -1,8 +1,9 @@
 /** Documents for tests: a small station, with what a test is about put in. */
-import type { Alarm, Plan, PlanStep, StationView, Task, Variable } from '#lib/contract.ts';
+import type { Alarm, Operation, Plan, PlanStep, StationView, Task, Variable } from '#lib/contract.ts';
 
 export const PLAN: Plan = {
 	status: 'followed',
+	since: 0,
 	reason: '',
 	reason_message: { id: 'as-it-was', arguments: { text: '' } },
 	steps: [],
@@ -36,6 +37,28 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 		waits_for: [],
 		waits_for_messages: [],
 		sentence: null
+	};
+	return { ...base, ...rest };
+}
+
+/** An operation that was never active. */
+export function operation(rest: Partial<Operation> = {}): Operation {
+	const base: Operation = {
+		title: 'Tighten',
+		active: false,
+		active_since: null,
+		completed: 0,
+		began: null,
+		ended: null,
+		first_step: null,
+		last_step: null,
+		goal: 'b == tightened',
+		precondition: 'b == placed',
+		sentence: null,
+		left_out: false,
+		repeat: true,
+		for_jobs: false,
+		job: null
 	};
 	return { ...base, ...rest };
 }

@@ -49,6 +49,7 @@ class LivePlan:
         self._untold = untold
         self._around = around
         self._timetable = Forecast(execution)
+        self._status = (execution.plan.status, 0.0)  # and since when it is so
         self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
 
     @property
@@ -59,6 +60,8 @@ class LivePlan:
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: remember what has changed."""
         self._timetable.update(moment.epoch)
+        if self._execution.plan.status is not self._status[0] or not self._status[1]:
+            self._status = (self._execution.plan.status, moment.epoch)
         if self._execution.plan.replacement is not self._replaced[0]:
             self._replaced = (self._execution.plan.replacement, moment.epoch)
 
@@ -74,6 +77,7 @@ class LivePlan:
             steps.append(self._step(step, StepStatus.PLANNED if index else StepStatus.NEXT, expected))
         view = PlanView(
             status=execution.plan.status,
+            since=self._status[1] or moment.epoch,
             reason=execution.plan.reason,
             reason_message=reason_text(execution.plan.reason),
             steps=steps,

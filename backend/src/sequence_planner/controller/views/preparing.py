@@ -56,6 +56,7 @@ def preparing_view(
         alarms[cause.key] = Alarm(cause, began).view()
     plan = PlanView(
         status=PlanStatus.IDLE,
+        since=now,
         reason=(reason := _why_no_plan(trouble, unusable=unusable)),
         reason_message=reason,
         steps=[],

@@ -606,6 +606,7 @@ class PlanView(View):
     """The live plan: what is done, what runs, what comes next and what that waits for."""
 
     status: PlanStatus
+    since: float  # when the status came to be this
     reason: str  # why it was made, or why there is none
     reason_message: Message
     steps: list[PlanStepView]

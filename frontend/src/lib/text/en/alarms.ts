@@ -24,8 +24,10 @@ export const alarms = {
 	noneWhenHeard: 'None when last heard',
 	noneOfThese: 'None of these',
 	aside: (n: number): string => `${n} shelved or out of service`,
-	moreOnPage: (n: number): string => (n === 1 ? '1 more alarm' : `${n} more alarms`),
-	toPage: 'All about alarms',
+	means: 'What it means',
+	todo: 'What to do',
+	more: (n: number): string => `+${n} more`,
+	inHistory: 'See it in History',
 	said: {
 		alarm: (priority: string, text: string): string => `${priority} alarm: ${text}`,
 		live: 'Live',

@@ -6,9 +6,9 @@ export const restart = {
 
 	/** The short notice on Operate. */
 	notice: {
-		title: 'Restart',
-		wanted: 'Needs you:',
+		wanted: 'Needs you',
 		go: 'To Restart',
+		acts: { choose: 'Choose a way back', decide: 'Decide on the outputs', answer: 'Answer the questions', start: 'Start production', goOn: 'Go on' },
 		reasons: {
 			restart: 'The station is in restart mode.',
 			hold: 'The station is held.',

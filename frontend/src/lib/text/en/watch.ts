@@ -2,6 +2,10 @@
 export const watch = {
 	forYou: 'For you',
 	nothingToDo: 'Nothing to do',
+	yourTask: 'Your task',
+	goesOn: 'Your task goes on',
+	thenMoves: 'Then moves:',
+	nextForYou: 'Next for you:',
 	nothingWhenHeard: 'Nothing when last heard',
 	nothingKnown: 'Nothing is known of your tasks',
 	operatorSays: 'An operator says when it is done.',

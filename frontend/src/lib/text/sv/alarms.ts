@@ -25,8 +25,10 @@ export const alarms: Text['alarms'] = {
 	noneWhenHeard: 'Inga när stationen senast hördes',
 	noneOfThese: 'Inga av dessa',
 	aside: (n) => `${n} åt sidan eller ur drift`,
-	moreOnPage: (n) => `${n} larm till`,
-	toPage: 'Allt om larm',
+	means: 'Vad det innebär',
+	todo: 'Vad du ska göra',
+	more: (n) => `+${n} till`,
+	inHistory: 'Visa i Historik',
 	said: {
 		alarm: (priority, text) => `Larm, prioritet ${priority.toLowerCase()}: ${text}`,
 		live: 'Direkt',

@@ -5,9 +5,9 @@ export const restart: Text['restart'] = {
 	about: 'Fyra steg leder en station som har stannat tillbaka till produktion. Varje knapp säger allt som den gör, och varje åtgärd loggas.',
 
 	notice: {
-		title: 'Omstart',
-		wanted: 'Här behövs en människa:',
+		wanted: 'Behöver dig',
 		go: 'Till Omstart',
+		acts: { choose: 'Välj en väg tillbaka', decide: 'Besluta om utgångarna', answer: 'Svara på frågorna', start: 'Starta produktionen', goOn: 'Gå vidare' },
 		reasons: {
 			restart: 'Stationen är i omstartsläge.',
 			hold: 'Stationen är stoppad.',

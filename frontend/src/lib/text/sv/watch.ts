@@ -3,6 +3,10 @@ import type { Text } from '../text.svelte.ts';
 export const watch: Text['watch'] = {
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
+	yourTask: 'Din uppgift',
+	goesOn: 'Din uppgift fortsätter',
+	thenMoves: 'Sedan rör sig:',
+	nextForYou: 'Nästa för dig:',
 	nothingWhenHeard: 'Inget när den senast hördes',
 	nothingKnown: 'Inget är känt om dina uppgifter',
 	operatorSays: 'En operatör säger till när det är klart.',

@@ -1,0 +1,15 @@
+/** What is said of an operation that is not done. */
+import type { Operation } from '#lib/contract.ts';
+import { told } from '#lib/text/message.ts';
+import type { Text } from '#lib/text/text.svelte.ts';
+import { durationText } from '#lib/wording/time.ts';
+import type { OperationStanding } from './standing.ts';
+
+/** Since when an active one is under way and until when, or what another waits for. */
+export function saidOf(operation: Operation, standing: OperationStanding, now: number, texts: Text['operate']['operations']): string {
+	const { active, active_since, goal, precondition, sentence } = operation;
+	const what = sentence ? told(sentence, active ? goal : precondition) : '';
+	if (!active) return what;
+	const lasted = durationText(now - (active_since ?? now));
+	return `${(standing === 'stopped' ? texts.stoppedFor : texts.activeFor)(lasted)} ${what}`;
+}

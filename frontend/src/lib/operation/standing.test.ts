@@ -1,0 +1,44 @@
+import { expect, test } from 'vitest';
+import type { Job, StationView } from '#lib/contract.ts';
+import { alarm, operation, PLAN, step, view } from '#lib/testing/view.ts';
+import { standingsOf } from './standing.ts';
+
+const standings = (over: Partial<StationView>): Record<string, string> => Object.fromEntries(standingsOf(view(over)));
+
+test('a round begins with the first operation: what was done before it is to be done again', () => {
+	const done = { began: 10, ended: 20 };
+	const before = { identify: operation({ began: 0, ended: 5 }), place: operation(done), leave: operation() };
+	expect(standings({ operations: before })).toEqual({ identify: 'done', place: 'done', leave: 'waits' });
+	const again = { ...before, identify: operation({ ...done, active: true, active_since: 30 }), leave: operation({ began: 20, ended: 25 }) };
+	expect(standings({ operations: again })).toEqual({ identify: 'active', place: 'waits', leave: 'waits' });
+	const later = { ...again, identify: operation({ began: 30, ended: 31 }), leave: operation({ began: 32, ended: 33 }) };
+	expect(standings({ operations: later })).toEqual({ identify: 'done', place: 'waits', leave: 'done' });
+});
+
+test('by order it is the job that says what is done', () => {
+	const state = (state: Job['steps'][string]['state']): Job['steps'][string] => ({ state, waits_for: [], started: null, ended: null });
+	const steps = { place: state('completed'), tighten: state('skipped'), leave: state('waiting') };
+	const jobs = { '4711': { title: 'Engine', steps } as unknown as Job };
+	const ordered = operation({ for_jobs: true, job: '4711', began: 10, ended: 20 });
+	expect(standings({ by_order: true, jobs, operations: { place: ordered, tighten: ordered, leave: ordered } })).toEqual({
+		place: 'done',
+		tighten: 'done',
+		leave: 'waits'
+	});
+});
+
+test('one of which a step comes to no end has stopped, until that is over', () => {
+	const steps = [step('run', 'nutrunner', 0, { id: '7', status: 'running', started: 100 })];
+	const of = { active: true, active_since: 90 };
+	const operations = {
+		tighten: operation({ ...of, first_step: '6', last_step: '8' }),
+		place: operation({ ...of, first_step: '9', last_step: '9' })
+	};
+	const overdue = alarm({ kind: 'overdue', subject: 'run', resources: ['nutrunner'], since: 140 });
+	const at = (each: ReturnType<typeof alarm>): Record<string, string> =>
+		standings({ operations, plan: { ...PLAN, steps }, alarms: { overdue: each } });
+	expect(at(overdue)).toEqual({ tighten: 'stopped', place: 'active' });
+	expect(at({ ...overdue, ended: 150 })).toEqual({ tighten: 'active', place: 'active' });
+	expect(at({ ...overdue, since: 99 })).toEqual({ tighten: 'active', place: 'active' });
+	expect(at({ ...overdue, kind: 'silent' })).toEqual({ tighten: 'active', place: 'active' });
+});

@@ -1,0 +1,33 @@
+/** How far operations are. */
+import type { Operation, PlanStep, StationView } from '#lib/contract.ts';
+import { stoppedBy } from '#lib/plan/status.ts';
+import { askedFor } from './asked.ts';
+
+/** Done in this round, under way, under way with a step that came to no end, or not begun. */
+export type OperationStanding = 'done' | 'active' | 'stopped' | 'waits';
+
+/** How each operation stands, by name. */
+export function standingsOf(view: StationView): Map<string, OperationStanding> {
+	const began = roundOf(view.operations);
+	const stopped = view.plan.steps.filter((step) => stoppedBy(step, view.plan.steps, view.alarms) !== null);
+	return new Map(
+		Object.entries(view.operations).map(([name, operation]) => {
+			if (operation.active) return [name, stopped.some((step) => serves(step, operation)) ? 'stopped' : 'active'];
+			const asked = askedFor(view, name)?.how;
+			if (asked === 'done' || asked === 'skipped') return [name, 'done'];
+			const done = asked !== 'later' && asked !== 'now' && operation.ended !== null && operation.ended >= began;
+			return [name, done ? 'done' : 'waits'];
+		})
+	);
+}
+
+/** Whether what the plan does for an operation is done with this step too. */
+function serves({ id }: PlanStep, { first_step, last_step }: Operation): boolean {
+	return first_step !== null && last_step !== null && Number(first_step) <= Number(id) && Number(id) <= Number(last_step);
+}
+
+/** When this round began: a round begins with the first operation of the model. */
+function roundOf(operations: Readonly<Record<string, Operation>>): number {
+	const [first] = Object.values(operations);
+	return first?.active_since ?? first?.began ?? -Infinity;
+}

@@ -1,0 +1,42 @@
+import { expect, test } from 'vitest';
+import { operation, step } from '#lib/testing/view.ts';
+import { ROWS, roomOf, stretchesOf } from './stretches.ts';
+
+const NOW = 1000;
+const steps = [
+	step('place', 'operator', 0, { id: '1', status: 'running', started: NOW - 4, expected_end: NOW + 2 }),
+	step('tighten', 'nutrunner', 1, { id: '2', status: 'next', expected_start: NOW + 2, expected_end: NOW + 6 })
+];
+
+test('an operation reaches from where work for it begins to where its goal is reached', () => {
+	const operations = {
+		lay: operation({ title: 'Lay', began: NOW - 50, ended: NOW - 30 }),
+		place: operation({ title: 'Place', active: true, active_since: NOW - 20, first_step: '1', last_step: '1' }),
+		tighten: operation({ title: 'Tighten', active: true, active_since: NOW - 20, first_step: '2', last_step: '2' }),
+		leave: operation({ title: 'Leave' }),
+		out: operation({ title: 'Left out', active: true, active_since: NOW - 9 })
+	};
+	const found = stretchesOf(operations, steps, NOW, 60, 1);
+	expect(found.map(({ operation, from, to, standing }) => [operation, from, to, standing])).toEqual([
+		['lay', -50, -30, 'past'],
+		['place', -4, 2, 'now'],
+		['tighten', 2, 6, 'ahead']
+	]);
+});
+
+test('names that have no room beside one another stand one below the other, as far as there are rows', () => {
+	const began = (at: number): ReturnType<typeof operation> => operation({ began: NOW - at, ended: NOW - at + 1 });
+	const operations = { a: began(30), b: began(29), c: began(28), d: began(10) };
+	const found = stretchesOf(operations, [], NOW, 60, 5);
+	expect(found.map(({ operation, row }) => [operation, row])).toEqual([
+		['a', 0],
+		['b', 1],
+		['d', 0]
+	]);
+	expect(Math.max(...found.map(({ row }) => row))).toBeLessThan(ROWS);
+	expect(found.map((_, index) => roomOf(found, index))).toEqual([-10, Infinity, Infinity]);
+});
+
+test('what is too long ago is not told', () => {
+	expect(stretchesOf({ old: operation({ began: NOW - 100, ended: NOW - 90 }) }, [], NOW, 60, 1)).toEqual([]);
+});

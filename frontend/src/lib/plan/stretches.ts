@@ -1,0 +1,58 @@
+/** What the plan is for: the stretch of time in which it serves each operation. */
+import type { Operation, PlanStep } from '#lib/contract.ts';
+import { hasBegun, lateness, timesOf } from './lanes.ts';
+
+export interface Stretch {
+	readonly operation: string;
+	readonly title: string;
+	/** In seconds after the present. */
+	readonly from: number;
+	readonly to: number;
+	readonly standing: 'past' | 'now' | 'ahead';
+	/** One below the other where several begin at nearly the same time. */
+	readonly row: number;
+}
+
+/** As many rows as there are at most: the list of operations has them all. */
+export const ROWS = 2;
+
+/** Those from `since` seconds ago on, in the order in which they begin; `words` is the time that a name needs. */
+export function stretchesOf(
+	operations: Readonly<Record<string, Operation>>,
+	steps: readonly PlanStep[],
+	now: number,
+	since: number,
+	words: number
+): Stretch[] {
+	const late = lateness(steps, now);
+	const byId = new Map(steps.map((step) => [step.id, step]));
+	const found: Omit<Stretch, 'row'>[] = [];
+	for (const [operation, { title, active, active_since, began, ended, first_step, last_step }] of Object.entries(operations)) {
+		if (began !== null && ended !== null && ended - now > -since && !active)
+			found.push({ operation, title, from: began - now, to: ended - now, standing: 'past' });
+		const first = byId.get(first_step ?? '');
+		const last = byId.get(last_step ?? '');
+		if (!active || active_since === null) continue;
+		const to = last ? Math.max(0, timesOf(last, now, late).end) : 0;
+		if (first && !hasBegun(first)) found.push({ operation, title, from: timesOf(first, now, late).start, to, standing: 'ahead' });
+		// What is left out of the plan is served by none of its steps.
+		else if (first) found.push({ operation, title, from: Math.max(active_since, first.started ?? active_since) - now, to, standing: 'now' });
+	}
+	found.sort((a, b) => a.from - b.from || a.to - b.to);
+	const rows: number[] = [];
+	return found.flatMap((stretch) => {
+		const from = Math.max(stretch.from, -since);
+		const free = rows.findIndex((last) => last + words <= from);
+		const row = free === -1 ? rows.length : free;
+		if (row >= ROWS) return [];
+		rows[row] = from;
+		return [{ ...stretch, from, row }];
+	});
+}
+
+/** Where the name of a stretch must end: where the next of its row begins. */
+export function roomOf(stretches: readonly Stretch[], index: number): number {
+	const stretch = stretches[index];
+	const next = stretches.slice(index + 1).find(({ row }) => row === stretch?.row);
+	return next?.from ?? Infinity;
+}
