@@ -22,7 +22,7 @@ def names_of(station: str) -> NamesView:
     """What the variables of one of our stations are called."""
     rig = Rig(folder=MODELS / station)
     variables = Variables(rig.execution, {"robot.pose": "/robot/state"}, Beliefs(rig.execution))
-    return variables.names(AboutNames())
+    return variables.spoken_names(AboutNames())
 
 
 def test_names_are_the_titles_of_the_model_in_each_language() -> None:
@@ -39,7 +39,7 @@ def test_names_are_the_titles_of_the_model_in_each_language() -> None:
 def test_no_two_values_of_a_variable_have_the_same_words(path: Path) -> None:
     station = prepare_station(path)
     rig = Rig(folder=path)
-    names = Variables(rig.execution, {}, Beliefs(rig.execution)).names(AboutNames())
+    names = Variables(rig.execution, {}, Beliefs(rig.execution)).spoken_names(AboutNames())
     for name, variable in station.automaton.variables.items():
         if variable.kind is Kind.ACTIVITY:
             assert name not in names.variables

@@ -12,7 +12,7 @@ from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.lifting.normal_form import ValueLiteral
 from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE, VariableTitles, in_language
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.texts.grammar import ENGLISH, Clause, Grammar
+from sequence_planner.texts.grammar import ENGLISH, GRAMMARS, Clause, Grammar
 from sequence_planner.texts.names import in_words, within_sentence
 
 _ARGUMENTS = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -163,6 +163,15 @@ class SpokenNames:
         words = self.words(variable, type_, grammar)
         bare = {value: grammar.bare(text) for value, text in words.items()}
         return bare if len({each.casefold() for each in bare.values()}) == len(bare) else words
+
+    def headings(self, variable: str) -> dict[str, str]:
+        """What a variable is called at the head of a row, by language."""
+        return {grammar.language: self.heading(variable, grammar) for grammar in GRAMMARS}
+
+    def all_entries(self, variable: str) -> dict[Value, dict[str, str]]:
+        """What the values of a variable are called in a table, each by language."""
+        entries = {grammar.language: self.entries(variable, grammar) for grammar in GRAMMARS}
+        return {value: {name: each[value] for name, each in entries.items()} for value in entries[ENGLISH.language]}
 
     def spoken_title(self, variable: str, grammar: Grammar) -> str:
         """What a variable is called that is told apart from its value: a statement in quotes."""

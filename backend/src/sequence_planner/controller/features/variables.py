@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from pydantic import JsonValue, ValidationError
 
-from sequence_planner.automaton.automaton import Ability, Kind, reads, target
+from sequence_planner.automaton.automaton import Ability, Automaton, Kind, reads, target
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.lifting.sentences import sentences_of
+from sequence_planner.automaton.lifting.spoken_names import SpokenNames
 from sequence_planner.controller.commands.command import answers
 from sequence_planner.controller.commands.queries import AboutNames
-from sequence_planner.controller.views.details import NamesView
+from sequence_planner.controller.views.details import NamesView, VariableNameView
 from sequence_planner.controller.views.station import BeliefView, VariableKind, VariableView
-from sequence_planner.controller.views.wording import names_view
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import CalledOff, Confirmed, Corrected, Heard, ModeChanged, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
@@ -232,7 +232,7 @@ class Variables:
         )
 
     @answers(AboutNames)
-    def names(self, query: AboutNames) -> NamesView:
+    def spoken_names(self, query: AboutNames) -> NamesView:
         """What they are called. That is found out when somebody asks, and then kept: the model stays the same."""
         self._names = self._names or names_view(self._execution.automaton, self._feeds)
         return self._names
@@ -265,3 +265,25 @@ class Variables:
                 commanded_by=self._commanded.get(name) if variable.kind is Kind.OUTPUT else None,
             )
         return views
+
+
+def names_view(automaton: Automaton, topics: Mapping[str, str]) -> NamesView:
+    """What the variables are called, with the topics that tell what they are."""
+    spoken = SpokenNames(automaton)
+    found: dict[str, VariableNameView] = {}
+    words: dict[tuple[tuple[str, tuple[tuple[str, str], ...]], ...], int] = {}  # each once, with its place
+    for name, variable in automaton.variables.items():
+        if variable.kind is Kind.ACTIVITY:
+            continue
+        key = tuple((_as_key(value), tuple(each.items())) for value, each in spoken.all_entries(name).items())
+        found[name] = VariableNameView(
+            title=spoken.headings(name),
+            values=words.setdefault(key, len(words)) if key else None,
+            topic=topics.get(name) if variable.kind is Kind.MEASURED else None,
+        )
+    return NamesView(variables=found, values=[{value: dict(each) for value, each in key} for key in words])
+
+
+def _as_key(value: Value) -> str:
+    """A value as a page writes it: `true`, `4`, `home`."""
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from sequence_planner.automaton.automaton import Automaton, Kind
+from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.dependencies import is_along
 from sequence_planner.automaton.lifting.sentences import sentences_of
-from sequence_planner.automaton.lifting.spoken_names import SpokenNames
 from sequence_planner.controller.commands.command import CommandRefused, TextPlace
-from sequence_planner.controller.views.details import NamesView, VariableNameView
 from sequence_planner.controller.views.proposals import (
     EffortView,
     OfferView,
@@ -24,7 +22,6 @@ from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression, print_value
 from sequence_planner.language.resolver import NameScope, resolve_predicate, suggestion
 from sequence_planner.language.syntax import TRUE, Expression, ExpressionError
-from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.planning.problem import Plan
 from sequence_planner.planning.recovery.proposals import (
@@ -33,36 +30,7 @@ from sequence_planner.planning.recovery.proposals import (
     ValueChange,
     estimated_times,
 )
-from sequence_planner.texts.grammar import GRAMMARS
 from sequence_planner.texts.message import Argument, Message, Sentence, as_it_was, message
-
-# What people read in place of names.
-
-
-def names_view(automaton: Automaton, topics: Mapping[str, str]) -> NamesView:
-    """What the variables are called, with the topics that tell what they are."""
-    spoken = SpokenNames(automaton)
-    found: dict[str, VariableNameView] = {}
-    words: dict[tuple[tuple[str, tuple[str, ...]], ...], int] = {}  # each once, with its place
-    for name, variable in automaton.variables.items():
-        if variable.kind is Kind.ACTIVITY:
-            continue
-        entries = [spoken.entries(name, grammar) for grammar in GRAMMARS]
-        key = tuple((_as_key(value), tuple(each[value] for each in entries)) for value in entries[0])
-        found[name] = VariableNameView(
-            title={grammar.language: spoken.heading(name, grammar) for grammar in GRAMMARS},
-            values=words.setdefault(key, len(words)) if key else None,
-            topic=topics.get(name) if variable.kind is Kind.MEASURED else None,
-        )
-    languages = [grammar.language for grammar in GRAMMARS]
-    said = [{value: dict(zip(languages, texts, strict=True)) for value, texts in key} for key in words]
-    return NamesView(variables=found, values=said)
-
-
-def _as_key(value: Value) -> str:
-    """A value as a page writes it: `true`, `4`, `home`."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
 
 # Offers in the words of the people they are shown to.
 
