@@ -1,0 +1,69 @@
+import type { Page } from '@playwright/test';
+import { examine } from '../station/barriers.ts';
+import { EVA } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
+
+test.use({ shared: 'figures', byItself: false, devices: true, people: 'Eva' });
+
+/** What the server says of the day. */
+async function read(page: Page): Promise<{ made: { count: number | null; planned: number | null } }> {
+	return await page.evaluate(async () => (await fetch('/api/v1/figures')).json());
+}
+
+/** Stores an order that is due now; nobody lets it start. */
+async function order(page: Page, id: string): Promise<void> {
+	const status = await page.evaluate(async (id) => {
+		const answer = await fetch('/api/v1/job-orders', {
+			method: 'POST',
+			headers: { 'Content-Type': 'application/json', 'Idempotency-Key': id },
+			body: JSON.stringify({ id, work_master: 'truck_engine', description: `Engine ${id}`, due: Date.now() / 1000, start: false })
+		});
+		return answer.status;
+	}, id);
+	expect(status).toBe(201);
+}
+
+test('the figures of the day are on Operate and on the wall, and what nobody knows is said to be unknown', async ({ browse }) => {
+	const eva = await browse(EVA, '/');
+	const strip = eva.getByRole('region', { name: 'Figures of the day' });
+	await expect(strip.locator('dt')).toHaveText(['In work', 'Made today', 'Cycle time', 'Available today']);
+	await expect(strip.locator('[data-figure="in-work"]')).toHaveText('No product');
+	await expect(strip.locator('[data-figure="cycle"]')).toHaveText('Not known yet');
+	await expect(strip.locator('[data-figure="availability"]')).toHaveText('Not known yet');
+	await expect(strip.locator('[data-figure="made"]')).toHaveText('0');
+
+	await order(eva, '4711');
+	await order(eva, '4712');
+	await expect.poll(async () => (await read(eva)).made.planned).toBe(2);
+	await expect(strip.locator('[data-figure="made"]')).toHaveText('0 of 2', { timeout: 15_000 });
+	await expect(strip.getByRole('img', { name: '0 of 2 are made, 2 were due by now' })).toBeVisible();
+
+	await eva.goto('/wall');
+	await expect(eva.locator('[data-figure="made"]')).toHaveText('0 of 2');
+	await expect(eva.getByText('2 behind. The mark is where it should be.')).toBeVisible();
+	await examine(eva, 'wall');
+});
+
+test('the wall fills the screen, and Pause and Hold are there when it does not', async ({ browse }) => {
+	const eva = await browse(EVA, '/wall');
+	const hold = eva.getByRole('button', { name: 'Hold', exact: true });
+	await expect(hold).toBeInViewport({ ratio: 1 });
+	await eva.getByRole('button', { name: 'Full screen' }).click();
+	await expect(eva.getByRole('button', { name: 'Leave full screen' })).toBeVisible();
+	await expect(hold).not.toBeInViewport();
+	await expect(eva.locator('[data-glance="mode"]')).toBeInViewport({ ratio: 1 });
+	await eva.getByRole('button', { name: 'Leave full screen' }).click();
+	await expect(hold).toBeInViewport({ ratio: 1 });
+});
+
+test('a wall that does not hear the station says so in its largest letters', async ({ browse, station }) => {
+	const eva = await browse(EVA, '/wall');
+	await expect(eva.locator('[data-glance="mode"]')).toBeVisible();
+	station.server.killPart('controller');
+	const stale = eva.getByTestId('wall-stale');
+	await expect(stale).toBeInViewport({ ratio: 1, timeout: 10_000 });
+	await expect(stale).toContainText('Not live');
+	expect(await stale.evaluate((element) => parseFloat(getComputedStyle(element).fontSize))).toBeGreaterThanOrEqual(60);
+	await expect(eva.locator('[data-glance="alarms"]')).toContainText('when last heard');
+	await expect(stale).toBeHidden({ timeout: 60_000 });
+});

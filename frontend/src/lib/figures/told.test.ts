@@ -1,0 +1,48 @@
+import { expect, test } from 'vitest';
+import type { Figures } from '#lib/contract.ts';
+import { cycleLevel, first, madeLevel, orderOf, percentText } from './told.ts';
+
+const AT = '2026-06-01T08:00:00Z';
+
+function figures(rest: Partial<Figures> = {}): Figures {
+	const made = { count: 0, planned: null, by_now: null };
+	return { time: 100, time_at: AT, day: 0, day_at: AT, in_work: [], made, cycle: null, availability: null, ...rest };
+}
+
+function product(job: string | null, began: number): Figures['in_work'][number] {
+	return { job, title: `Engine ${job}`, work_master: 'engine', began, began_at: AT, expected_end: null, expected_end_at: null };
+}
+
+test('of several products the one that was begun first is told', () => {
+	expect(first(figures({ in_work: [product('b', 7), product('a', 3)] }))?.job).toBe('a');
+	expect(first(figures())).toBeUndefined();
+	expect(first(null)).toBeUndefined();
+});
+
+test('which order of today is in work is told where orders are due, and there is one', () => {
+	const made = { count: 14, planned: 22, by_now: 15 };
+	expect(orderOf(figures({ made, in_work: [product('a', 3)] }))).toEqual({ n: 15, all: 22 });
+	expect(orderOf(figures({ made }))).toBeNull();
+	expect(orderOf(figures({ made, in_work: [product(null, 3)] })), 'it is no order').toBeNull();
+	expect(orderOf(figures({ in_work: [product('a', 3)] })), 'nothing is due').toBeNull();
+	// One that is due tomorrow, when all of today are made.
+	expect(orderOf(figures({ made: { count: 22, planned: 22, by_now: 22 }, in_work: [product('a', 3)] }))).toBeNull();
+});
+
+test('what is made is compared with what is due, and with nothing where nothing is', () => {
+	expect(madeLevel(figures({ made: { count: 5, planned: 20, by_now: 10 } }))).toEqual({ part: 0.25, mark: 0.5 });
+	expect(madeLevel(figures())).toBeNull();
+	expect(madeLevel(figures({ made: { count: null, planned: null, by_now: null } }))).toBeNull();
+	expect(madeLevel(null)).toBeNull();
+});
+
+test('the median has its place on the bar however long a product takes', () => {
+	expect(cycleLevel(50, 100)).toEqual({ part: 0.4, mark: 0.8 });
+	expect(cycleLevel(400, 100)).toEqual({ part: 1, mark: 0.25 });
+	expect(cycleLevel(0, 0)).toEqual({ part: 0, mark: 0 });
+});
+
+test('a share is told as people of the language write it', () => {
+	expect(percentText(0.9421, 'en-GB')).toBe('94.2');
+	expect(percentText(1, 'sv-SE')).toBe('100,0');
+});
