@@ -40,7 +40,7 @@ test('the figures of the day are on Operate and on the wall, and what nobody kno
 
 	await eva.goto('/wall');
 	await expect(eva.locator('[data-figure="made"]')).toHaveText('0 of 2');
-	await expect(eva.getByText('2 behind. The mark is where it should be.')).toBeVisible();
+	await expect(eva.getByText('2 behind. Mark: due by now.')).toBeVisible();
 	await examine(eva, 'wall');
 });
 

@@ -22,8 +22,8 @@ export const figures = {
 	wall: {
 		picture: 'What is made',
 		done: (n: number, all: number): string => `${n} of ${all} done`,
-		onSchedule: 'On schedule. The mark is where it should be.',
-		behind: (n: number): string => (n === 1 ? '1 behind. The mark is where it should be.' : `${n} behind. The mark is where it should be.`),
+		onSchedule: 'On schedule. Mark: due by now.',
+		behind: (n: number): string => `${n} behind. Mark: due by now.`,
 		noneDue: 'No order is due today',
 		freely: 'Works without orders',
 		untold: 'The model does not say when a product is done',

@@ -23,8 +23,8 @@ export const figures: Text['figures'] = {
 	wall: {
 		picture: 'Det som görs',
 		done: (n, all) => `${n} av ${all} klara`,
-		onSchedule: 'Enligt plan. Strecket är där det ska vara.',
-		behind: (n) => `${n} efter. Strecket är där det ska vara.`,
+		onSchedule: 'Enligt plan. Strecket: ska vara klart nu.',
+		behind: (n) => `${n} efter. Strecket: ska vara klart nu.`,
 		noneDue: 'Ingen order ska bli klar i dag',
 		freely: 'Arbetar utan order',
 		untold: 'Modellen säger inte när en produkt är klar',
