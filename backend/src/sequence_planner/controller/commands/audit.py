@@ -216,8 +216,8 @@ class StandingNotes:
     def look(self, packml: PackML, waits: Mapping[str, Sequence[str]], now: Timestamp) -> None:
         """Take note of how it stands now."""
         if (changed := self._packml.see(packml, now)) is not None:
-            told: dict[str, JsonValue] = {"state": changed[0].value, "since": changed[1], "monotonic": now.monotonic}
-            self._tell(PACKML, told)
+            state, since = changed
+            self._tell(PACKML, {"state": state.value, "since": since, "monotonic": now.monotonic})
         self._jobs = {job: self._jobs.get(job) or _Steady(WAITS_LAST) for job in waits}
         for job, steady in self._jobs.items():
             if (told := steady.see([*waits[job]], now)) is not None:
