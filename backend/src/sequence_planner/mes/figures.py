@@ -24,8 +24,8 @@ EXECUTE: Final = PackML.EXECUTE.value
 SUSPENDED: Final = PackML.SUSPENDED.value
 CYCLES: Final = 20  # of a work master that are remembered
 _MASTERS: Final = 100  # of which there are cycles: work masters come and go with the model
-_TREND_EVERY: Final = 900.0  # seconds between two points
-_TREND: Final = 100  # points: a day of 25 hours
+_TREND_EVERY: Final = 600.0  # seconds between two points
+_TREND: Final = 150  # points: a day of 25 hours
 _MADE: Final = 5000  # products whose orders are remembered
 _BACK: Final = 3600.0  # seconds by which a clock that is set back leaves the day as it is
 
@@ -114,7 +114,9 @@ class DayFigures(BaseModel):
         self.counted += seconds
         self.available += seconds if self.state == EXECUTE else 0.0
         share = self.availability
-        if share is not None and (not self.trend or not 0 <= now - self.trend[-1][0] < _TREND_EVERY):
+        # Not at once: of the first seconds a share says nothing.
+        last = self.trend[-1][0] if self.trend else self.since
+        if share is not None and not 0 <= now - last < _TREND_EVERY:
             self.trend = [*self.trend, (now, share)][-_TREND:]
 
     def _new_day(self) -> None:
