@@ -65,8 +65,7 @@ test('all screens', async ({ station, operate, watch, browse }) => {
 	await station.byHand('robot.pose := unknown');
 	await operate.goto(`${station.url}/restart`);
 	await operate.getByRole('button', { name: 'Enter restart mode' }).click();
-	await operate.getByRole('dialog').getByLabel('Reason').fill('It was pushed');
-	await operate.getByRole('dialog').getByRole('button', { name: 'Enter restart mode' }).click();
+	await operate.locator('main').getByRole('button', { name: /Choose a way back/ }).click();
 	await operate.locator('[data-offer]').first().waitFor({ timeout: 30_000 });
 	await take(operate, 'restart');
 

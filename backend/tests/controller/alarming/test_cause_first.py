@@ -10,6 +10,7 @@ from sequence_planner.controller.views.station import AlarmState, AlarmView, Pri
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.simulation.faults import Clear, Fault, FaultKind
+from sequence_planner.texts.message import as_it_was
 
 ROBOT_IS_STILL = "still:robot"
 
@@ -83,7 +84,12 @@ def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:
     because = ["bolts[bolt_pair_3] == placed never goes together with robot.target_pose == bolt_pair_3"]
     rig.scene.consistency.questions = [
         QuestionView(
-            variable="bolts[bolt_pair_3]", believed="placed", possible=["empty"], because=because, because_messages=[]
+            variable="bolts[bolt_pair_3]",
+            believed="placed",
+            so=as_it_was("pair 3 is placed"),
+            possible=["empty"],
+            because=because,
+            because_messages=[],
         )
     ]
     rig.run(1)

@@ -17,7 +17,7 @@ from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
 from sequence_planner.execution.state import LastOperatorPlan, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import as_it_was, message
 from support.simulated import Rig, never
 
 
@@ -159,6 +159,7 @@ def test_a_question_names_the_operations_that_it_decides() -> None:
         QuestionView(
             variable="bolts[bolt_pair_1]",
             believed="placed",
+            so=as_it_was("pair 1 is placed"),
             possible=["empty"],
             because=["a does not go with b"],
             because_messages=[],

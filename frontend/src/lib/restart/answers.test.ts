@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { alarm, estimate, view } from '#lib/testing/view.ts';
 import { answeredQuestions, openQuestions } from './answers.ts';
 
-const question = { variable: 'b', believed: 'placed', possible: ['empty'], because: [], because_messages: [] };
+const question = { variable: 'b', believed: 'placed', so: { id: 'as-it-was', arguments: { text: 'so' } }, possible: ['empty'], because: [], because_messages: [] };
 
 function asked(at: number): ReturnType<typeof view> {
 	const belief = { writer: 'Eva', at, evidence: [], unconfirmed_since: null };

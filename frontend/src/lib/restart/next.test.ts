@@ -4,7 +4,7 @@ import { offer, preview } from '#lib/testing/offer.ts';
 import { alarm, view } from '#lib/testing/view.ts';
 import { nextAct, stepOf, type Next, type Standing } from './next.ts';
 
-const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [], because_messages: [] };
+const QUESTION = { variable: 'b', believed: 'placed', so: { id: 'as-it-was', arguments: { text: 'b is placed' } }, possible: ['empty'], because: [], because_messages: [] };
 const UNDECIDED = { 'robot.go': { value: true, reacts: [], reacts_messages: [], quiet: [false], unsafe: [] } };
 const ERRAND = { kind: 'reset', title: '', title_message: { id: 'as-it-was', arguments: { text: '' } }, by: 'Eva', why: '', since: 0, ends: null, ends_message: null, into_safe: true, ability: null } as const;
 const HANDS = offer({ kind: 'physical', online: ['robot'] });

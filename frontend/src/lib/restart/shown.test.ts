@@ -10,7 +10,7 @@ describe('the page speaks of a restart', () => {
 		['in any mode but the automatic one', { mode: 'hold' }],
 		['while estimates are not confirmed', { unconfirmed: true }],
 		['while outputs are not decided', { undecided: { 'robot.go': { value: true, reacts: [], reacts_messages: [], quiet: [false], unsafe: [] } } }],
-		['while belief and measurement disagree', { questions: [{ variable: 'b', believed: 1, possible: [2], because: [], because_messages: [] }] }],
+		['while belief and measurement disagree', { questions: [{ variable: 'b', believed: 1, so: { id: 'as-it-was', arguments: { text: 'so' } }, possible: [2], because: [], because_messages: [] }] }],
 		['when there is no plan for what is active', { plan: { ...PLAN, status: 'none' }, operations: { tighten: active } }]
 	];
 	test.each(cases)('%s', (_, over) => expect(concernsRestart(view(over))).toBe(true));

@@ -52,8 +52,11 @@ function happened(view: StationView): string {
 	const texts = say().restart.steps;
 	const [first] = lastingAlarms(view);
 	const moving = Object.values(view.abilities).filter(runs).map(({ resource }) => resourceTitle(view, resource));
-	return `${first ? ended(wordsOf(first[1]).text) : modeMeaning(view)} ${moving.length === 0 ? texts.still : texts.moving([...new Set(moving)].join(', '))}`;
+	return `${first ? ended(firstOf(wordsOf(first[1]).text)) : modeMeaning(view)} ${moving.length === 0 ? texts.still : texts.moving([...new Set(moving)].join(', '))}`;
 }
+
+/** The first sentence of several. */
+const firstOf = (text: string): string => text.split(/(?<=[.!?]) /)[0] ?? text;
 
 /** With the full stop that a sentence has before another. */
 const ended = (text: string): string => (/[.!?]$/.test(text) ? text : `${text}.`);

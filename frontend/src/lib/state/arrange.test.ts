@@ -24,7 +24,7 @@ const shown = view({
 		'bolts[bolt_pair_2]': estimate({ belief: { writer: 'place', at: 900, evidence: [], unconfirmed_since: 950 } })
 	},
 	forces: { 'agv.speed': force },
-	questions: [{ variable: 'bolts[bolt_pair_2]', believed: 'placed', possible: ['empty'], because: [], because_messages: [] }]
+	questions: [{ variable: 'bolts[bolt_pair_2]', believed: 'placed', so: { id: 'as-it-was', arguments: { text: 'so' } }, possible: ['empty'], because: [], because_messages: [] }]
 });
 const names = (criteria: Partial<Criteria>): readonly string[] =>
 	arrange(entriesOf(shown), { ...EVERYTHING, ...criteria }, shown, said);

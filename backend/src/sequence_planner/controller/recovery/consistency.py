@@ -70,7 +70,12 @@ def questions(automaton: Automaton, found: Contradictions, state: State) -> list
         possible = [value for value in automaton.types[name].domain if value in said]
         because = list(found.because)
         question = QuestionView(
-            variable=name, believed=believed, possible=possible, because=[*because], because_messages=because
+            variable=name,
+            believed=believed,
+            so=message("offer.so", condition=sentences_of(automaton).tell_value(name, believed)),
+            possible=possible,
+            because=[*because],
+            because_messages=because,
         )
         asked.append((sum(said.count(value) ** 2 for value in possible), question))
     return [question for _, question in sorted(asked, key=lambda each: each[0])]

@@ -272,12 +272,13 @@ class UndecidedOutputView(View):
 class QuestionView(View):
     """What to look at: the station's belief does not fit what is measured. The first question separates most.
 
-    `variable` is what is asked about, `believed` its value, `possible` those that would fit; `because` says which
-    belief does not go together with which measurement.
+    `variable` is what is asked about, `believed` its value, `so` that it has it, in words, `possible` those that would
+    fit; `because` says which belief does not go together with which measurement.
     """
 
     variable: str
     believed: Value
+    so: Message
     possible: list[Value]
     because: list[str]
     because_messages: list[Message]
