@@ -108,8 +108,9 @@ test.describe('where people are known', () => {
 	test('orders, and the screens of administrators', async ({ browse }) => {
 		const eva = await browse(EVA, '/orders');
 		await takeControl(eva);
-		const form = eva.getByRole('region', { name: 'A new order' });
+		const form = eva.getByRole('dialog', { name: 'New order' });
 		for (const [description, priority] of [['Engine 4711', '0'], ['Engine 4712', '5'], ['Engine 4713', '1']] as const) {
+			await eva.getByRole('button', { name: 'New order' }).click();
 			await form.getByLabel('Description').fill(description);
 			await form.getByLabel('Priority').fill(priority);
 			await form.getByRole('button', { name: 'Store' }).click();

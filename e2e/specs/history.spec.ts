@@ -15,7 +15,8 @@ interface Told {
 test('the station is seen as it was, step by step, and taken along @long', async ({ operate, watch }) => {
 	const slider = operate.getByRole('slider', { name: 'Moment that is shown' });
 	const past = operate.getByTestId('past');
-	const chosen = operate.locator('[role="row"] button[aria-pressed="true"]');
+	const state = operate.getByRole('region', { name: 'State then and now' });
+	const chosen = operate.locator('.entry button[aria-pressed="true"]');
 
 	await test.step('some work is done, of which the time line tells', async () => {
 		await acknowledge(watch);
@@ -33,7 +34,8 @@ test('the station is seen as it was, step by step, and taken along @long', async
 		await expect(slider).toHaveAttribute('aria-valuenow', '10');
 		await expect(slider).toHaveAttribute('aria-valuetext', /record 10$/);
 		await expect(operate).toHaveURL(/record=10$/);
-		await expect(past.getByRole('heading', { name: /^Past: / })).toBeVisible();
+		await expect(past.getByRole('heading', { name: /^Past: / })).toBeAttached();
+		await expect(past.getByText(/, not now$/)).toBeVisible();
 		return 10;
 	});
 
@@ -42,22 +44,27 @@ test('the station is seen as it was, step by step, and taken along @long', async
 			async (n) => (await (await fetch(`/api/v1/history/${n}`)).json()) as Told,
 			number
 		);
-		await expect(past.locator('[data-then]')).not.toHaveCount(0, PREPARED);
-		const shown = await past.locator('[data-then]').evaluateAll((all) =>
+		await expect(past).toHaveAttribute('data-shown', String(number), PREPARED);
+		await expect(past.getByTestId('past-picture').locator('[data-symbol]')).not.toHaveCount(0);
+		await state.getByRole('button', { name: /^All/ }).click();
+		await expect(state.locator('[data-then]')).not.toHaveCount(0);
+		const shown = await state.locator('[data-then]').evaluateAll((all) =>
 			all.map((each) => [each.getAttribute('data-then') ?? '', each.getAttribute('data-value')] as const)
 		);
 		expect(shown.length).toBeGreaterThan(5);
 		for (const [name, value] of shown) expect(String(told.past.values[name]), name).toBe(value);
-		await past.getByLabel('Shown').selectOption('different from now');
-		await expect(past.locator('[data-then]')).not.toHaveCount(0);
+		await state.getByRole('button', { name: /^Different/ }).click();
+		await expect(state.locator('[data-then]')).not.toHaveCount(0);
+		await expect(state.locator('[data-then]:not(.was)'), 'only what differs').toHaveCount(0);
 		return told;
 	});
 
 	await test.step('the list shows the same record, and only what is sought', async () => {
+		await operate.getByRole('button', { name: 'Filter the events' }).click();
 		await operate.getByLabel('What', { exact: true }).selectOption('every record');
 		await expect(chosen).toHaveAttribute('data-record', String(number));
 		await operate.getByLabel('What', { exact: true }).selectOption('starts of the controller');
-		const rows = operate.getByRole('table', { name: 'What happened, the newest first' }).locator('.entry');
+		const rows = operate.getByRole('list', { name: 'What happened, the newest first' }).locator('.entry');
 		await expect(rows).toHaveCount(1);
 		await expect(rows).toContainText('Controller started');
 		await rows.getByRole('button').click();
@@ -65,23 +72,41 @@ test('the station is seen as it was, step by step, and taken along @long', async
 	});
 
 	await test.step('what is exported has the record as it was written', async () => {
+		await operate.getByRole('button', { name: 'Take along' }).click();
 		const [download] = await Promise.all([
 			operate.waitForEvent('download'),
 			operate.getByRole('link', { name: 'Export everything' }).click()
 		]);
+		await operate.keyboard.press('Escape');
 		const lines = (await readFile(await download.path(), 'utf8')).trimEnd().split('\n');
 		const record = JSON.parse(lines[number - 1] ?? '') as Told['record'];
 		expect(record).toMatchObject({ number, hash: told.record.hash });
 	});
 
 	await test.step('what would have been is simulated', async () => {
+		await operate.getByRole('button', { name: 'What if, from here' }).click();
 		await operate.getByLabel('Seconds to go on').fill('2');
 		await operate.getByRole('button', { name: 'Simulate' }).click();
 		await expect(operate.getByText('2 s of simulated time')).toBeVisible(PREPARED);
+		await operate.keyboard.press('Escape');
+	});
+
+	await test.step('the past is played on from there, and stopped', async () => {
+		await operate.getByRole('button', { name: '16×' }).click();
+		await operate.getByRole('button', { name: 'Play', exact: true }).click();
+		await expect.poll(async () => Number(await past.getAttribute('data-record')), PREPARED).toBeGreaterThan(1);
+		// It may have come to the end by itself.
+		if (await operate.getByRole('button', { name: 'Stop playing' }).isVisible()) await operate.getByRole('button', { name: 'Stop playing' }).click({ timeout: 2000 }).catch(() => undefined);
+		await expect(operate.getByRole('button', { name: 'Play', exact: true })).toBeVisible(PREPARED);
+	});
+
+	await test.step('what is in sight can be chosen by its length', async () => {
+		await operate.getByRole('button', { name: '2 min', exact: true }).click();
+		await expect(operate.getByRole('button', { name: '2 min', exact: true })).toHaveAttribute('aria-pressed', 'true');
 	});
 
 	await test.step('one press leads back to now', async () => {
-		await past.getByRole('button', { name: 'Back to now' }).click();
+		await operate.getByRole('button', { name: 'Back to now' }).click();
 		await expect(past).toHaveCount(0);
 		await expect(operate).toHaveURL(/history$/);
 	});
@@ -91,7 +116,7 @@ test('a link leads to a moment, and nobody is kept from it @long', async ({ oper
 	await restsOnPerson(operate, watch); // before that nothing may be recorded
 	await operate.goto(`${station.url}/history?record=3`);
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-record', '3');
-	await expect(operate.locator('[data-then]')).not.toHaveCount(0, PREPARED);
+	await expect(operate.getByTestId('past')).toHaveAttribute('data-shown', '3', PREPARED);
 	await examine(operate, 'history');
 });
 

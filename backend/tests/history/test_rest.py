@@ -115,6 +115,7 @@ def test_the_time_line_says_what_ran_when_it_begins(reader: httpx.Client) -> Non
     line = read(reader, "/line", since=middle["time"], until=everything[0]["time"])
     moment = read(reader, f"/{line['begin']}")["past"]
     assert sorted(line["running"]) == moment["running"]
+    assert sorted(line["active"]) == moment["active"]
     assert line["mode"] == moment["mode"]
     assert min(each["number"] for each in line["marks"]) > line["begin"]
 

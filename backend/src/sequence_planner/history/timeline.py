@@ -63,7 +63,8 @@ class MarkView(View):
 class LineView(View):
     """What happened between two times: the records behind number `begin`, up to `end`.
 
-    `first` and `last` are those of the whole journal. `running` had been started before, and `mode` was the mode then.
+    `first` and `last` are those of the whole journal. `running` had been started before, the operations `active` were so, and
+    `mode` was the mode then.
     Without `whole` there is too much for every start, end and plan to be a mark of its own. `bins` counts the records
     in equal parts of the time.
     """
@@ -73,6 +74,7 @@ class LineView(View):
     begin: int
     end: int
     running: list[str]
+    active: list[str]
     mode: str | None
     marks: list[MarkView]
     whole: bool
@@ -185,7 +187,7 @@ BINS: Final = 60
 ALARM: Final = "alarm"
 _ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
 _SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND.name} - {TICKED, _ASKED, _ANSWERED})
-_TOLD: Final = ("started", "ended", "called_off", "given_up", "plan", "mode")
+_TOLD: Final = ("started", "ended", "called_off", "given_up", "activated", "completed", "plan", "mode")
 _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
 _PAGE: Final = 1000
 
@@ -202,12 +204,14 @@ def line(run: WholeRun, since: float, until: float) -> LineView | None:
     if marks is None or not whole:
         found = run.after(before, MOST_MARKS + 1, _SELDOM)
         marks = [_mark(each) for each in found if each.number <= end]
+    running, active = _under_way(run, before) if whole else ([], [])
     return LineView(
         first=_place(first),
         last=_place(last),
         begin=before,
         end=end,
-        running=_running(run, before) if whole else [],
+        running=running,
+        active=active,
         mode=_mode(run, before),
         marks=marks[:MOST_MARKS],
         whole=whole,
@@ -249,13 +253,14 @@ def _mark(record: RunRecord) -> MarkView:
     return MarkView(number=record.number, time=record.time, kind=record.kind, content=told)
 
 
-def _running(run: WholeRun, number: int) -> list[str]:
-    """Return what had been started up to a record and had not ended."""
+def _under_way(run: WholeRun, number: int) -> tuple[list[str], list[str]]:
+    """Return the abilities that had been started up to a record and had not ended, and the operations active then."""
     whole = next(iter(run.before(number + 1, 1, (BEGUN, SNAPSHOT))), None)
     if whole is None:
-        return []
-    past = json.loads(whole.content)["memory"]["order.past"]
-    running = {each["ability"]: None for each in past if each.get("ended") is None}
+        return [], []
+    memory = json.loads(whole.content)["memory"]
+    running = {each["ability"]: None for each in memory["order.past"] if each.get("ended") is None}
+    active = dict.fromkeys(memory["active"])
     for record in run.after(whole.number, max(number - whole.number, 0), (TICKED,)):
         if record.number > number or not any(part in record.content for part in _TELLING):
             continue
@@ -263,7 +268,10 @@ def _running(run: WholeRun, number: int) -> list[str]:
         for name in (*content.get("ended", ()), *content.get("called_off", ())):
             running.pop(name, None)
         running |= dict.fromkeys(content.get("started", ()))
-    return list(running)
+        for name in content.get("completed", ()):
+            active.pop(name, None)
+        active |= dict.fromkeys(content.get("activated", ()))
+    return list(running), list(active)
 
 
 def _mode(run: WholeRun, number: int) -> str | None:

@@ -12,6 +12,10 @@ const PATIENCE = 70_000;
 /** Milliseconds for a record or a place of the line, also where the machine is busy. */
 const SOON = 20_000;
 
+/** Seconds of a record of which not all is shown at once, and of a day. */
+const LONG = 12 * 3600;
+const DAY = 24 * 3600;
+
 /** What a person wants to see: a record by its number, or the one at a time. */
 interface Wish {
 	readonly number: number | null;
@@ -36,6 +40,8 @@ export class History {
 	/** What happened in `lineWindow`; null before it is known. */
 	line = $state.raw<TimeLine | null>(null);
 	acts = $state.raw<readonly Act[]>([]);
+	/** The whole of the record, or of the day where that is long; null before it is known. */
+	overview = $state.raw<{ readonly window: Window; readonly line: TimeLine } | null>(null);
 	/** The line goes on with time. */
 	follows = $state(true);
 	/** The chosen record; null: nothing but now. */
@@ -93,6 +99,36 @@ export class History {
 			this.window = within({ from: last.time - USUAL, to: last.time }, first.time, last.time);
 			this.#again = true;
 		}
+	}
+
+	/** Reads how much happened all the time, or on the day of what is in sight where that is long. */
+	async lookOver(): Promise<void> {
+		const { first, last } = this.line ?? {};
+		if (first === undefined || last === undefined) return;
+		const now = Math.max(last.time, this.follows ? Date.now() / 1000 : last.time);
+		const midnight = new Date(((this.window.from + this.window.to) / 2) * 1000).setHours(0, 0, 0, 0) / 1000;
+		const short = now - first.time <= LONG;
+		const from = short ? first.time : Math.max(midnight, first.time);
+		const to = short ? now : Math.min(midnight + DAY, now);
+		if (to <= from) return;
+		const answer = await request<TimeLine>('GET', `/api/v1/history/line?since=${from}&until=${to}`, { patience: SOON });
+		if (answer.ok) this.overview = { window: { from, to }, line: answer.value };
+	}
+
+	/** Shows a part of this length: that around the chosen moment, else the latest. */
+	stretch(length: number): void {
+		const { first, last } = this.line ?? {};
+		if (!Number.isFinite(length)) {
+			if (first && last) this.see({ from: first.time, to: last.time });
+			return;
+		}
+		if (this.place === null && this.follows) {
+			this.window = { from: this.window.to - length, to: this.window.to };
+			void this.look();
+			return;
+		}
+		const middle = this.place?.time ?? (this.window.from + this.window.to) / 2;
+		this.see({ from: middle - length / 2, to: middle + length / 2 });
 	}
 
 	/** Shows another part of the line. */

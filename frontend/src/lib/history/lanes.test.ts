@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import type { Mark, TimeLine } from '#lib/contract.ts';
-import { gathered, lanesOf, nearest, runsOf, type Spot } from './lanes.ts';
+import { gathered, lanesOf, nearest, placed, runsOf, type Bar, type Spot } from './lanes.ts';
 import { namesOf } from './names.ts';
 
 const names = namesOf(null);
@@ -13,7 +13,7 @@ function mark(number: number, time: number, kind: string, content: Mark['content
 function line(marks: Mark[], rest: Partial<TimeLine> = {}): TimeLine {
 	const first = { number: 1, time: 0 };
 	const last = { number: 99, time: 190 };
-	return { first, last, begin: 10, end: 99, running: [], mode: 'paused', marks, whole: true, bins: [], ...rest };
+	return { first, last, begin: 10, end: 99, running: [], active: [], mode: 'paused', marks, whole: true, bins: [], ...rest };
 }
 
 describe('what ran', () => {
@@ -40,10 +40,10 @@ test('each thing has its lane', () => {
 		line([
 			mark(11, 110, 'mode-changed', { mode: 'automatic', by: 'Eva' }),
 			mark(12, 120, 'answered', { plan: { status: 'followed', reason: '', replaced: true } }),
-			mark(13, 130, 'ticked', { started: ['robot.move'] }),
-			mark(14, 140, 'alarm', { event: 'came', text: 'The robot is silent' }),
-			mark(15, 150, 'corrected', { values: { bolts: 'empty' } })
-		]),
+			mark(13, 130, 'ticked', { started: ['robot.move'], completed: ['bring'], activated: ['place'] }),
+			mark(14, 140, 'alarm', { event: 'came', text: 'The robot is silent', priority: 'high' }),
+			mark(15, 150, 'by-hand', { changed: { bolts: ['empty', 'placed'] } })
+		], { active: ['bring'] }),
 		[],
 		{ window, until: Infinity, resources: ['robot', 'tool'], names }
 	);
@@ -55,8 +55,32 @@ test('each thing has its lane', () => {
 	expect(lane('plan')?.spots.map((spot) => spot.label)).toEqual(['Plan replaced']);
 	expect(lane('of robot')?.bars.map((bar) => bar.number)).toEqual([13]);
 	expect(lane('of tool')?.bars).toEqual([]);
-	expect(lane('alarms')?.spots.map((spot) => spot.label)).toEqual(['Alarm came: The robot is silent']);
-	expect(lane('hand')?.spots.map((spot) => spot.number)).toEqual([15]);
+	expect(lane('people')?.spots.map(({ label, alarm }) => [label, alarm])).toEqual([
+		['Moved by hand, or by nothing the model knows: bolts: empty → placed', undefined],
+		['Alarm came: The robot is silent', 'high']
+	]);
+	expect(lane('operations')?.bars.map(({ label, from, to, open }) => [label, from, to, open])).toEqual([
+		['bring', 100, 130, false],
+		['place', 130, 200, true]
+	]);
+});
+
+test('what was called off as it did not end in time has failed, and what a person stopped has not', () => {
+	const marks = [
+		mark(11, 110, 'ticked', { started: ['tool.run', 'robot.move'] }),
+		mark(12, 130, 'ticked', { called_off: ['tool.run'] }),
+		mark(13, 140, 'called-off', { called_off: ['robot.move'] })
+	];
+	const runs = runsOf(line(marks), window, Infinity);
+	expect(runs.get('tool.run')).toMatchObject([{ to: 130, failed: true }]);
+	expect(runs.get('robot.move')?.[0]?.failed).toBeUndefined();
+});
+
+test('bars that last at the same time stand one below the other, in three rows at most', () => {
+	const bar = (from: number, to: number): Bar => ({ from, to, label: '', number: null, open: false });
+	const { rows, all } = placed([bar(0, 10), bar(2, 12), bar(3, 13), bar(4, 14), bar(12, 20)]);
+	expect(rows).toBe(3);
+	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1', '2', '2 crowded', '0']);
 });
 
 test('marks that would cover one another are one, and what is pressed is the nearest', () => {

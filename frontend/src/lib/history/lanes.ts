@@ -1,11 +1,12 @@
-/** What a time line draws: a lane for each resource with what ran, and lanes for all else that happened. */
-import type { TimeLine } from '#lib/contract.ts';
+/** What a time line draws: lanes for the mode, the operations, each resource with what ran, and all else that happened. */
+import { initialsOf } from '#lib/account/initials.ts';
+import type { Priority, TimeLine } from '#lib/contract.ts';
 import type { Act } from '#lib/journal/acts.ts';
 import { actText, actorText, subjectText } from '#lib/journal/wording.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { shareOf, type Window } from '#lib/axis/window.ts';
 import type { Names } from './names.ts';
 import { modeText, partOf, planWords, textsOf, told } from './told.ts';
-import { shareOf, type Window } from '#lib/axis/window.ts';
 
 /** Something that lasted. Without a number it began before the window; the end is open where it goes on. */
 export interface Bar {
@@ -14,6 +15,10 @@ export interface Bar {
 	readonly label: string;
 	readonly number: number | null;
 	readonly open: boolean;
+	/** It was called off, as it did not end in time. */
+	readonly failed?: boolean;
+	/** It is not as usual: not the mode in which the station works by itself. */
+	readonly other?: boolean;
 }
 
 /** Something that happened at once: a record, or an act of a person, which is found by its time. */
@@ -23,17 +28,24 @@ export interface Spot {
 	readonly number: number | null;
 	readonly act: Act | null;
 	readonly refused: boolean;
+	/** The letters of a person, or the priority of an alarm that came. */
+	readonly by?: string;
+	readonly alarm?: Priority;
 }
 
 export interface Lane {
 	readonly id: string;
 	readonly title: string;
+	/** Whose lane it is, where it is that of a resource. */
+	readonly resource?: string;
 	readonly bars: readonly Bar[];
 	readonly spots: readonly Spot[];
 }
 
 const MODE_KINDS = new Set(['production-started', 'called-off', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped']);
-const HAND_KINDS = new Set(['corrected', 'confirmed', 'forced', 'force-released', 'service-changed', 'by-hand']);
+/** What people did by command is among their acts; this the station has noticed by itself. */
+const NOTICED = new Set(['by-hand']);
+const PRIORITIES: readonly unknown[] = ['high', 'medium', 'low'] satisfies Priority[];
 
 /** What is drawn, and how: `resources` have a lane each, in their order; what goes on is drawn up to `until`. */
 export interface Drawing {
@@ -68,14 +80,13 @@ export function lanesOf(
 		const label = names.ability(ability);
 		byResource.set(of, [...(byResource.get(of) ?? []), ...bars.map((bar) => ({ ...bar, label }))]);
 	}
+	const operations = line.whole ? operationsOf(line, window, until) : [];
 	return [
-		{ id: 'people', title: words.people, bars: [], spots: acts.map(actSpot) },
 		{ id: 'mode', title: words.mode, bars: modesOf(line, window, until), spots: spots(MODE_KINDS) },
-		{ id: 'plan', title: words.plan, bars: [], spots: plans },
-		...[...byResource].map(([id, bars]) => ({ id: `of ${id}`, title: names.resource(id), bars, spots: [] })),
-		{ id: 'hand', title: words.hand, bars: [], spots: spots(HAND_KINDS) },
-		{ id: 'alarms', title: words.alarms, bars: [], spots: spots(new Set(['alarm'])) },
-		{ id: 'controller', title: words.controller, bars: [], spots: spots(new Set(['begun'])) }
+		{ id: 'operations', title: words.operations, bars: operations.map((bar) => ({ ...bar, label: names.operation(bar.label) })), spots: [] },
+		...[...byResource].map(([id, bars]) => ({ id: `of ${id}`, title: names.resource(id), resource: id, bars, spots: [] })),
+		{ id: 'plan', title: words.plan, bars: [], spots: [...plans, ...spots(new Set(['begun']))] },
+		{ id: 'people', title: words.people, bars: [], spots: [...acts.map(actSpot), ...spots(NOTICED), ...alarmsOf(line, names)] }
 	];
 }
 
@@ -84,17 +95,30 @@ function actSpot(act: Act): Spot {
 	const on = subjectText(act.record);
 	const refused = ['refused', 'failed'].includes((act.end ?? act.record).entry.outcome);
 	const label = `${actorText(entry.actor)}: ${actText(entry.action)}${on === '' ? '' : `, ${on}`}`;
-	return { time, label, number: null, act, refused };
+	return { time, label, number: null, act, refused, by: initialsOf(entry.actor.name) };
+}
+
+/** The alarms of a line; those that came have their priority. */
+export function alarmsOf(line: Pick<TimeLine, 'marks'>, names: Names): Spot[] {
+	return line.marks
+		.filter(({ kind }) => kind === 'alarm')
+		.map((mark) => {
+			const { what, on } = told(mark, names);
+			const found = mark.content['priority'] ?? partOf(mark.content, 'what')?.['priority'];
+			const event = mark.content['event'] ?? partOf(mark.content, 'what')?.['event'];
+			const spot: Spot = { time: mark.time, label: on === '' ? what : `${what}: ${on}`, number: mark.number, act: null, refused: false };
+			return event === 'came' && PRIORITIES.includes(found) ? { ...spot, alarm: found as Priority } : spot;
+		});
 }
 
 /** When each ability ran. What had been started before the window begins with it, what did not end goes on. */
 export function runsOf(line: TimeLine, window: Window, until: number): Map<string, Bar[]> {
 	const runs = new Map<string, Bar[]>();
 	const open = new Map<string, { from: number; number: number | null }>();
-	const close = (ability: string, to: number, stays: boolean): void => {
+	const close = (ability: string, to: number, stays: boolean, failed = false): void => {
 		const begun = open.get(ability) ?? { from: window.from, number: null };
 		open.delete(ability);
-		const bar = { ...begun, to, label: ability, open: stays };
+		const bar = { ...begun, to, label: ability, open: stays, ...(failed ? { failed } : {}) };
 		runs.set(ability, [...(runs.get(ability) ?? []), bar]);
 	};
 	for (const ability of line.running) open.set(ability, { from: window.from, number: null });
@@ -103,8 +127,10 @@ export function runsOf(line: TimeLine, window: Window, until: number): Map<strin
 			for (const ability of [...open.keys()]) close(ability, time, true);
 			continue;
 		}
-		for (const ability of [...textsOf(content['ended']), ...textsOf(content['called_off'])])
-			if (open.has(ability)) close(ability, time, false);
+		for (const ability of textsOf(content['ended'])) if (open.has(ability)) close(ability, time, false);
+		// A tick calls off what is overdue, any other record what a person has stopped.
+		for (const ability of textsOf(content['called_off']))
+			if (open.has(ability)) close(ability, time, false, kind === 'ticked');
 		for (const ability of textsOf(content['started'])) {
 			if (open.has(ability)) close(ability, time, true);
 			open.set(ability, { from: time, number });
@@ -115,13 +141,32 @@ export function runsOf(line: TimeLine, window: Window, until: number): Map<strin
 	return runs;
 }
 
+/** When each operation was active. */
+function operationsOf(line: TimeLine, window: Window, until: number): Bar[] {
+	const bars: Bar[] = [];
+	const open = new Map<string, { from: number; number: number | null }>();
+	for (const name of line.active) open.set(name, { from: window.from, number: null });
+	for (const { content, time, number } of line.marks) {
+		for (const name of textsOf(content['completed'])) {
+			const begun = open.get(name);
+			if (begun !== undefined) bars.push({ ...begun, to: time, label: name, open: false });
+			open.delete(name);
+		}
+		for (const name of textsOf(content['activated'])) open.set(name, { from: time, number });
+	}
+	const end = Math.min(window.to, Math.max(until, window.from));
+	for (const [name, begun] of open) bars.push({ ...begun, to: end, label: name, open: true });
+	return bars.sort((a, b) => a.from - b.from);
+}
+
 /** The modes one after the other. */
 function modesOf(line: TimeLine, window: Window, until: number): Bar[] {
 	const bars: Bar[] = [];
 	let last = line.mode === null ? null : { from: window.from, mode: line.mode, number: null as number | null };
 	const end = Math.min(window.to, Math.max(until, window.from));
 	const close = (to: number): void => {
-		if (last !== null && to > last.from) bars.push({ from: last.from, to, label: modeText(last.mode), number: last.number, open: false });
+		if (last !== null && to > last.from)
+			bars.push({ from: last.from, to, label: modeText(last.mode), number: last.number, open: false, other: last.mode !== 'automatic' });
 	};
 	for (const { content, time, number } of line.marks) {
 		const mode = content['mode'] ?? partOf(content, 'what')?.['mode'];
@@ -131,6 +176,31 @@ function modesOf(line: TimeLine, window: Window, until: number): Bar[] {
 	}
 	close(end);
 	return bars;
+}
+
+/** Rows of a lane at most; what would need another one is drawn in the last, without words. */
+export const MOST_ROWS = 3;
+
+export interface Placed {
+	readonly bar: Bar;
+	readonly row: number;
+	/** There is no room for its words: another one is there. */
+	readonly crowded: boolean;
+}
+
+/** Bars that last at the same time one below the other. */
+export function placed(bars: readonly Bar[]): { readonly rows: number; readonly all: readonly Placed[] } {
+	const ends: number[] = [];
+	const all = [...bars]
+		.sort((a, b) => a.from - b.from)
+		.map((bar): Placed => {
+			const free = ends.findIndex((end) => end <= bar.from);
+			const row = free >= 0 ? free : Math.min(ends.length, MOST_ROWS - 1);
+			const crowded = free < 0 && ends.length === MOST_ROWS;
+			ends[row] = Math.max(ends[row] ?? -Infinity, bar.to);
+			return { bar, row, crowded };
+		});
+	return { rows: Math.max(1, ends.length), all };
 }
 
 /** What is nearest to a time in a lane, at most `reach` seconds away: something that began or happened there. */

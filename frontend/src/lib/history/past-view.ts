@@ -1,0 +1,28 @@
+/** The station as it was, as a document that a picture is drawn of. */
+import type { Past, StationView } from '#lib/contract.ts';
+
+/**
+ * `view`, with what is known of a moment of the past instead of what is so now. Of alarms, tasks and what was heard nothing is
+ * known of that moment; a variable that the past does not have is unknown.
+ */
+export function pastView(view: StationView, past: Past): StationView {
+	const running = new Set(past.running);
+	const active = new Set(past.active);
+	const each = <From, To>(all: Readonly<Record<string, From>>, of: (one: From, name: string) => To): Record<string, To> =>
+		Object.fromEntries(Object.entries(all).map(([name, one]) => [name, of(one, name)]));
+	return {
+		...view,
+		mode: past.mode,
+		packml: past.packml,
+		production: past.production,
+		stepping: past.stepping,
+		by_order: past.by_order,
+		jobs: past.jobs,
+		variables: each(view.variables, (one, name) => ({ ...one, value: past.values[name] ?? null })),
+		abilities: each(view.abilities, (one, name) => ({ ...one, executing: running.has(name), enabled: null, running_since: null })),
+		operations: each(view.operations, (one, name) => ({ ...one, active: active.has(name) })),
+		resources: each(view.resources, (one) => ({ ...one, online: true, awaited_topics: [] })),
+		alarms: {},
+		tasks: {}
+	};
+}
