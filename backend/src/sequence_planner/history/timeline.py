@@ -63,10 +63,9 @@ class MarkView(View):
 class LineView(View):
     """What happened between two times: the records behind number `begin`, up to `end`.
 
-    `first` and `last` are those of the whole journal. `running` had been started before, the operations `active` were so, and
-    `mode` was the mode then.
-    Without `whole` there is too much for every start, end and plan to be a mark of its own. `bins` counts the records
-    in equal parts of the time.
+    `first` and `last` are those of the whole journal. `running` had been started before, the operations `active` were
+    so, and `mode` was the mode then. Without `whole` there is too much for every start, end and plan to be a mark of
+    its own. `bins` counts the records in equal parts of the time.
     """
 
     first: PlaceView
