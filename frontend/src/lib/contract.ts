@@ -212,5 +212,7 @@ export type MimicSymbol = Schemas['MimicSymbol'];
 export type MimicTrack = Schemas['MimicTrack'];
 export type MimicStop = Schemas['MimicStop'];
 export type MimicPart = Schemas['MimicPart'];
+export type MimicDrawing = Schemas['MimicDrawing'];
+export type MimicBound = Schemas['MimicBound'];
 export type MimicTest = Schemas['MimicTest'];
 export type MimicText = Schemas['MimicText'];

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton
@@ -11,9 +11,12 @@ from sequence_planner.automaton.findings import Findings, without_arguments
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import IntegerRange, Value
 from sequence_planner.mimic.motion import motions
-from sequence_planner.mimic.parts import labels_of, looks_of, text_of_value
+from sequence_planner.mimic.parts import labels_of, looks_of, text_of_value, titles_of
+from sequence_planner.mimic.svg import TEXTS, drawing_of
 from sequence_planner.mimic.views import (
     Box,
+    MimicBound,
+    MimicDrawing,
     MimicFinding,
     MimicLevel,
     MimicPart,
@@ -27,6 +30,7 @@ from sequence_planner.mimic.views import (
 )
 from sequence_planner.model.documents import Words, words_of
 from sequence_planner.model.mimic.documents import (
+    BindDocument,
     MimicDocument,
     PartDocument,
     SlotDocument,
@@ -37,12 +41,17 @@ from sequence_planner.model.mimic.documents import (
 from sequence_planner.model.source import SourceText
 
 _ROOM: Final = 120.0  # for the title of a stop
+_MOST_ELEMENTS: Final = 20_000
 _PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 
 
-def drawn(automaton: Automaton, document: MimicDocument, findings: Findings) -> MimicView:
-    """The picture of `document`; what it binds that is not there is noted in `findings` and left out."""
-    drawing = _Drawing(automaton, document, findings)
+def drawn(
+    automaton: Automaton, document: MimicDocument, drawings: Mapping[str, SourceText], findings: Findings
+) -> MimicView:
+    """The picture of `document`, with the texts of its own `drawings`; what it binds that is not there is noted in
+    `findings` and left out.
+    """
+    drawing = _Drawing(automaton, document, drawings, findings)
     symbols = [drawing.symbol(name, each) for name, each in document.symbols.items()]
     width, height = document.size
     return MimicView(made_from="file", width=width, height=height, symbols=symbols, findings=as_shown(findings))
@@ -57,8 +66,13 @@ def as_shown(findings: Findings) -> list[MimicFinding]:
 
 
 class _Drawing:
-    def __init__(self, automaton: Automaton, document: MimicDocument, findings: Findings) -> None:
+    def __init__(
+        self, automaton: Automaton, document: MimicDocument, drawings: Mapping[str, SourceText], findings: Findings
+    ) -> None:
         self._automaton, self._findings = automaton, findings
+        self._texts = drawings
+        self._drawings: dict[str, MimicDrawing | None] = {}
+        self._elements = 0
         self._size = document.size
         self._families: dict[str, list[str]] = {}
         for name in automaton.variables:
@@ -87,6 +101,7 @@ class _Drawing:
             active=self._tests(document.active) or [],
             visible=self._tests(document.visible) or [],
             level=None if document.level is None else self._level(document.level),
+            drawing=self._own(document.drawing, document.bind),
             track=None if document.track is None else self._track(document.track),
             slots=[slot for each in document.slots if (slot := self._slot(each)) is not None],
             parts=[part for each in document.parts for part in self._parts(each)],
@@ -187,8 +202,59 @@ class _Drawing:
         holds = self._tests(document.holds)
         if holds is None:
             return None
-        box = _box(document.at, document.size)
-        return MimicSlot(box=box, title=dict(words_of(document.title)), symbol=document.symbol, holds=holds)
+        return MimicSlot(
+            box=_box(document.at, document.size),
+            title=dict(words_of(document.title)),
+            symbol=document.symbol,
+            drawing=self._own(document.drawing, {}),
+            holds=holds,
+        )
+
+    # Drawings of the station's own.
+
+    def _own(self, file: SourceText | None, binds: Mapping[SourceText, BindDocument]) -> MimicDrawing | None:
+        """A drawing, with what its elements follow."""
+        if file is None:
+            for name in binds:
+                self._findings.add(name, "there is no `drawing` here whose elements could follow something")
+            return None
+        if not self._known(file, self._texts, "file"):
+            return None
+        name = str(file)
+        if name not in self._drawings:
+            text = self._texts[name]
+            self._drawings[name] = drawing_of(text, text.place.file, self._findings)
+        drawing = self._drawings[name]
+        if drawing is None:
+            return None
+        self._elements += len(drawing.elements)
+        if self._elements > _MOST_ELEMENTS:
+            self._findings.add(file, f"left out: the drawings of a picture have at most {_MOST_ELEMENTS} elements")
+            return None
+        names = {each.attributes["id"]: each.name for each in drawing.elements if "id" in each.attributes}
+        bound = [
+            self._bound(str(name), names[name], bind)
+            for name, bind in binds.items()
+            if self._known(name, names, "element")
+        ]
+        return drawing.model_copy(update={"bound": bound})
+
+    def _bound(self, name: str, element: str, bind: BindDocument) -> MimicBound:
+        says = bind.text
+        if says is not None and element not in TEXTS:
+            near = says if isinstance(says, SourceText) else says.en
+            self._findings.add(near, f"`{name}` is a `{element}`, and only a `text` or `tspan` says something")
+            says = None
+        if bind.when and bind.role is None:
+            self._findings.add(next(iter(bind.when)), "there is no `role` here that it could have then")
+        tests = self._tests(bind.when)
+        return MimicBound(
+            element=name,
+            visible=self._tests(bind.visible) or [],
+            role=None if tests is None else bind.role,
+            when=tests or [],
+            text={} if says is None else self._text(says),
+        )
 
     def _parts(self, document: PartDocument) -> list[MimicPart]:
         """The part; of an indexed variable one for each of its values."""
@@ -207,6 +273,7 @@ class _Drawing:
                 looks[str(value)] = look
             else:
                 self._findings.add(value, f"`{document.of}` is never `{value}`{suggestion(value, looks)}")
+        titles = titles_of(self._automaton, members[0])
         single = members == [str(document.of)]
         labels = [""] if single else labels_of([name[name.index("[") + 1 : -1].split(", ")[-1] for name in members])
         marks = document.marks
@@ -229,6 +296,7 @@ class _Drawing:
                     marks=[(x + dx, y + dy) for dx, dy in marks],
                     size=document.size,
                     looks=looks,
+                    titles=titles,
                 )
             )
         return parts

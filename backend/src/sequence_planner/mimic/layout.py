@@ -14,7 +14,7 @@ from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.language.types import IntegerRange
 from sequence_planner.mimic.motion import Motion, motions
-from sequence_planner.mimic.parts import labels_of, looks_of
+from sequence_planner.mimic.parts import labels_of, looks_of, titles_of
 from sequence_planner.mimic.views import Box, MimicLevel, MimicPart, MimicStop, MimicSymbol, MimicTrack, MimicView
 from sequence_planner.model.mimic.documents import SymbolKind
 
@@ -186,6 +186,7 @@ class _Layout:
             marks=[at],
             size=size,
             looks=looks,
+            titles=titles_of(self._automaton, name),
         )
 
     # What has many stops: a line with branches, across the whole picture.
@@ -369,6 +370,7 @@ def _symbol(
         active=[],
         visible=[],
         level=level,
+        drawing=None,
         track=track,
         slots=[],
         parts=list(parts),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.language.types import IntegerRange, Type, Value
 from sequence_planner.model.mimic.documents import Look
 
@@ -18,6 +20,14 @@ def looks_of(of: Type) -> dict[str, Look]:
     if len(values) > 1 and not isinstance(of, IntegerRange):
         looks[values[-1]] = "done"
     return looks
+
+
+def titles_of(automaton: Automaton, variable: str) -> dict[str, dict[str, str]]:
+    """What the values of a variable are called by people, for those that the model has words for."""
+    written = automaton.titles
+    of, own = automaton.variables[variable].type, written.variables.get(without_arguments(variable))
+    called = {value: (own.values.get(value) if own else None) or written.of_value(of, value) for value in of.domain}
+    return {text_of_value(value): dict(words) for value, words in called.items() if words}
 
 
 def text_of_value(value: Value) -> str:

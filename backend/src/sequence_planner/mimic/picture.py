@@ -18,7 +18,7 @@ def picture_of(automaton: Automaton, station: Station | None) -> MimicView:
     findings = Findings()
     findings.all += station.undrawn
     if station.mimic is not None:
-        return drawn(automaton, station.mimic, findings)
+        return drawn(automaton, station.mimic, station.drawings, findings)
     return made_from(automaton).model_copy(update={"findings": as_shown(findings)})
 
 
@@ -27,5 +27,5 @@ def undrawn_of(automaton: Automaton, station: Station) -> list[Finding]:
     findings = Findings()
     findings.all += station.undrawn
     if station.mimic is not None:
-        drawn(automaton, station.mimic, findings)
+        drawn(automaton, station.mimic, station.drawings, findings)
     return sorted(set(findings.all))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from sequence_planner.core.data_models import DataModel
-from sequence_planner.model.mimic.documents import Look, SymbolKind
+from sequence_planner.model.mimic.documents import ColourRole, Look, SymbolKind
 
 Value = bool | int | str
 
@@ -74,6 +74,44 @@ class MimicPart(DataModel):
     marks: list[tuple[float, float]]
     size: float
     looks: dict[str, Look]  # by values as text
+    titles: dict[str, dict[str, str]]  # of values that have some, by values as text
+
+
+class MimicElement(DataModel):
+    """An element of a drawing, or a piece of text where it has no name. It stands `inside` an earlier one, by the
+    number of that; null: at the top.
+    """
+
+    inside: int | None
+    name: str
+    attributes: dict[str, str]
+    text: str
+
+
+class MimicBound(DataModel):
+    """What an element of a drawing follows: it is drawn while all of `visible` are so, in the colour of its `role`
+    while all of `when` are so, and says `text`.
+    """
+
+    element: str
+    visible: list[MimicTest]
+    role: ColourRole | None
+    when: list[MimicTest]
+    text: dict[str, str]  # empty: its own
+
+
+class MimicDrawing(DataModel):
+    """A drawing of the station's own, without anything that runs or that loads something. It shows a rectangle of its
+    own units.
+    """
+
+    file: str
+    x: float
+    y: float
+    width: float
+    height: float
+    elements: list[MimicElement]
+    bound: list[MimicBound]
 
 
 class MimicSlot(DataModel):
@@ -82,6 +120,7 @@ class MimicSlot(DataModel):
     box: Box
     title: dict[str, str]
     symbol: SymbolKind
+    drawing: MimicDrawing | None  # in place of the symbol
     holds: list[MimicTest]
 
 
@@ -105,6 +144,7 @@ class MimicSymbol(DataModel):
     active: list[MimicTest]
     visible: list[MimicTest]
     level: MimicLevel | None
+    drawing: MimicDrawing | None
     track: MimicTrack | None
     slots: list[MimicSlot]
     parts: list[MimicPart]

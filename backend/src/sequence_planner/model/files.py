@@ -17,7 +17,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import NamedTuple
 
-from sequence_planner.model.paths import DEFINITIONS, FILES, EditError
+from sequence_planner.model.paths import DEFINITIONS, DRAWING, DRAWINGS, FILES, EditError
 from sequence_planner.model.yaml.saving import BYTE_ORDER_MARK
 
 # Texts by their paths below the model's folder, such as `resources/robot.yaml`.
@@ -39,7 +39,7 @@ MOST_FILES = 2_000
 MOST_CHARACTERS = 10_000_000  # of all files together
 STAGES = "stages"
 _UNFINISHED = ".unfinished"
-SEARCHED_FOLDERS = ("resources", "types", "messages", "packages")  # where files are looked for
+SEARCHED_FOLDERS = ("resources", "types", "messages", DRAWINGS, "packages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -47,6 +47,7 @@ _NO_TEXT = re.compile("[\0\ud800-\udfff]")
 _OF_PACKAGE = rf"package\.yaml|types/{_NAME}\.yaml|{_DEFINITIONS}"
 _PATH = re.compile(
     rf"{'|'.join(map(re.escape, FILES))}|packages\.lock|(?:resources|types)/{_NAME}\.yaml|{_DEFINITIONS}"
+    rf"|{DRAWINGS}/{DRAWING.pattern}"
     rf"|packages/{_NAME}/(?:{_OF_PACKAGE})"
 )
 
@@ -61,8 +62,8 @@ def check_path(path: str) -> None:
     if not is_of_model(path):
         raise EditError(
             f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, "
-            "types/<name>.yaml, messages/<package>/msg/<Name>.msg (or srv, or action), packages.lock, and those of a "
-            "package in packages/<name>"
+            "types/<name>.yaml, messages/<package>/msg/<Name>.msg (or srv, or action), drawings/<name>.svg, "
+            "packages.lock, and those of a package in packages/<name>"
         )
 
 

@@ -2,6 +2,7 @@
 
 station.yaml  resources/*.yaml  types/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  mimic.yaml
 messages/<package>/msg/*.msg  messages/<package>/srv/*.srv  messages/<package>/action/*.action
+drawings/*.svg
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.fields import DocumentPart
-from sequence_planner.model.paths import DEFINITIONS, FILES, FOLDERS
+from sequence_planner.model.paths import DEFINITIONS, DRAWING, DRAWINGS, FILES, FOLDERS
 from sequence_planner.model.sequences import SequenceDocument, is_sequence
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
@@ -42,8 +43,8 @@ D = TypeVar("D", bound=BaseModel)
 class Station:
     """A station as written. `messages` is the folder of its message definitions; `empty` are the places of files of
     entries that are there and have none. `sequences` stand among the operations. `layers` are
-    each instance and its types. `mimic` is its picture, and `undrawn` what keeps it from being drawn: no station stands
-    still because of that.
+    each instance and its types. `mimic` is its picture, with the texts of the `drawings` of its own, and `undrawn` what
+    keeps it from being drawn: no station stands still because of that.
     """
 
     folder: Path
@@ -57,6 +58,7 @@ class Station:
     layers: Mapping[str, Sequence[Layer]] = field(default_factory=dict, compare=False, repr=False)
     mimic: MimicDocument | None = None
     undrawn: tuple[Finding, ...] = ()
+    drawings: Mapping[str, SourceText] = field(default_factory=dict)
 
     @property
     def messages(self) -> Path:
@@ -116,7 +118,7 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     sequences = {name: each for name, each in entries.items() if isinstance(each, SequenceDocument)}
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
-    mimic, undrawn = reader.mimic()
+    mimic, undrawn, drawings = reader.mimic()
     reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
@@ -133,6 +135,7 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
         reader.layers,
         mimic,
         undrawn,
+        drawings,
     )
 
 
@@ -187,17 +190,30 @@ class _FolderReader:
         found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
         return cast("D | None", found)
 
-    def mimic(self) -> tuple[MimicDocument | None, tuple[Finding, ...]]:
-        """The picture, and what is wrong with its form."""
+    def mimic(self) -> tuple[MimicDocument | None, tuple[Finding, ...], dict[str, SourceText]]:
+        """The picture, what is wrong with its form, and the drawings for it."""
         if not (self._folder / "mimic.yaml").exists():
-            return None, ()
+            return None, (), {}
         from sequence_planner.model.mimic.documents import MimicDocument  # noqa: PLC0415 (few stations have one)
 
         before = len(self.findings)
         document = self.whole("mimic.yaml", MimicDocument)
+        drawings: dict[str, SourceText] = {}
+        for path in sorted((self._folder / DRAWINGS).glob("[!.]*")):
+            place = Place(str(path), 1, 1)
+            if not DRAWING.fullmatch(path.name):
+                message = "this is not read: a drawing is a file <name>.svg, with letters, digits and `_` in its name"
+                self.findings.append(Finding(place, message))
+                continue
+            try:
+                text = text_of(path, str(path))
+            except ModelError as error:
+                self.findings += error.findings
+            else:
+                drawings[f"{DRAWINGS}/{path.name}"] = SourceText(text, place, text)
         undrawn = tuple(self.findings[before:])
         del self.findings[before:]
-        return document, undrawn
+        return document, undrawn, drawings
 
     def packaged(
         self, station: StationDocument | None

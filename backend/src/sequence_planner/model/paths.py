@@ -12,9 +12,12 @@ if TYPE_CHECKING:
 
 # What lies in a station's folder.
 
-FOLDERS = ("resources", "types", "messages", "stages", "packages")
+DRAWINGS = "drawings"
+FOLDERS = ("resources", "types", "messages", DRAWINGS, "stages", "packages")
 # What files below `messages` define, by what their names end with.
 DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
+# The name of a file below `drawings`.
+DRAWING = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}\.svg")
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml", "mimic.yaml")
 

@@ -1,6 +1,9 @@
 /** What is said of a thing in the picture, in words. */
-import type { MimicSymbol, MimicTrack, StationView } from '#lib/contract.ts';
+import type { Mimic, MimicPart, MimicSymbol, MimicTrack, StationView } from '#lib/contract.ts';
 import type { Doing } from '#lib/resource/doing.ts';
+import { nextSteps } from '#lib/plan/status.ts';
+import { runs } from '#lib/resource/running.ts';
+import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain, valueText, variableName } from '#lib/wording/values.ts';
 import { holds, inLanguage, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
@@ -34,7 +37,7 @@ export function nowOf(symbol: MimicSymbol, view: StationView, doing: Doing | und
 	const running = doing?.running ?? [];
 	const active = running.length > 0 || (symbol.active.length > 0 && holds(symbol.active, variables) === true);
 	const tone = active ? 'active' : 'rests';
-	if (symbol.track !== null) return whereNow(symbol.track, variables, active, language);
+	if (symbol.track !== null) return whereNow(symbol.track, view, active, language);
 	if (symbol.symbol === 'person') {
 		const task = Object.values(tasks).find((each) => each.resource === resource);
 		if (task !== undefined) return { text: task.title, tone: 'active' };
@@ -49,14 +52,28 @@ export function nowOf(symbol: MimicSymbol, view: StationView, doing: Doing | und
 	return { text: texts.is(variableName(key, resource), told), tone: value === null ? 'doubt' : tone };
 }
 
-function whereNow(track: MimicTrack, variables: Variables, active: boolean, language: string): Now {
+function whereNow(track: MimicTrack, view: StationView, active: boolean, language: string): Now {
 	const texts = say().mimic;
+	const { variables } = view;
 	const at = whereabouts(track, variables, null);
 	if (valueOf(variables, track.position) === null) return { text: texts.unknownPlace, tone: 'doubt' };
 	const target = sentTo(track, variables);
 	if (at === null || (at.kind === 'moving' && target === null)) return { text: texts.between, tone: 'active' };
 	const stop = capitalised(stopName(track, at.kind === 'moving' ? (target ?? at.to) : at.to, language));
-	return at.kind === 'moving' ? { text: texts.towards(stop), tone: 'active' } : { text: stop, tone: active ? 'active' : 'rests' };
+	if (at.kind === 'moving') return { text: texts.towards(stop), tone: 'active' };
+	const work = workAt(at.to, view);
+	if (work === null) return { text: stop, tone: active ? 'active' : 'rests' };
+	const isNamed = work.toLowerCase().includes(stop.toLowerCase());
+	return { text: isNamed ? work : texts.atWork(stop, work), tone: 'active' };
+}
+
+/** What is done at a stop: by a device there, or for the operation that is about it while a device works. */
+function workAt(stop: string, { abilities, operations }: StationView): string | null {
+	const working = Object.entries(abilities).filter(([, ability]) => !ability.human && runs(ability));
+	const own = working.find(([name]) => valuesIn(name).includes(stop));
+	if (own !== undefined) return own[1].title;
+	if (working.length === 0) return null;
+	return Object.entries(operations).find(([name, { active }]) => active && valuesIn(name).includes(stop))?.[1].title ?? null;
 }
 
 function capitalised(text: string): string {
@@ -79,12 +96,69 @@ export function inWork(view: StationView): ReadonlyMap<string, 'person' | 'devic
 	const found = new Map<string, 'person' | 'device'>();
 	for (const [name, ability] of Object.entries(view.abilities))
 		if (ability.executing === true || ability.running_since !== null)
-			for (const value of /\(([^()]*)\)$/.exec(name)?.[1]?.split(', ') ?? [])
-				found.set(value, ability.human ? 'person' : 'device');
+			for (const value of valuesIn(name)) found.set(value, ability.human ? 'person' : 'device');
 	return found;
+}
+
+/** The values in brackets behind a name: `pair_1` of `tighten(pair_1)`. */
+function valuesIn(name: string): string[] {
+	return /\(([^()]*)\)$/.exec(name)?.[1]?.split(', ') ?? [];
 }
 
 /** The last index of a variable: `bolt_pair_1` of `bolts[bolt_pair_1]`. */
 export function indexOf(variable: string): string | null {
 	return /\[(?:[^[\]]*, )?([^[\],]*)\]$/.exec(variable)?.[1] ?? null;
+}
+
+/** What the value of a part is called. */
+export function partValue(part: MimicPart, variables: Variables, language: string): string {
+	const value = valueOf(variables, part.variable);
+	return value === null ? say().common.unknown : (titleIn(part, String(value), language) ?? valueText(value));
+}
+
+function titleIn(part: MimicPart, value: string, language: string): string | null {
+	const title = part.titles[value];
+	return title === undefined ? null : inLanguage(title, language);
+}
+
+export type Legend = readonly { readonly look: MimicPart['looks'][string]; readonly text: string }[];
+/** More values of one look are not all named. */
+const NAMED = 2;
+
+/** What the marks of the product are called: those of the parts of which there are most. */
+export function legendOf({ symbols }: Pick<Mimic, 'symbols'>, language: string): Legend {
+	const parts = symbols.flatMap((symbol) => symbol.parts);
+	const part = parts.find(({ label }) => label !== '') ?? parts[0];
+	if (part === undefined) return [];
+	const values = Object.entries(part.looks);
+	return (['empty', 'placed', 'done'] as const).flatMap((look) => {
+		const own = values.filter((each) => each[1] === look).map(([value]) => titleIn(part, value, language) ?? worded(value));
+		return own.length === 0 || own.length > NAMED ? [] : [{ look, text: own.join(', ') }];
+	});
+}
+
+/** The text of a value as it stands among the looks. */
+function worded(value: string): string {
+	return value === 'true' || value === 'false' ? valueText(value === 'true') : plain(value);
+}
+
+/** What happens now and what comes then, in one sentence. */
+export function happening(view: StationView): string {
+	const texts = say().mimic;
+	const running = Object.values(view.abilities)
+		.filter(runs)
+		.sort((a, b) => Number(a.human) - Number(b.human))
+		.map(({ title }) => title);
+	const next = nextSteps(view.plan)[0];
+	// What a condition is called is told, never how it is written.
+	const waits = next === undefined ? '' : told(next.sentence, '');
+	const then = waits !== '' ? waits : next === undefined ? null : uncapitalised(next.title);
+	if (running.length === 0) return waits === '' ? texts.nothingMoves : texts.nothingMovesAnd(waits);
+	const now = running.length > NAMED ? texts.andMore(running.slice(0, NAMED).join(' · '), running.length - NAMED) : running.join(' · ');
+	return then === null ? now : texts.then(now, then);
+}
+
+/** A title within a sentence: names and abbreviations stay as they are. */
+function uncapitalised(text: string): string {
+	return /^\p{Lu}\p{Ll}/u.test(text) ? text.slice(0, 1).toLowerCase() + text.slice(1) : text;
 }

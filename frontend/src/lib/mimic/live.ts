@@ -30,8 +30,12 @@ export function inLanguage(text: Readonly<Record<string, string>>, language: str
 /** The first text that is to be said, with its values; empty where none is. */
 export function saidOf(texts: readonly MimicText[], variables: Variables, language: string): string {
 	const said = texts.find(({ when }) => holds(when, variables) === true);
-	if (said === undefined) return '';
-	return inLanguage(said.text, language).replaceAll(/\{([^{}]*)\}/g, (_, name: string) => {
+	return said === undefined ? '' : withValues(inLanguage(said.text, language), variables);
+}
+
+/** A text with the values of the variables in braces. */
+export function withValues(text: string, variables: Variables): string {
+	return text.replaceAll(/\{([^{}]*)\}/g, (_, name: string) => {
 		const value = valueOf(variables, name);
 		return value === null ? '?' : valueText(value);
 	});

@@ -2,8 +2,8 @@
 import type { Mimic, MimicSymbol, Priority, StationView } from '#lib/contract.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { say } from '#lib/text/text.svelte.ts';
-import { valueText, variableName } from '#lib/wording/values.ts';
-import { nameOf, nowOf, type Now } from './describe.ts';
+import { variableName } from '#lib/wording/values.ts';
+import { nameOf, nowOf, partValue, type Now } from './describe.ts';
 import { alarmsOf, holds, inLanguage, levelOf, valueOf, worst } from './live.ts';
 
 export interface Told {
@@ -46,9 +46,8 @@ function details(symbol: MimicSymbol, view: StationView, language: string): stri
 			)
 		);
 	for (const part of symbol.parts) {
-		const value = valueOf(variables, part.variable);
 		const name = inLanguage(part.title, language) || variableName(part.variable, null);
-		found.push(texts.is(name, value === null ? say().common.unknown : valueText(value)));
+		found.push(texts.is(name, partValue(part, variables, language)));
 	}
 	return found;
 }

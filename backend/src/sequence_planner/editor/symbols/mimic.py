@@ -34,6 +34,11 @@ class MimicCollector:
                 self._said(entry(line, "say"), below.to("say"))
             for index, slot in enumerate(items(entry(symbol, "slots"))):
                 self._tests(entry(slot, "holds"), at.to("slots", index, "holds"))
+            for name_of, bind in pairs(entry(symbol, "bind")):
+                below = at.to("bind", str(name_of))
+                self._tests(entry(bind, "visible"), below.to("visible"))
+                self._tests(entry(bind, "when"), below.to("when"))
+                self._said(entry(bind, "text"), below.to("text"))
             for index, part in enumerate(items(entry(symbol, "parts"))):
                 self._part(part, at.to("parts", index))
             self._track(entry(symbol, "track"), at.to("track"))

@@ -26,6 +26,7 @@ SymbolKind = Literal[
     "device",
 ]
 Look = Literal["empty", "placed", "done"]
+ColourRole = Literal["accent", "high", "medium", "low", "quiet"]
 
 Coordinate = Annotated[float, Field(ge=-10_000, le=10_000)]
 Length = Annotated[float, Field(ge=4, le=10_000)]
@@ -96,6 +97,19 @@ class PartDocument(DocumentPart):
     """The look of each value: `empty`, `placed` or `done`. Without it the first value is empty and the last done."""
 
 
+class BindDocument(DocumentPart):
+    """What an element of a drawing follows."""
+
+    visible: Values = Field(default_factory=dict)
+    """It is drawn with these values alone."""
+    text: Given[Words] = None
+    """The text in it; `{variable}` is replaced by its value."""
+    role: Given[ColourRole] = None
+    """Its colour, by what it means; without it that of the drawing."""
+    when: Values = Field(default_factory=dict)
+    """It has the colour of its role with these values alone."""
+
+
 class SlotDocument(DocumentPart):
     """A place for a thing, which is drawn while it is there."""
 
@@ -107,6 +121,8 @@ class SlotDocument(DocumentPart):
     """The thing, for people."""
     symbol: SymbolKind = "tool"
     """How the thing is drawn."""
+    drawing: Given[SourceText] = None
+    """A drawing of your own in place of the symbol: `drawings/<name>.svg`."""
     holds: Values = Field(min_length=1)
     """The values that variables have while it is there."""
 
@@ -132,6 +148,10 @@ class SymbolDocument(DocumentPart):
     """It is drawn with these values alone."""
     level: Given[SourceText] = None
     """A range that is drawn as a level, such as a battery."""
+    drawing: Given[SourceText] = None
+    """A drawing of your own, `drawings/<name>.svg`: above the name, and of a product below its parts."""
+    bind: dict[SourceText, BindDocument] = Field(default_factory=dict)
+    """What elements of the drawing follow, each by its `id`."""
     track: Given[TrackDocument] = None
     """The stops between which it moves."""
     slots: list[SlotDocument] = Field(default_factory=list)
