@@ -71,7 +71,11 @@ ATTRIBUTES: Final = frozenset(_VALUES) | _REFERENCES | {"id", "href"}
 
 
 class _RefusedError(Exception):
-    """A file of which nothing is drawn."""
+    """A file of which nothing is drawn, and where that shows."""
+
+    def __init__(self, place: Place, message: str) -> None:
+        super().__init__(message)
+        self.place = place
 
 
 def drawing_of(text: str, file: str, findings: Findings) -> MimicDrawing | None:
@@ -88,7 +92,7 @@ def drawing_of(text: str, file: str, findings: Findings) -> MimicDrawing | None:
         reader.tell(Place(file, error.lineno, error.offset + 1), f"this is no SVG: {expat.ErrorString(error.code)}")
         box = None
     except _RefusedError as error:
-        reader.tell(reader.place(), str(error))
+        reader.tell(error.place, str(error))
         box = None
     else:
         box = reader.box
@@ -135,7 +139,7 @@ class _Reader:
         """Read the file. Raises `ExpatError` and `_RefusedError`."""
         self._parser.Parse(text, True)
 
-    def place(self) -> Place:
+    def _place(self) -> Place:
         """The place that is being read."""
         return Place(self._file, self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
 
@@ -145,7 +149,9 @@ class _Reader:
 
     def _doctype(self, _name: str, _system: str | None, _public: str | None, has_own: bool) -> None:
         if has_own:
-            raise _RefusedError("declarations of its own are not read: take the part in `[ ]` out of the DOCTYPE")
+            raise _RefusedError(
+                self._place(), "declarations of its own are not read: take the part in `[ ]` out of the DOCTYPE"
+            )
 
     def _start(self, name: str, attributes: Mapping[str, str]) -> None:
         namespace, _, local = name.rpartition(" ")
@@ -153,14 +159,14 @@ class _Reader:
             self._left_out += 1
         elif not self._has_root:
             if local != "svg" or namespace not in ("", _SVG):
-                raise _RefusedError(f"this is no SVG: it begins with `{local}`")
+                raise _RefusedError(self._place(), f"this is no SVG: it begins with `{local}`")
             self._has_root = True
             self.box = _box(attributes)
             self._open.append(None)
         elif namespace not in ("", _SVG) or local in _SILENT:
             self._left_out = 1
         elif local not in ELEMENTS:
-            self.tell(self.place(), f"`{local}` is left out: a drawing has shapes, groups, texts and gradients")
+            self.tell(self._place(), f"`{local}` is left out: a drawing has shapes, groups, texts and gradients")
             self._left_out = 1
         else:
             self._keep(local, attributes)
@@ -179,13 +185,13 @@ class _Reader:
 
     def _append(self, element: _Element) -> None:
         if len(self.elements) == MOST_ELEMENTS:
-            raise _RefusedError(f"a drawing has at most {MOST_ELEMENTS} elements: draw it with fewer")
-        self._places.append(self.place())
+            raise _RefusedError(self._place(), f"a drawing has at most {MOST_ELEMENTS} elements: draw it with fewer")
+        self._places.append(self._place())
         self.elements.append(element)
 
     def _keep(self, name: str, attributes: Mapping[str, str]) -> None:
         if len(self._open) > _DEEPEST:
-            raise _RefusedError(f"elements are nested more than {_DEEPEST} deep")
+            raise _RefusedError(self._place(), f"elements are nested more than {_DEEPEST} deep")
         element = _Element(self._open[-1], name)
         self._open.append(len(self.elements))
         self._append(element)
@@ -214,25 +220,25 @@ class _Reader:
             if value.startswith("#"):
                 element.attributes[name] = value
             else:
-                self.tell(self.place(), "`href` is left out: it may only name an element of this drawing, as `#wheel`")
+                self.tell(self._place(), "`href` is left out: it may only name an element of this drawing, as `#wheel`")
         elif name in _REFERENCES and (found := _LOCAL.fullmatch(value)):
             element.attributes[name] = f"url(#{found[1]})"
         elif allowed is not None:
             if allowed.fullmatch(value):
                 element.attributes[name] = value
             else:
-                self.tell(self.place(), f"`{name}` is left out: `{_short(value)}` is not drawn")
+                self.tell(self._place(), f"`{name}` is left out: `{_short(value)}` is not drawn")
         elif name.lower().startswith("on"):
-            self.tell(self.place(), f"`{_short(name)}` is left out: nothing in a drawing runs")
+            self.tell(self._place(), f"`{_short(name)}` is left out: nothing in a drawing runs")
         elif name not in _SILENT_ATTRIBUTES and not name.startswith(("data-", "aria-")):
-            self.tell(self.place(), f"`{_short(name)}` is left out: this is not drawn")
+            self.tell(self._place(), f"`{_short(name)}` is left out: this is not drawn")
 
     def _identify(self, name: str) -> None:
         at = len(self.elements) - 1
         if not _NAME.fullmatch(name):
-            self.tell(self.place(), f"`{_short(name)}` is no name: use letters, digits, `_`, `-` and `.`")
+            self.tell(self._place(), f"`{_short(name)}` is no name: use letters, digits, `_`, `-` and `.`")
         elif name in self._ids:
-            self.tell(self.place(), f"two elements are called `{name}`: this one is drawn without its name")
+            self.tell(self._place(), f"two elements are called `{name}`: this one is drawn without its name")
         else:
             self._ids[name] = at
             self.elements[at].attributes["id"] = name
