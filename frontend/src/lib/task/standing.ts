@@ -2,6 +2,9 @@
 import type { Standing } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
 
+/** How much of somebody's attention it wants. */
+export type Tone = 'plain' | 'medium' | 'high';
+
 /** Why nothing starts by itself, whatever is said of a task; empty where the station goes on. */
 export function whyItStands(standing: Standing): string {
 	return standing === 'working' || standing === 'silent' ? '' : say().watch.standing[standing];
@@ -12,4 +15,11 @@ export function stateText(standing: Standing, silent: readonly string[], failing
 	if (whyItStands(standing)) return whyItStands(standing);
 	if (silent.length > 0) return say().watch.silent(silent.join(', '));
 	return failing.length > 0 ? say().watch.failing(failing.join(', ')) : '';
+}
+
+/** How much attention that wants: somebody's help, or that one keeps clear. */
+export function toneOf(standing: Standing, silent: readonly string[], failing: readonly string[]): Tone {
+	if (standing === 'held' || standing === 'restart') return 'medium';
+	if (standing === 'stopped') return 'high';
+	return whyItStands(standing) === '' && silent.length + failing.length > 0 ? 'high' : 'plain';
 }

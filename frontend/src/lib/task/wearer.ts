@@ -18,7 +18,10 @@ export function keepAwake(): () => void {
 	async function ask(): Promise<void> {
 		if (ended || document.visibilityState !== 'visible' || !('wakeLock' in navigator)) return;
 		try {
-			lock = await navigator.wakeLock.request('screen');
+			const given = await navigator.wakeLock.request('screen');
+			// It may have been given back while the browser thought about it.
+			if (ended) void given.release();
+			else lock = given;
 		} catch {
 			// Refused (battery low, not allowed): the screen may then go dark, and nothing else depends on it.
 		}

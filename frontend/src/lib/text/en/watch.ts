@@ -19,6 +19,13 @@ export const watch = {
 	waits: (duration: string): string => `waits ${duration}`,
 	/** Instead of what moves next, where nothing does. */
 	nothingMoves: 'Nothing moves yet. Done is recorded.',
+	/** The same in two parts, the second where there is room. */
+	still: 'Nothing moves yet.',
+	recorded: 'Done is recorded.',
+	/** With nothing to do. */
+	comes: 'Your next task comes here.',
+	/** Beside what is wrong. */
+	goThere: 'Help is needed at the station.',
 	/** Why nothing starts by itself. */
 	standing: {
 		preparing: 'Getting ready',

@@ -18,6 +18,10 @@ export const watch: Text['watch'] = {
 	moreAfter: (n) => `${n} till efter denna`,
 	waits: (duration) => `väntar ${duration}`,
 	nothingMoves: 'Inget rör sig än. Klart antecknas.',
+	still: 'Inget rör sig än.',
+	recorded: 'Klart antecknas.',
+	comes: 'Din nästa uppgift kommer hit.',
+	goThere: 'Hjälp behövs vid stationen.',
 	standing: {
 		preparing: 'Förbereder',
 		waiting: 'Produktionen är inte startad',
