@@ -9,6 +9,9 @@ export const door = {
 		noPage: 'There is no such page',
 		failed: 'This page failed'
 	},
+	/** Where the page was opened: of the station nothing is told before somebody is signed in. */
+	at: (host: string): string => `Station at ${host}`,
+	or: 'or',
 	signIn: {
 		title: 'Sign in',
 		under: 'Signing in',

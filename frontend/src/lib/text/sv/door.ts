@@ -10,6 +10,8 @@ export const door: Text['door'] = {
 		noPage: 'Det finns ingen sådan sida',
 		failed: 'Sidan kunde inte visas'
 	},
+	at: (host) => `Stationen på ${host}`,
+	or: 'eller',
 	signIn: {
 		title: 'Logga in',
 		under: 'Loggar in',
