@@ -106,6 +106,24 @@ export const frame = {
 			['F12, Shift F12', 'In a condition: to where a name is declared, and where it is used']
 		] as readonly (readonly [string, string])[]
 	},
+	/** Shown to whoever is new here, beside what each step is about. */
+	round: {
+		offer: 'New here? Five short steps show you around.',
+		show: 'Show me around',
+		notNow: 'Not now',
+		skip: 'Skip',
+		back: 'Back',
+		next: 'Next',
+		end: 'Start working',
+		stepOf: (n: number, all: number): string => `Step ${n} of ${all}`,
+		steps: [
+			{ title: 'The station', text: 'This picture is the station as it is now: what each device does, and how far the product is. Press anything in it for its values and why it waits.' },
+			{ title: 'The plan', text: 'What runs, what comes next, and what waits for what. When the station changes, the plan is made anew.' },
+			{ title: 'Your task', text: 'What the station asks of you stands here. Do it, then press Done. If it cannot be done, press Problem: somebody comes, and nothing stops.' },
+			{ title: 'Pause and Hold', text: 'Pause: running steps finish, nothing new starts. Hold: what can be stopped stops at once. Both are on every page and ask nothing. Neither is an emergency stop.' },
+			{ title: 'When it stops', text: 'An alarm says what failed and what to do. The page Restart then leads back to production, one step at a time.' }
+		] as readonly { readonly title: string; readonly text: string }[]
+	},
 	notices: 'Notices',
 	about: (page: string): string => `What is the page “${page}” for?`,
 	search: 'Search or act',

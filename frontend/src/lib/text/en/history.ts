@@ -225,6 +225,11 @@ export const history = {
 	},
 	journal: {
 		about: 'Everything that was done or refused. It can be read here and changed by nobody.',
+		how: [
+			'Each record says who did what, when, on what and from where. The newest is on top.',
+			'Choose an act or a person above the list to see fewer.',
+			'Open a record for its details, and from there the station as it was then.'
+		],
 		toHistory: 'How the station was then',
 		title: 'What was done',
 		caption: 'Journal, the newest first',

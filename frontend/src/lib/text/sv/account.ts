@@ -84,6 +84,11 @@ export const account: Text['account'] = {
 	},
 	people: {
 		about: 'Varje roll får också göra det som rollerna före den får: betraktare, operatör, ingenjör, administratör.',
+		how: [
+			'Lägg till en person med en roll. Lämna över det tillfälliga lösenordet själv: det visas en gång.',
+			'Ändra en roll eller stäng av någon: personen loggas ut överallt.',
+			'Glömt lösenord: ge ett nytt tillfälligt.'
+		],
 		everybody: 'Alla',
 		role: 'Roll',
 		access: 'Åtkomst',
@@ -131,6 +136,13 @@ export const account: Text['account'] = {
 	},
 	keys: {
 		about: 'Med en nyckel läser ett annat system stationen genom dess gränssnitt, eller lägger order. Om stationen arbetar på dem avgör människor.',
+		noneYet: 'Ingen nyckel gäller',
+		howYet: 'Gör en nedan för varje system som läser stationen eller ger order.',
+		how: [
+			'Gör en nyckel för varje system, med inte fler rättigheter än det behöver.',
+			'Spara hemligheten genast: den visas en gång.',
+			'Ge nyckeln en ny hemlighet innan den går ut; den gamla fungerar så länge du väljer.'
+		],
 		working: 'Giltiga nycklar',
 		overTitle: 'Återkallade och utgångna nycklar',
 		revoked: (name) => `Nyckeln ${name} är återkallad.`,
@@ -174,6 +186,14 @@ export const account: Text['account'] = {
 	},
 	watches: {
 		about: 'En bärbar enhet, som en klocka, visar en resurs uppgifter och säger till när de är klara, utan att någon är inloggad på den.',
+		noneYet: 'Ingen enhet är hopparad',
+		howYet: 'Hämta en kod ovan och skriv in den på enheten. Sedan står den här.',
+		how: [
+			'Välj vems uppgifter den visar och hämta en kod. Koden fungerar en gång, i två minuter.',
+			'Öppna operatörsvyn på enheten och skriv in koden.',
+			'Se på enheten och bekräfta sedan här att det är rätt.',
+			'Återkalla en enhet som är borta: inom två sekunder visar den inget.'
+		],
 		paired: 'Hopparade enheter',
 		overTitle: 'Enheter som inte längre är hopparade',
 		none: 'Ingen enhet kan paras ihop nu: styrningen hörs inte, eller ingen resurs har uppgifter för människor.',

@@ -99,6 +99,23 @@ export const frame: Text['frame'] = {
 			['F12, Skift F12', 'I ett villkor: dit ett namn deklareras, och var det används']
 		]
 	},
+	round: {
+		offer: 'Ny här? Fem korta steg visar dig runt.',
+		show: 'Visa mig runt',
+		notNow: 'Inte nu',
+		skip: 'Hoppa över',
+		back: 'Tillbaka',
+		next: 'Nästa',
+		end: 'Börja arbeta',
+		stepOf: (n, all) => `Steg ${n} av ${all}`,
+		steps: [
+			{ title: 'Stationen', text: 'Bilden är stationen som den är nu: vad varje enhet gör och hur långt produkten har kommit. Tryck på något i den för att se dess värden och varför det väntar.' },
+			{ title: 'Planen', text: 'Vad som pågår, vad som kommer sedan och vad som väntar på vad. När stationen ändras görs planen om.' },
+			{ title: 'Din uppgift', text: 'Här står vad stationen ber dig om. Gör det och tryck sedan på Klart. Går det inte, tryck på Problem: någon kommer, och inget stannar.' },
+			{ title: 'Pausa och Stanna', text: 'Pausa: pågående steg görs klara, inget nytt startar. Stanna: det som kan stoppas stannar genast. Båda finns på varje sida och frågar inget. Ingen av dem är ett nödstopp.' },
+			{ title: 'När det stannar', text: 'Ett larm säger vad som är fel och vad du kan göra. Sidan Omstart leder sedan tillbaka till produktion, ett steg i taget.' }
+		]
+	},
 	notices: 'Meddelanden',
 	about: (page) => `Vad är sidan ”${page}” till för?`,
 	search: 'Sök eller agera',

@@ -224,6 +224,11 @@ export const history: Text['history'] = {
 	},
 	journal: {
 		about: 'Allt som gjordes eller nekades. Det kan läsas här och ändras av ingen.',
+		how: [
+			'Varje post säger vem som gjorde vad, när, med vad och varifrån. Den nyaste är överst.',
+			'Välj en handling eller en person ovanför listan för att se färre.',
+			'Öppna en post för detaljerna, och därifrån stationen som den var då.'
+		],
 		toHistory: 'Hur stationen var då',
 		title: 'Vad som gjordes',
 		caption: 'Journal, det nyaste först',
