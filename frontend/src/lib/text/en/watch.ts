@@ -3,6 +3,7 @@ export const watch = {
 	forYou: 'For you',
 	nothingToDo: 'Nothing to do',
 	yourTask: 'Your task',
+	comesHere: 'What the station asks of you comes here.',
 	goesOn: 'Your task goes on',
 	thenMoves: 'Then moves:',
 	nextForYou: 'Next for you:',

@@ -4,6 +4,7 @@ export const watch: Text['watch'] = {
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
 	yourTask: 'Din uppgift',
+	comesHere: 'Det stationen ber dig om kommer hit.',
 	goesOn: 'Din uppgift fortsätter',
 	thenMoves: 'Sedan rör sig:',
 	nextForYou: 'Nästa för dig:',
