@@ -331,3 +331,26 @@ def test_a_value_that_is_unknown_and_the_alarm_of_its_device_are_in_one_view(
         assert list(view.alarms) == ["silent:arm"]
 
     run(scenario)
+
+
+def test_an_operation_says_which_steps_are_for_it_and_when_it_was_done_last() -> None:
+    async def scenario(on: Bench) -> None:
+        arm = Arm(on.network)
+        with arm.saying("home"):
+            await on.start()
+            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
+            view = on.controller.view()
+            fetch = view.operations["fetch(left)"]
+            assert {fetch.first_step, fetch.last_step} <= {step.id for step in view.plan.steps}
+            assert fetch.last_step is not None
+            assert (fetch.began, fetch.ended) == (None, None)
+            assert view.plan.since <= view.time
+        with arm.saying("out"):
+            await on.until(lambda: completed(on) == 1)
+            view = on.controller.view()
+            fetch = view.operations["fetch(left)"]
+            assert fetch.began is not None
+            assert fetch.ended is not None
+            assert fetch.began < fetch.ended <= view.time
+
+    run(scenario)
