@@ -84,3 +84,22 @@ test('why an operation waits is said in words, as often as it is asked @theme', 
 	await operate.keyboard.press('Escape');
 	await expect(dialog).toBeHidden();
 });
+
+test('operations that differ in a pair alone are one row, which opens to each of them', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	const operations = operate.getByRole('region', { name: 'Operations' });
+	const group = operations.locator('[data-operations="tighten_bolt_pair"]');
+	await expect(group.getByRole('button', { name: /\d of 3/ })).toContainText(/(is|are) placed/);
+	await expect(group.locator('[data-operation]').first()).toBeHidden();
+	await group.getByRole('button', { name: /\d of 3/ }).press('Enter');
+	await expect(group.locator('[data-operation]')).toHaveCount(3);
+	for (const each of await group.locator('[data-operation]').all()) await expect(each).toBeVisible();
+	await expect(group.getByRole('button', { name: 'Why? Tighten bolt pair 1' })).toBeVisible();
+	// What people read is no condition of the model.
+	await expect(operations).not.toContainText('==');
+	expect(await findings(operate)).toEqual([]);
+	for (const width of [320, 192]) {
+		await operate.setViewportSize({ width, height: 640 });
+		expect(await overflow(operate)).toBe(0);
+	}
+});
