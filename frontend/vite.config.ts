@@ -53,6 +53,8 @@ export default defineConfig({
 									priority: 1,
 									entriesAware: true
 								},
+								// So is what the names of variables stand on, which all but the watch's pages read.
+								{ name: 'names', test: /lib\/wording\/(names|values)/, priority: 1, entriesAware: true },
 								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 4_700 }
 							]
 						},

@@ -68,6 +68,7 @@ export type ApprovedAct = Approval['act'];
 export type LastCorrection = Schemas['LastCorrectionView'];
 export type CorrectionPreview = Schemas['CorrectionPreview'];
 export type PlanPreview = Schemas['PlanPreviewView'];
+export type Names = Schemas['NamesView'];
 export type VariableKind = Schemas['VariableKind'];
 export type UndecidedOutput = Schemas['UndecidedOutputView'];
 export type AdviceAnswer = Schemas['AdviceView'];

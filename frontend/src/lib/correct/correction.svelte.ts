@@ -3,12 +3,37 @@
  *
  * First values are chosen, then the station says what would follow, on which revision of the state; only on that the
  * correction is made. What is chosen stays whatever happens; what was looked at does not hold once the state has moved.
+ *
+ * What it takes besides, control and restart mode, is taken by the same press, each as an act of its own. That moves the
+ * state: what follows is looked at once more, and only if it is the same is the correction made.
  */
-import { askForApproval, correctEstimates, previewCorrection, undoCorrection } from '#lib/command/send.ts';
+import {
+	askForApproval,
+	correctEstimates,
+	enterRestart,
+	previewCorrection,
+	takeControl,
+	undoCorrection
+} from '#lib/command/send.ts';
 import type { CorrectionPreview, LastCorrection, StationView, Value } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import type { Station } from '#lib/stream/station.svelte.ts';
 import { changesSince, type Change } from './moved.ts';
+import { needsRestart } from './needs.ts';
+
+/** Milliseconds: so often it is looked whether an act has come back over the stream, and so long at most. */
+const [LOOK, PATIENCE] = [50, 8000];
+
+/** What the correction needs that this session does not have yet. */
+export interface Needs {
+	readonly control: boolean;
+	readonly restart: boolean;
+}
+
+/** What a person has read of a preview: what would be so, and not what happens next. */
+function read({ safe, violates, activated, completed, contradictions_gone, contradictions_new, left_out }: CorrectionPreview): string {
+	return JSON.stringify([safe, violates, activated, completed, contradictions_gone, contradictions_new, left_out]);
+}
 
 export class Correction {
 	readonly #station: Station;
@@ -26,6 +51,8 @@ export class Correction {
 	looking = $state(false);
 	/** It is on its way. */
 	sending = $state(false);
+	/** What follows became another between the last look and the press: it is to be read again. */
+	altered = $state(false);
 	/** Whether it shall be made is asked once more. */
 	asked = $state(false);
 	refusal = $state.raw<Refusal | null>(null);
@@ -50,6 +77,11 @@ export class Correction {
 	/** What is another than when it was looked at. */
 	readonly since: readonly Change[] = $derived.by(() =>
 		this.moved && this.#looked ? changesSince(this.#looked.variables, this.#station.view?.variables ?? {}) : []
+	);
+
+	/** It leads out of the safe states: that is asked once more, and so is what somebody else has to approve. */
+	readonly asksTwice: boolean = $derived.by(
+		() => this.dual || (this.preview !== null && this.preview.safe_now && !this.preview.safe)
 	);
 
 	constructor(station: Station, names: readonly string[], undoes: LastCorrection | null = null) {
@@ -90,27 +122,58 @@ export class Correction {
 		this.#looked = { preview: answer.value, variables: this.#station.view?.variables ?? {} };
 	}
 
-	/** Makes it as it was looked at. True when it was accepted. */
-	async make(): Promise<boolean> {
+	/** Takes what `needs` names, and makes it as it was looked at. True when it was accepted. */
+	async make(needs: Needs = { control: false, restart: false }): Promise<boolean> {
 		const { preview } = this;
-		if (this.sending || preview === null || this.moved) return false;
-		const reason = this.reason.trim();
+		if (this.sending || preview === null || (this.moved && !needs.control && !needs.restart)) return false;
 		this.sending = true;
+		this.altered = false;
+		this.refusal = null;
+		const done = (await this.#prepare(needs, preview)) && (await this.#send());
+		this.sending = false;
+		if (!done) this.asked = false;
+		return done;
+	}
+
+	/** Takes what it needs, and looks again whether the same follows. */
+	async #prepare(needs: Needs, seen: CorrectionPreview): Promise<boolean> {
+		if (needs.control) this.refusal = await takeControl(null, '');
+		if (this.refusal === null && needs.restart) {
+			this.refusal = await enterRestart();
+			if (this.refusal === null) await this.#until((view) => !needsRestart(view));
+		}
+		if (this.refusal !== null) return false;
+		if (!needs.control && !needs.restart) return true;
+		await this.look();
+		if (this.preview === null) return false;
+		this.altered = read(this.preview) !== read(seen);
+		return !this.altered;
+	}
+
+	async #send(): Promise<boolean> {
+		const { preview } = this;
+		if (preview === null) return false;
+		const reason = this.reason.trim();
 		this.refusal = this.undoes
 			? await undoCorrection(this.undoes.revision, reason)
 			: this.dual
 				? await askForApproval({ kind: 'correction', values: this.values }, preview.revision, reason)
 				: await correctEstimates(this.values, preview.revision, reason);
-		this.sending = false;
-		if (this.refusal === null) return true;
-		this.asked = false;
-		if (this.refusal.kind === 'stale-revision') this.#overtaken = true;
-		return false;
+		if (this.refusal?.kind === 'stale-revision') this.#overtaken = true;
+		return this.refusal === null;
+	}
+
+	async #until(holds: (view: StationView) => boolean): Promise<void> {
+		for (let waited = 0; waited < PATIENCE; waited += LOOK) {
+			if (this.#station.view !== null && holds(this.#station.view)) return;
+			await new Promise((resolve) => setTimeout(resolve, LOOK));
+		}
 	}
 
 	#forget(): void {
 		this.#looked = null;
 		this.#overtaken = false;
+		this.altered = false;
 		this.asked = false;
 		this.refusal = null;
 	}

@@ -76,6 +76,48 @@ describe('a correction', () => {
 		expect(await correction.make()).toBe(true);
 	});
 
+	test('takes control and enters restart mode by the same press, and is made only if the same follows then', async () => {
+		const { station, move } = standing({ mode: 'automatic' });
+		const safe = { ...preview(4), safe: true, safe_now: true, violates: [] };
+		const unsafe = { ...preview(6), safe: false, safe_now: true, violates: [{ name: 's', title: 'S' }] };
+		const fetch = answers(
+			[200, safe],
+			[204, null],
+			[204, null],
+			[200, unsafe],
+			[200, { ...unsafe, revision: 6 }],
+			[204, null]
+		);
+		const correction = new Correction(station, ['b']);
+		correction.choose('b', 'empty');
+		correction.reason = 'seen';
+		await correction.look();
+		const making = correction.make({ control: true, restart: true });
+		move({ mode: 'restart', revision: 6 });
+		expect(await making).toBe(false);
+		expect(correction).toMatchObject({ altered: true, moved: false, refusal: null, asksTwice: true, values: { b: 'empty' } });
+		expect(fetch.mock.calls.map(([path]) => String(path))).toEqual([
+			'/api/v1/corrections/preview',
+			'/api/v1/control-lock',
+			'/api/v1/restart/enter',
+			'/api/v1/corrections/preview'
+		]);
+		await correction.look();
+		expect(await correction.make()).toBe(true);
+		expect(sent(fetch, 5)).toEqual({ values: { b: 'empty' }, revision: 6, reason: 'seen' });
+	});
+
+	test('is not made where control or restart mode is refused', async () => {
+		const { station } = standing({ mode: 'automatic' });
+		const fetch = answers([200, preview(4)], [409, { type: '/problems/control-held' }]);
+		const correction = new Correction(station, ['b']);
+		correction.choose('b', 'empty');
+		await correction.look();
+		expect(await correction.make({ control: true, restart: true })).toBe(false);
+		expect(correction.refusal?.kind).toBe('control-held');
+		expect(fetch).toHaveBeenCalledTimes(2);
+	});
+
 	test('takes the last one back by its revision', async () => {
 		const { station } = standing();
 		const fetch = answers([200, preview(4)], [204, null]);

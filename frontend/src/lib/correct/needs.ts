@@ -5,8 +5,3 @@ import type { StationView } from '#lib/contract.ts';
 export function needsRestart({ mode, production }: Pick<StationView, 'mode' | 'production'>): boolean {
 	return mode !== 'restart' && production === 'started';
 }
-
-/** Something is in the way of any correction. */
-export function isHindered(view: Pick<StationView, 'mode' | 'production' | 'errand'>): boolean {
-	return view.errand !== null || needsRestart(view);
-}

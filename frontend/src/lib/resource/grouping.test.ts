@@ -4,7 +4,7 @@ import type { Variable } from '#lib/contract.ts';
 import { Grouping, groupsOf, KEY_ROWS } from './grouping.ts';
 
 function variable(kind: Variable['kind'], resource: string | null, value: Variable['value'] = null): Variable {
-	return { resource, kind, domain: [false, true], dual_approval: false, value, since: null, awaits: null, belief: null };
+	return { resource, kind, domain: [false, true], dual_approval: false, value, since: null, awaits: null, belief: null, commanded_by: null };
 }
 
 const kind = fc.constantFrom<Variable['kind']>('measured', 'output', 'estimated');

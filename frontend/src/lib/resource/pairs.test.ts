@@ -6,7 +6,7 @@ import { inRows, type Named } from './pairs.ts';
 const POSES = ['home', 'above_engine'];
 
 function variable(kind: Variable['kind'], domain: Variable['domain'], resource = 'robot'): Variable {
-	return { resource, kind, domain, dual_approval: false, value: null, since: null, awaits: null, belief: null };
+	return { resource, kind, domain, dual_approval: false, value: null, since: null, awaits: null, belief: null, commanded_by: null };
 }
 
 function told(variables: readonly Named[]): [string, string | null][] {

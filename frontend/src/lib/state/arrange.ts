@@ -9,6 +9,9 @@ import { variableName } from '#lib/wording/values.ts';
 import { KINDS, OF_NONE, wordsOf, type Criteria, type SortedBy } from './criteria.ts';
 import { standingIn, type Judged } from './standing.ts';
 
+/** Puts a value of a variable, or that there is none, into words. */
+type Said = (name: string, value: Value | null) => string;
+
 export interface Entry {
 	readonly name: string;
 	readonly resource: string;
@@ -29,19 +32,22 @@ function ranks(texts: Iterable<string>): Map<string, number> {
 }
 
 /** The entries of all variables, by their names. */
-export function entriesOf({ variables, resources }: Pick<StationView, 'variables' | 'resources'>): readonly Entry[] {
+export function entriesOf(
+	{ variables, resources }: Pick<StationView, 'variables' | 'resources'>,
+	called: (name: string, resource: string | null) => string
+): readonly Entry[] {
 	const titleOf = (resource: string | null): string =>
 		resource === null ? '' : (resources[resource]?.title ?? resource);
 	const all = Object.entries(variables);
-	const names = ranks(all.map(([name]) => name));
+	const names = ranks(all.map(([name, { resource }]) => called(name, resource)));
 	const titles = ranks(all.map(([, { resource }]) => titleOf(resource)));
 	return all
 		.map(([name, { resource, kind }]) => ({
 			name,
 			resource: resource ?? OF_NONE,
 			kind,
-			text: `${name} ${variableName(name, resource)} ${titleOf(resource)}`.toLocaleLowerCase(),
-			byName: names.get(name) ?? 0,
+			text: `${name} ${variableName(name, resource)} ${called(name, resource)} ${titleOf(resource)}`.toLocaleLowerCase(),
+			byName: names.get(called(name, resource)) ?? 0,
 			byResource: titles.get(titleOf(resource)) ?? 0,
 			byKind: KINDS.indexOf(kind)
 		}))
@@ -58,16 +64,11 @@ export function arrange(
 	entries: readonly Entry[],
 	criteria: Criteria,
 	view: Judged,
-	said: (value: Value | null) => string
+	said: Said
 ): readonly string[] {
 	const { resource, kind, only, sort, down } = criteria;
 	const words = wordsOf(criteria.search);
-	const valueTexts = new Map<Value | null, string>();
-	const valueText = (value: Value | null): string => {
-		let text = valueTexts.get(value);
-		if (text === undefined) valueTexts.set(value, (text = `${value ?? ''} ${said(value)}`.toLocaleLowerCase()));
-		return text;
-	};
+	const valueText = (name: string, value: Value | null): string => `${value ?? ''} ${said(name, value)}`.toLocaleLowerCase();
 	const has = standingIn(view);
 	const found = entries.filter((entry) => {
 		if (resource !== '' && entry.resource !== resource) return false;
@@ -75,7 +76,7 @@ export function arrange(
 		const variable = view.variables[entry.name];
 		if (variable === undefined) return false;
 		if (only.length > 0 && !only.some((standing) => has(entry.name, variable, standing))) return false;
-		return words.every((word) => entry.text.includes(word) || valueText(variable.value).includes(word));
+		return words.every((word) => entry.text.includes(word) || valueText(entry.name, variable.value).includes(word));
 	});
 	const keyOf = keys(found, sort, view, said);
 	const sign = down ? -1 : 1;
@@ -96,7 +97,7 @@ function keys(
 	entries: readonly Entry[],
 	sort: SortedBy,
 	{ variables }: Judged,
-	said: (value: Value | null) => string
+	said: Said
 ): (entry: Entry) => number {
 	switch (sort) {
 		case 'name':
@@ -109,18 +110,37 @@ function keys(
 			// The youngest first: that is what one looks for.
 			return (entry) => -(variables[entry.name]?.since ?? -Infinity);
 		case 'value': {
-			const places = placesOf(entries.map((entry) => variables[entry.name]?.value ?? null), said);
-			return (entry) => places.get(variables[entry.name]?.value ?? null) ?? 0;
+			const places = placesOf(
+				entries.map(({ name }) => {
+					const value = variables[name]?.value ?? null;
+					return { name, key: typeof value === 'number' ? value : said(name, value), known: value !== null };
+				})
+			);
+			return (entry) => places.get(entry.name) ?? 0;
 		}
 	}
 }
 
-/** The places of values among them: numbers by their size, then words, then what is unknown. */
-function placesOf(values: Iterable<Value | null>, said: (value: Value | null) => string): Map<Value | null, number> {
-	const group = (value: Value | null): number => (value === null ? 2 : typeof value === 'number' ? 0 : 1);
-	const compare = (one: Value | null, other: Value | null): number =>
-		typeof one === 'number' && typeof other === 'number'
-			? one - other
-			: group(one) - group(other) || COLLATOR.compare(said(one), said(other));
-	return new Map([...new Set(values)].sort(compare).map((value, place) => [value, place]));
+interface Sorted {
+	readonly name: string;
+	readonly key: number | string;
+	readonly known: boolean;
+}
+
+/** The places of variables by their values: numbers by their size, then words, then what is unknown; the same for the same. */
+function placesOf(all: Sorted[]): Map<string, number> {
+	const group = ({ key, known }: Sorted): number => (!known ? 2 : typeof key === 'number' ? 0 : 1);
+	const compare = (one: Sorted, other: Sorted): number =>
+		group(one) - group(other) ||
+		(typeof one.key === 'number' && typeof other.key === 'number'
+			? one.key - other.key
+			: COLLATOR.compare(String(one.key), String(other.key)));
+	const places = new Map<string, number>();
+	let place = 0;
+	all.sort(compare).forEach((each, index) => {
+		const before = all[index - 1];
+		if (before !== undefined && compare(before, each) !== 0) place += 1;
+		places.set(each.name, place);
+	});
+	return places;
 }

@@ -57,7 +57,8 @@ export function queryOf({ search, resource, kind, only, sort, down }: Criteria):
 	return query.size === 0 ? '' : `?${query}`;
 }
 
-/** Sorted by `sort`; by what it is sorted by already, the other way round. */
+/** Sorted by `sort`; by what it is sorted by already, the other way round, and then by resource again. */
 export function sortedBy(criteria: Criteria, sort: SortedBy): Criteria {
-	return { ...criteria, sort, down: criteria.sort === sort && !criteria.down };
+	if (criteria.sort !== sort) return { ...criteria, sort, down: false };
+	return criteria.down ? { ...criteria, sort: EVERYTHING.sort, down: false } : { ...criteria, down: true };
 }

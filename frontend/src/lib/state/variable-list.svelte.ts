@@ -9,12 +9,18 @@ import { SvelteSet } from 'svelte/reactivity';
 import type { Question, StationView, Value, Variable } from '#lib/contract.ts';
 import { Correction } from '#lib/correct/correction.svelte.ts';
 import type { Station } from '#lib/stream/station.svelte.ts';
+import { nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import { arrange, entriesOf, followsValues, type Entry } from './arrange.ts';
-import { EVERYTHING, type Criteria } from './criteria.ts';
+import { EVERYTHING, OF_NONE, type Criteria } from './criteria.ts';
 import { countsOf, doubtsOf, type Standing } from './standing.ts';
-import { said } from './words.ts';
+import { keepHidden, keptHidden, type ColumnId } from './columns.ts';
 
 const EVERY = 1000;
+
+/** A line of the list: a variable, or the resource that those below it belong to. */
+export type Line =
+	| { readonly variable: string }
+	| { readonly resource: string; readonly count: number; readonly folded: boolean };
 
 /** What is being done with variables in a dialog. */
 export type Task =
@@ -32,6 +38,10 @@ export class VariableList {
 
 	criteria = $state.raw<Criteria>(EVERYTHING);
 	readonly ticked = new SvelteSet<string>();
+	/** Resources whose variables are not shown. */
+	readonly folded = new SvelteSet<string>();
+	/** Columns that are not shown, which this device remembers. */
+	hidden = $state.raw<readonly ColumnId[]>(keptHidden());
 	task = $state.raw<Task | null>(null);
 	pointed = $state(false);
 	focused = $state(false);
@@ -43,14 +53,38 @@ export class VariableList {
 	/** Made anew when there are other variables, and not when their values change. */
 	readonly #entries: readonly Entry[] = $derived.by(() => {
 		const view = this.#station.names.length > 0 ? this.#now() : null;
-		return view === null ? [] : entriesOf(view);
+		return view === null ? [] : entriesOf(view, nameOf);
 	});
+	readonly #resources: ReadonlyMap<string, string> = $derived(new Map(this.#entries.map(({ name, resource }) => [name, resource])));
 	/** Seconds on the controller's clock, as of the last second. */
 	readonly time: number = $derived.by(() => this.#looked ?? (this.#station.names && (this.#now()?.time ?? 0)));
 	readonly all: number = $derived(this.#entries.length);
 	readonly #follows: boolean = $derived(followsValues(this.criteria));
 	/** The names of those that are shown. */
 	readonly names: readonly string[] = $derived(this.#in(this.#follows ? this.#arranged : null));
+	/** They stand by resource, each below its own. */
+	readonly grouped: boolean = $derived(this.criteria.sort === 'resource');
+	readonly lines: readonly Line[] = $derived.by(() => {
+		if (!this.grouped) return this.names.map((variable) => ({ variable }));
+		const groups = new Map<string, string[]>();
+		for (const name of this.names) {
+			const resource = this.#resources.get(name) ?? OF_NONE;
+			const group = groups.get(resource);
+			if (group) group.push(name);
+			else groups.set(resource, [name]);
+		}
+		return [...groups].flatMap(([resource, names]): Line[] => {
+			const folded = this.folded.has(resource);
+			const below = folded ? [] : names.map((variable) => ({ variable }));
+			return [{ resource, count: names.length, folded }, ...below];
+		});
+	});
+	/** How many there are of each kind, all together under the empty word. */
+	readonly kinds: Readonly<Record<string, number>> = $derived.by(() => {
+		const counts: Record<string, number> = { '': this.#entries.length };
+		for (const { kind } of this.#entries) counts[kind] = (counts[kind] ?? 0) + 1;
+		return counts;
+	});
 	/** The order would be another if it did not wait. */
 	readonly late: boolean = $derived.by(() => {
 		if (!this.held || !this.#follows) return false;
@@ -76,6 +110,17 @@ export class VariableList {
 	/** Opens the correction of estimates, all at once. */
 	correct(names: readonly string[]): void {
 		this.task = { what: 'correct', correction: new Correction(this.#station, names) };
+	}
+
+	/** Shows the variables of a resource, or not. */
+	fold(resource: string): void {
+		if (!this.folded.delete(resource)) this.folded.add(resource);
+	}
+
+	/** Shows a column, or not. */
+	show(column: ColumnId, shown: boolean): void {
+		this.hidden = shown ? this.hidden.filter((each) => each !== column) : [...this.hidden, column];
+		keepHidden(this.hidden);
 	}
 
 	/** Opens the undoing of the last correction. */
@@ -128,7 +173,7 @@ export class VariableList {
 
 	#in(view: StationView | null): readonly string[] {
 		const judged = view ?? this.#now();
-		return judged === null ? [] : arrange(this.#entries, this.criteria, judged, said);
+		return judged === null ? [] : arrange(this.#entries, this.criteria, judged, valueOf);
 	}
 }
 

@@ -1,9 +1,10 @@
 import { expect, test } from 'vitest';
 import { estimate, view } from '#lib/testing/view.ts';
-import { agoWords, fullName, said, spanOf } from './words.ts';
+import { fullName, valueOf } from '#lib/wording/names.svelte.ts';
+import { agoWords, spanOf } from './words.ts';
 
 test('values are said in words', () => {
-	expect([true, false, null, 7, 'above_engine'].map(said)).toEqual(['yes', 'no', 'unknown', '7', 'above engine']);
+	expect([true, false, null, 7, 'above_engine'].map((value) => valueOf('v', value))).toEqual(['yes', 'no', 'unknown', '7', 'above engine']);
 });
 
 test('spans of time get coarser as they grow', () => {
@@ -26,5 +27,5 @@ test('nothing is said to be just now on a view that is old', () => {
 test('where its resource is not in sight a variable is called after it', () => {
 	const robot = { title: 'Robot', online: true, awaited_topics: [] };
 	const shown = view({ resources: { robot }, variables: { 'robot.pose': estimate({ resource: 'robot' }), b: estimate() } });
-	expect([fullName(shown, 'robot.pose'), fullName(shown, 'b'), fullName(null, 'b')]).toEqual(['Robot · pose', 'b', 'b']);
+	expect([fullName(shown, 'robot.pose'), fullName(shown, 'b'), fullName(null, 'b')]).toEqual(['Robot · Pose', 'B', 'B']);
 });

@@ -1,14 +1,6 @@
-/** How variables, their values and their ages are said, in the language of the page. */
-import type { StationView, Value } from '#lib/contract.ts';
+/** How the ages of values and their resources are said, in the language of the page. */
+import type { StationView } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
-import { valueText, variableName } from '#lib/wording/values.ts';
-
-/** A value, or that it is not known. */
-export function said(value: Value | null): string {
-	if (value === null) return say().common.unknown;
-	if (typeof value === 'boolean') return value ? say().common.yes : say().common.no;
-	return valueText(value);
-}
 
 /** A span of time in the coarsest unit that says enough. Clocks that disagree by a moment give none. */
 export function spanOf(seconds: number): readonly [number, 's' | 'min' | 'h' | 'days'] {
@@ -33,9 +25,16 @@ export function resourceTitle(view: Pick<StationView, 'resources'> | null, resou
 	return resource === null ? say().state.product : (view?.resources[resource]?.title ?? resource);
 }
 
-/** A variable as it is called where its resource is not in sight: `Robot · target pose`. */
-export function fullName(view: Pick<StationView, 'resources' | 'variables'> | null, name: string): string {
-	const resource = view?.variables[name]?.resource ?? null;
-	const own = variableName(name, resource);
-	return resource === null ? own : `${resourceTitle(view, resource)} · ${own}`;
+/** A span of time: `19 s`, `5 min`. */
+export function spanWords(seconds: number): string {
+	const [n, unit] = spanOf(seconds);
+	return `${n} ${say().state.units[unit]}`;
+}
+
+/** Who wrote a value: an ability by its title, what only a program is called in words, a person as they are called. */
+export function writerText(view: Pick<StationView, 'abilities'> | null, writer: string): string {
+	const words = say().state.writers;
+	if (writer === 'the model' || writer === 'the journal') return words[writer];
+	const job = /^job (.+)$/.exec(writer)?.[1];
+	return job === undefined ? (view?.abilities[writer]?.title ?? writer) : words.job(job);
 }

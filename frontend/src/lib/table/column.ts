@@ -2,6 +2,8 @@
 export interface Column {
 	readonly id: string;
 	readonly title: string;
+	/** What is in it says enough for the eye. */
+	readonly untitled?: boolean;
 	/** Its track in the grid, as in `minmax(0, 2fr)`. */
 	readonly width: string;
 	/** How the rows are sorted by it; left out where they are not. */

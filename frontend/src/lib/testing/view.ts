@@ -105,6 +105,7 @@ export function estimate(rest: Partial<Variable> = {}): Variable {
 		since: 900,
 		awaits: null,
 		belief: { writer: 'operator.place', at: 900, evidence: [], unconfirmed_since: null },
+		commanded_by: null,
 		...rest
 	};
 }
