@@ -1,16 +1,15 @@
 import { findings, smallTargets } from '../station/barriers.ts';
-import { acknowledge, picture, restsOnPerson, takeControl, variable } from '../station/seen.ts';
+import { acknowledge, picture, restsOnPerson, variable } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 import type { Locator, Page } from '@playwright/test';
 
 const BOLTS = (pair: string): string => `bolts[${pair}]`;
 
-/** Opens the correction of an estimate, chooses a value and has it shown what follows. */
+/** Opens the correction of an estimate and chooses a value; what follows is worked out by itself. */
 async function lookAt(page: Page, name: string, value: string): Promise<Locator> {
 	await page.locator(`[data-row="${name}"]`).getByRole('button', { name: /^Correct…/ }).click();
 	const dialog = page.getByRole('dialog');
 	await dialog.getByRole('radio', { name: value }).check();
-	await dialog.getByRole('button', { name: 'Show what follows' }).click();
 	await expect(dialog.getByTestId('follows')).toBeVisible();
 	return dialog;
 }
@@ -37,29 +36,30 @@ async function seize(page: Page): Promise<void> {
 	await expect(page.getByTestId('control')).toHaveAttribute('data-holder', 'you');
 }
 
-/** Says why and that it shall be, after what follows was seen. */
-async function correct(dialog: Locator, reason: string): Promise<void> {
-	await dialog.getByLabel('Reason').fill(reason);
-	await dialog.getByRole('button', { name: 'Correct…', exact: true }).click();
-	await dialog.getByRole('button', { name: 'Yes, correct it' }).click();
+/** Presses the one act, and confirms it where it leads out of the safe states. */
+async function made(dialog: Locator, act: string, yes: string): Promise<void> {
+	await dialog.getByRole('button', { name: act }).click();
+	const [sure, moved] = [dialog.getByTestId('sure'), dialog.getByTestId('moved')];
+	await expect.poll(async () => (await dialog.isHidden()) || (await sure.isVisible()) || (await moved.isVisible())).toBe(true);
+	if (await sure.isVisible()) await dialog.getByRole('button', { name: yes }).click();
 }
 
 test('a variable is found by words of it, and seen to change @theme', async ({ operate, watch, browse }) => {
 	await restsOnPerson(operate, watch);
 	const state = await browse(null, '/state?kind=estimated');
 	await expect(state.locator('[data-row]')).toHaveCount(3);
-	await state.getByLabel('Search').fill('pair nowhere');
+	await state.getByLabel('Search', { exact: true }).fill('pair nowhere');
 	await expect(state.getByText('No variable is like that.')).toBeVisible();
 
-	await state.getByLabel('Search').fill('empty bolts');
+	await state.getByLabel('Search', { exact: true }).fill('empty bolts');
 	await expect(state.locator('[data-row]')).not.toHaveCount(0); // the one that a person is asked to place
 	const before = await state.locator('[data-row]').count();
 	const pair = await acknowledge(watch);
 	await expect(state.locator('[data-row]')).toHaveCount(before - 1);
-	await state.getByLabel('Search').fill(`PAIR bolts ${pair.at(-1)}`);
+	await state.getByLabel('Search', { exact: true }).fill(`PAIR bolts ${pair.at(-1)}`);
 	await expect(state).toHaveURL(/kind=estimated/);
 	await expect(variable(state, BOLTS(pair))).toHaveAttribute('data-value', /placed|tightened/);
-	await expect(state.locator(`[data-row="${BOLTS(pair)}"]`)).toContainText(/operator.place_bolt_pair|nutrunner.run_nut/);
+	await expect(state.locator(`[data-row="${BOLTS(pair)}"]`)).toContainText(/Place bolt pair|Run the nutrunner|Run nut|Tighten/);
 
 	await state.getByRole('button', { name: 'Show all' }).click();
 	expect(await findings(state)).toEqual([]);
@@ -76,20 +76,19 @@ test('an estimate is corrected after what follows was seen, and that is taken ba
 	const [state, other] = [await browse(null, '/state?kind=estimated'), await browse(null, '/state?kind=estimated')];
 	const row = state.locator('[data-row]').filter({ has: state.locator('[data-value="empty"]') }).first();
 	const name = (await row.getAttribute('data-row')) ?? '';
-	await takeControl(state);
 
-	await test.step('what is in the way is said beforehand, and each act is one of its own', async () => {
+	await test.step('one press takes control, enters restart mode and corrects, each an act of its own', async () => {
 		const dialog = await lookAt(state, name, 'placed');
+		const act = dialog.getByRole('button', { name: 'Correct to placed' });
+		await expect(act).toHaveAttribute('aria-disabled', 'true');
+		await expect(dialog).toContainText('Takes control and enters restart mode first');
 		await dialog.getByLabel('Reason').fill('It is in its hole');
-		await expect(dialog.getByRole('button', { name: 'Correct…', exact: true })).toHaveAttribute('aria-disabled', 'true');
-		await dialog.getByRole('button', { name: 'Enter restart mode' }).click();
-		await expect(dialog).toContainText('The state has moved');
-		await dialog.getByRole('button', { name: 'Look again' }).click();
-		await expect(dialog).not.toContainText('The state has moved');
-		await expect(dialog.getByTestId('follows')).toContainText('Violates');
+		await expect(dialog.getByTestId('follows')).toContainText('safe states');
 		expect(await findings(state)).toEqual([]);
 		await picture(state, 'correct');
-		await correct(dialog, 'It is in its hole');
+		await made(dialog, 'Correct to placed', 'Yes, correct it');
+		await expect(state.getByTestId('control')).toHaveAttribute('data-holder', 'you');
+		await expect(state.getByTestId('mode')).toContainText('Restart');
 	});
 
 	await test.step('everybody sees it, and who corrected it', async () => {
@@ -100,28 +99,25 @@ test('an estimate is corrected after what follows was seen, and that is taken ba
 	});
 
 	await test.step('two who looked at the same state cannot both correct it', async () => {
-		const [undo, dialog] = [state.getByRole('dialog'), await lookAt(other, name, 'tightened')];
+		const [undo, dialog] = [state.getByRole('dialog'), await lookAt(other, name, 'tight')];
 		await state.getByTestId('last-correction').getByRole('button').click();
-		await undo.getByRole('button', { name: 'Show what follows' }).click();
 		await undo.getByLabel('Reason').fill('It was another pair');
 		await dialog.getByLabel('Reason').fill('It is tight');
 		await seize(other);
 		// The second one's request is on its way while the first one takes the correction back.
 		await other.route('**/api/v1/corrections', async (route) => {
 			await seize(state);
-			await undo.getByRole('button', { name: 'Take back…' }).click();
-			await undo.getByRole('button', { name: 'Yes, take it back' }).click();
+			await made(undo, 'Take back', 'Yes, take it back');
 			await expect(variable(state, name)).toHaveAttribute('data-value', 'empty');
 			await seize(other);
 			await route.continue();
 		});
-		await dialog.getByRole('button', { name: 'Correct…', exact: true }).click();
-		await dialog.getByRole('button', { name: 'Yes, correct it' }).click();
+		await made(dialog, 'Correct to tight', 'Yes, correct it');
 		await expect(dialog).toContainText('The state has moved');
 		await expect(dialog.getByRole('alert').filter({ hasText: 'Something has changed' })).toBeVisible();
 		await expect(dialog.getByTestId('moved')).toContainText('placed → empty');
-		await expect(dialog.getByRole('radio', { name: 'tightened' })).toBeChecked();
-		await expect(dialog.getByRole('button', { name: 'Correct…', exact: true })).toHaveAttribute('aria-disabled', 'true');
+		await expect(dialog.getByRole('radio', { name: 'tight' })).toBeChecked();
+		await expect(dialog.getByRole('button', { name: 'Correct to tight' })).toHaveAttribute('aria-disabled', 'true');
 		await expect(undo).toBeHidden();
 		await expect(variable(state, name)).toHaveAttribute('data-value', 'empty');
 		await dialog.getByRole('button', { name: 'Cancel' }).click();
@@ -130,4 +126,31 @@ test('an estimate is corrected after what follows was seen, and that is taken ba
 	await ask(other, 'POST', 'restart/leave', {});
 	await ask(other, 'PUT', 'mode', { mode: 'automatic' });
 	await expect(state.getByTestId('mode')).toContainText('Automatic');
+});
+
+test('from any page a correction is four presses away: control and restart mode are taken by the last @long', async ({
+	operate,
+	watch,
+	browse
+}) => {
+	await restsOnPerson(operate, watch);
+	const page = await browse(null, '/history');
+	await page.evaluate(() => {
+		const counted = window as unknown as { presses: number };
+		counted.presses = 0;
+		addEventListener('pointerdown', () => (counted.presses += 1), true);
+	});
+	await page.getByRole('link', { name: 'State', exact: true }).click();
+	const row = page.locator('[data-row]').filter({ has: page.locator('[data-value="empty"]') }).first();
+	const name = (await row.getAttribute('data-row')) ?? '';
+	await row.getByRole('button', { name: /^Correct…/ }).click();
+	const dialog = page.getByRole('dialog');
+	await dialog.locator('label').filter({ hasText: 'tight' }).click();
+	await page.keyboard.type('Tightened by hand, 45 Nm');
+	await dialog.getByRole('button', { name: 'Correct to tight' }).click();
+	await expect(variable(page, name)).toHaveAttribute('data-value', 'tightened');
+	expect(await page.evaluate(() => (window as unknown as { presses: number }).presses)).toBeLessThanOrEqual(4);
+	await expect(page.getByTestId('last-correction')).toContainText('Tightened by hand, 45 Nm');
+	await ask(page, 'POST', 'restart/leave', {});
+	await ask(page, 'PUT', 'mode', { mode: 'automatic' });
 });

@@ -111,7 +111,6 @@ test('what asks for two people is asked for by one and done by another', async (
 	await eva.locator(`[data-row="${bolts}"]`).getByRole('button', { name: /^Correct…/ }).click();
 	const dialog = eva.getByRole('dialog');
 	await dialog.getByRole('radio', { name: 'placed' }).check();
-	await dialog.getByRole('button', { name: 'Show what follows' }).click();
 	await expect(dialog.getByTestId('follows')).toBeVisible({ timeout: 30_000 });
 	await dialog.getByLabel('Reason').fill('seen with my own eyes');
 	await expect(dialog.getByText('A second person has to approve this.')).toBeVisible();

@@ -37,6 +37,11 @@ export function fullName(view: Pick<StationView, 'resources' | 'variables'> | nu
 	return `${view?.resources[resource]?.title ?? resource} · ${own}`;
 }
 
+/** A name as it stands within a sentence: `bolt pair 4`, and `AGV` as it is. */
+export function inSentence(name: string): string {
+	return /^\p{Lu}\p{Ll}/u.test(name) ? name.slice(0, 1).toLocaleLowerCase() + name.slice(1) : name;
+}
+
 let counted: { readonly names: Names | null; readonly language: string; readonly by: Readonly<Record<string, number>> } | null = null;
 
 /** How many variables have each name. */
