@@ -187,6 +187,16 @@ def test_a_doctype_without_declarations_is_what_old_editors_write() -> None:
     assert (drawing.width, drawing.height) == (100.0, 50.0)
 
 
+def test_what_a_root_says_holds_for_all_that_is_in_it() -> None:
+    """Many drawings say there that nothing is filled."""
+    drawing, told = read("<circle r='1'/>", OPEN.replace(">", " fill='none' width='9' id='all' onload='x()'>"))
+    assert [each.partition(" ")[2] for each in told] == ["`onload` is left out: nothing in a drawing runs"]
+    assert drawing is not None
+    around, circle = drawing.elements
+    assert (around.name, around.attributes) == ("g", {"fill": "none", "id": "all"})
+    assert (circle.name, circle.inside) == ("circle", 0)
+
+
 # Drawings in a picture.
 
 DRAWING = f'{OPEN}<path id="frame" d="M0 0h9"/><circle id="lamp" r="3"/><text id="number">0</text></svg>'

@@ -31,6 +31,7 @@ ELEMENTS: Final = (
 # What editors write for themselves, and what nothing is lost with: it is left out without a word.
 _SILENT = frozenset({"title", "desc", "metadata"})
 _SILENT_ATTRIBUTES = frozenset({"version", "baseProfile", "class", "enable-background", "role"})
+_OF_ROOT = frozenset({"x", "y", "width", "height", "viewBox", "preserveAspectRatio", "overflow"})
 # The tokens of the pages that a colour may name: with them a drawing is right on light and on dark grounds.
 TOKENS: Final = (
     "ink", "ink-2", "ink-3", "line", "line-2", "edge", "surface", "raised", "sunken", "past", "accent", "accent-soft"
@@ -162,7 +163,7 @@ class _Reader:
                 raise _RefusedError(self._place(), f"this is no SVG: it begins with `{local}`")
             self._has_root = True
             self.box = _box(attributes)
-            self._open.append(None)
+            self._root({name: value for name, value in attributes.items() if name not in _OF_ROOT})
         elif namespace not in ("", _SVG) or local in _SILENT:
             self._left_out = 1
         elif local not in ELEMENTS:
@@ -170,6 +171,16 @@ class _Reader:
             self._left_out = 1
         else:
             self._keep(local, attributes)
+
+    def _root(self, attributes: Mapping[str, str]) -> None:
+        """Keep what a root says of all that is in it, as a group around that."""
+        self._open.append(None)
+        self._keep("g", attributes)
+        self._open = [0]
+        if not self.elements[0].attributes:
+            self.elements.clear()
+            self._places.clear()
+            self._open = [None]
 
     def _end(self, _name: str) -> None:
         if self._left_out:
