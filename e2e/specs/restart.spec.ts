@@ -16,7 +16,7 @@ async function openRestart(operate: Page): Promise<Page> {
 
 test('held, into restart mode and out of it, each by an act of its own, and work goes on', async ({ operate, watch }) => {
 	const mode = operate.getByTestId('mode');
-	const notice = operate.getByRole('region', { name: 'Restart' });
+	const notice = operate.getByTestId('restart-notice');
 	const main = operate.locator('main');
 	const press = (name: string) => operate.getByRole('button', { name, exact: true });
 	const act = (name: string) => main.getByRole('button', { name, exact: true });
@@ -32,7 +32,7 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 		await expect(press('Continue')).toBeVisible();
 		await expect(notice).toContainText('Nothing starts');
 		await picture(operate, 'operate-held');
-		await notice.getByRole('link', { name: 'To Restart' }).click();
+		await notice.locator('a[href="/restart"]').click();
 	});
 
 	await test.step('in restart mode operations wait, and there is no way on but out of it', async () => {
@@ -54,7 +54,7 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 		await expect(operate.locator('[data-status="running"]')).toHaveCount(0);
 		expect(await tightenings(operate)).toBe(before);
 		await expect(notice).toContainText('The station is in restart mode');
-		await notice.getByRole('link', { name: 'To Restart' }).click();
+		await notice.locator('a[href="/restart"]').click();
 	});
 
 	await test.step('leaving it alone pauses', async () => {
