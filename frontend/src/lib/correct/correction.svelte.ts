@@ -30,9 +30,9 @@ export interface Needs {
 	readonly restart: boolean;
 }
 
-/** What a person has read of a preview: what would be so, and not what happens next. */
-function read({ safe, violates, activated, completed, contradictions_gone, contradictions_new, left_out }: CorrectionPreview): string {
-	return JSON.stringify([safe, violates, activated, completed, contradictions_gone, contradictions_new, left_out]);
+/** What a person has read of a preview: what the correction makes so, and not what a station at work does next. */
+function read({ safe, violates, completed, contradictions_new }: CorrectionPreview): string {
+	return JSON.stringify([safe, violates, completed, contradictions_new]);
 }
 
 export class Correction {
