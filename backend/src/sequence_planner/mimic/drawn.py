@@ -215,8 +215,8 @@ class _Drawing:
     def _own(self, file: SourceText | None, binds: Mapping[SourceText, BindDocument]) -> MimicDrawing | None:
         """A drawing, with what its elements follow."""
         if file is None:
-            for name in binds:
-                self._findings.add(name, "there is no `drawing` here whose elements could follow something")
+            for each in binds:
+                self._findings.add(each, "there is no `drawing` here whose elements could follow something")
             return None
         if not self._known(file, self._texts, "file"):
             return None
@@ -242,7 +242,8 @@ class _Drawing:
     def _bound(self, name: str, element: str, bind: BindDocument) -> MimicBound:
         says = bind.text
         if says is not None and element not in TEXTS:
-            near = says if isinstance(says, SourceText) else says.en
+            said = (says,) if isinstance(says, SourceText) else (says.en, says.sv)
+            near = next(each for each in said if each is not None)
             self._findings.add(near, f"`{name}` is a `{element}`, and only a `text` or `tspan` says something")
             says = None
         if bind.when and bind.role is None:
