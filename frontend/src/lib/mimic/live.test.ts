@@ -56,7 +56,7 @@ it('knows where it was sent as long as it is not there', () => {
 });
 
 it('shows a part as its value looks, and what is unknown as doubt', () => {
-	const part = { variable: 'bolt', title: {}, label: '1', label_x: 0, label_y: 0, marks: [], size: 9, looks: { empty: 'empty', tight: 'done', true: 'placed' } } as const;
+	const part = { variable: 'bolt', title: {}, label: '1', label_x: 0, label_y: 0, marks: [], size: 9, looks: { empty: 'empty', tight: 'done', true: 'placed' }, titles: {} } as const;
 	const look = (value: Variable['value']) => lookOf({ ...part, marks: [] }, variables({ bolt: value }));
 	expect([look('tight'), look('empty'), look(true), look(null), look('other')]).toEqual(['done', 'empty', 'placed', 'doubt', 'doubt']);
 });
