@@ -53,9 +53,11 @@ export default defineConfig({
 									priority: 1,
 									entriesAware: true
 								},
+								// The watch reads the stream as other pages do, and would have what these read with it.
+								{ name: 'stream', test: /lib\/stream\//, priority: 1, entriesAware: true },
 								// So is what the names of variables stand on, which all but the watch's pages read.
 								{ name: 'names', test: /lib\/wording\/(names|values)/, priority: 1, entriesAware: true },
-								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 4_700 }
+								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 1_000 }
 							]
 						},
 						// Those are called after all pages that share them, which are no folders.
