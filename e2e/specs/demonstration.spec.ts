@@ -21,7 +21,10 @@ test('a demonstration says that it is one, wherever one acts, and asks before it
 	await expect(operate.getByTestId('demonstration')).toBeVisible();
 });
 
-test('whoever is new is shown around by the keyboard alone, once, and never over Pause and Hold', async ({ operate }) => {
+test('whoever is new is shown around by the keyboard alone, once, and never over Pause and Hold', async ({
+	operate,
+	station
+}) => {
 	const [offer, round] = [operate.getByTestId('round-offer'), operate.getByTestId('round')];
 	await offer.getByRole('button', { name: 'Show me around' }).press('Enter');
 	const titles = ['The station', 'The plan', 'Your task', 'Pause and Hold', 'When it stops'];
@@ -55,5 +58,5 @@ test('whoever is new is shown around by the keyboard alone, once, and never over
 	await expect(round.getByRole('heading', { name: 'The station' })).toBeFocused();
 	await operate.keyboard.press('Escape');
 	await expect(round).toHaveCount(0);
-	await expect(operate).toHaveURL('/');
+	await expect(operate).toHaveURL(`${station.url}/`);
 });
