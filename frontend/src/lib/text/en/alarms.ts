@@ -35,6 +35,18 @@ export const alarms = {
 		mode: (mode: string): string => `Mode: ${mode}`,
 		task: (title: string): string => `For you: ${title}`
 	},
+	which: 'Which alarms',
+	emptyAbout: 'An alarm would stand here as soon as something is not as it should be, with what to do about it.',
+	sections: { fresh: 'Not acknowledged', seen: 'Acknowledged', over: 'Over, today' },
+	detail: {
+		label: 'The alarm that is chosen',
+		happened: 'What happened',
+		means: 'What it means',
+		todo: 'What to do',
+		came: 'How it came about',
+		over: 'Its cause is over',
+		history: 'All of it in History'
+	},
 	standing: 'Standing',
 	setAside: 'Shelved and out of service',
 	asideAbout: 'People are not told of these, because somebody wanted that.',
@@ -75,6 +87,7 @@ export const alarms = {
 		label: 'Where to look'
 	},
 	filter: {
+		button: 'Filter',
 		label: 'Which alarms are shown',
 		state: 'State',
 		priority: 'Priority',
@@ -85,12 +98,11 @@ export const alarms = {
 		shown: (shown: number, all: number): string => `${shown} of ${all} are shown.`
 	},
 	figures: {
-		title: 'Figures',
-		standing: 'Standing',
-		fresh: 'Not acknowledged',
 		aside: 'Set aside',
-		tenMinutes: 'Came in the last 10 minutes',
-		hour: 'Came in the last hour',
+		tenMinutes: 'Last 10 min',
+		hour: 'Last hour',
+		course: (each: string): string => `Alarms in each ten minutes of the last hour: ${each}`,
+		floodBegins: 'A flood begins at 10 in 10 min.',
 		atLeast: (n: number): string => `at least ${n}`,
 		flood: 'More than 10 in 10 minutes is a flood: more than one person can follow.',
 		frequent: 'Most frequent in the last hour',
@@ -113,7 +125,8 @@ export const alarms = {
 		operators: 'Operators may read what was earlier, and how often alarms came.'
 	},
 	tone: {
-		title: 'Sound',
+		on: 'Sound on',
+		off: 'Sound off',
 		label: 'A short tone for each new alarm of high priority',
 		about: 'In this browser alone, as long as a page of the station is open and live. Do not rely on it: a device may be muted, and a browser asleep.',
 		hear: 'Hear it',

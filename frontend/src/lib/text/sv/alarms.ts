@@ -36,6 +36,18 @@ export const alarms: Text['alarms'] = {
 		mode: (mode) => `Läge: ${mode}`,
 		task: (title) => `Till dig: ${title}`
 	},
+	which: 'Vilka larm',
+	emptyAbout: 'Ett larm skulle stå här så snart något inte är som det ska, med vad som ska göras åt det.',
+	sections: { fresh: 'Inte kvitterade', seen: 'Kvitterade', over: 'Över, i dag' },
+	detail: {
+		label: 'Det larm som är valt',
+		happened: 'Vad som hände',
+		means: 'Vad det betyder',
+		todo: 'Vad som ska göras',
+		came: 'Hur det kom till',
+		over: 'Orsaken är över',
+		history: 'Allt i Historik'
+	},
 	standing: 'Aktuella',
 	setAside: 'Lagda åt sidan och ur drift',
 	asideAbout: 'Om dessa får ingen veta något, eftersom någon ville det.',
@@ -75,6 +87,7 @@ export const alarms: Text['alarms'] = {
 		label: 'Var man kan titta'
 	},
 	filter: {
+		button: 'Filter',
 		label: 'Vilka larm som visas',
 		state: 'Tillstånd',
 		priority: 'Prioritet',
@@ -85,12 +98,11 @@ export const alarms: Text['alarms'] = {
 		shown: (shown, all) => `${shown} av ${all} visas.`
 	},
 	figures: {
-		title: 'Siffror',
-		standing: 'Aktuella',
-		fresh: 'Inte kvitterade',
 		aside: 'Åt sidan',
-		tenMinutes: 'Kom de senaste 10 minuterna',
-		hour: 'Kom den senaste timmen',
+		tenMinutes: 'Senaste 10 min',
+		hour: 'Senaste timmen',
+		course: (each) => `Larm i var tionde minut den senaste timmen: ${each}`,
+		floodBegins: 'En larmskur börjar vid 10 på 10 min.',
 		atLeast: (n) => `minst ${n}`,
 		flood: 'Fler än 10 på 10 minuter är en larmflod: fler än en människa hinner följa.',
 		frequent: 'Vanligast den senaste timmen',
@@ -113,7 +125,8 @@ export const alarms: Text['alarms'] = {
 		operators: 'Operatörer får läsa tidigare larm och hur ofta larm har kommit.'
 	},
 	tone: {
-		title: 'Ljud',
+		on: 'Ljud på',
+		off: 'Ljud av',
 		label: 'En kort ton för varje nytt larm med hög prioritet',
 		about: 'Bara i den här webbläsaren, så länge en av stationens sidor är öppen och direkt. Lita inte på den: enheten kan vara tystad och webbläsaren kan sova.',
 		hear: 'Lyssna',
