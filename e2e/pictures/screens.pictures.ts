@@ -1,4 +1,4 @@
-/** The screens in both themes, those of operators at the desk, on a tablet and on a wrist: `docs/screens`. */
+/** The screens in both themes, at the desk, on a tablet and on a phone; ten of them for `docs/screens`. */
 import type { Page } from '@playwright/test';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -6,39 +6,47 @@ import { done, restsOnPerson, takeControl } from '../station/seen.ts';
 import { ADA, EVA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
-const FOLDER = join(import.meta.dirname, '../../docs/screens');
+/** Where the documentation has its pictures, and where all others go. */
+const DOCS = join(import.meta.dirname, '../../docs/screens');
+const REST = join(import.meta.dirname, '../artefacts/screens');
+/** Those that the documentation shows, in light and on a desk or a wrist. */
+const SHOWN = new Set(['operate', 'wall', 'restart', 'correct', 'alarms', 'history', 'orders', 'model', 'pipelines'].map((name) => `${name}-1440-light`)).add('watch-192-light');
 const SCREENS = [
 	[1440, 900],
 	[768, 1024],
-	[192, 192]
+	[390, 844]
 ] as const;
-
-/** Where engineers sit. */
-const DESKS = SCREENS.slice(0, 2);
+const WRIST = [
+	[192, 192],
+	[390, 844]
+] as const;
 
 /** Takes pictures of a page as it is now. */
 async function take(page: Page, name: string, screens: readonly (readonly [number, number])[] = SCREENS): Promise<void> {
+	const before = page.viewportSize();
 	for (const colorScheme of ['light', 'dark'] as const) {
 		await page.emulateMedia({ colorScheme });
 		for (const [width, height] of screens) {
 			await page.setViewportSize({ width, height });
 			await page.waitForTimeout(300);
-			await page.screenshot({ path: join(FOLDER, `${name}-${width}-${colorScheme}.png`) });
+			const each = `${name}-${width}-${colorScheme}`;
+			await page.screenshot({ path: join(SHOWN.has(each) ? DOCS : REST, `${each}.png`) });
 		}
 	}
 	await page.emulateMedia({ colorScheme: 'light' });
-	await page.setViewportSize({ width: 1440, height: 900 });
+	if (before !== null) await page.setViewportSize(before);
 }
 
 test('all screens', async ({ station, operate, watch, browse }) => {
-	mkdirSync(FOLDER, { recursive: true });
+	mkdirSync(REST, { recursive: true });
 	await restsOnPerson(operate, watch);
 	await done(watch).tap();
 	await operate.waitForTimeout(1500);
 	await take(operate, 'operate');
 	await restsOnPerson(operate, watch);
-	await take(watch, 'watch');
+	await take(watch, 'watch', WRIST);
 	for (const [name, settled] of [
+		['wall', 'main'],
 		['state', '[data-row]'],
 		['history', 'main'],
 		['ros', '[data-row]']
@@ -73,7 +81,6 @@ test('all screens', async ({ station, operate, watch, browse }) => {
 	await operate.locator('[data-row]').first().getByRole('button', { name: /^Correct…/ }).click();
 	const dialog = operate.getByRole('dialog');
 	await dialog.getByRole('radio').last().check();
-	await dialog.getByRole('button', { name: 'Show what follows' }).click();
 	await dialog.getByTestId('follows').waitFor();
 	await take(operate, 'correct');
 });
@@ -91,7 +98,7 @@ test('the screens of engineers', async ({ operate, watch, browse }) => {
 		const page = await browse(null, address);
 		await page.locator(settled).first().waitFor({ timeout: 60_000 });
 		await page.waitForTimeout(3000); // what moves until it is laid out
-		await take(page, name, DESKS);
+		await take(page, name);
 		await page.close();
 	}
 
@@ -99,11 +106,11 @@ test('the screens of engineers', async ({ operate, watch, browse }) => {
 	await page.getByLabel('For how many seconds').fill('30');
 	await page.getByRole('button', { name: 'Simulate' }).click();
 	await page.getByRole('heading', { name: 'What would happen' }).waitFor({ timeout: 60_000 });
-	await take(page, 'what-if', DESKS);
+	await take(page, 'what-if');
 });
 
 test.describe('where people are known', () => {
-	test.use({ byItself: false, devices: true, people: 'everybody' });
+	test.use({ shared: 'people', byItself: false, devices: true, people: 'everybody' });
 
 	test('orders, and the screens of administrators', async ({ browse }) => {
 		const eva = await browse(EVA, '/orders');
@@ -117,12 +124,12 @@ test.describe('where people are known', () => {
 			await eva.locator('[data-order]').filter({ hasText: description }).waitFor();
 		}
 		await eva.waitForTimeout(12_000); // until their order is computed
-		await take(eva, 'orders', DESKS);
-		for (const name of ['people', 'webhooks', 'backups', 'storage']) {
+		await take(eva, 'orders');
+		for (const name of ['users', 'webhooks', 'backups', 'storage']) {
 			const page = await browse(ADA, `/${name}`);
 			await page.locator('main h2').first().waitFor();
 			await page.waitForTimeout(1500);
-			await take(page, name, DESKS.slice(0, 1));
+			await take(page, name);
 			await page.close();
 		}
 	});

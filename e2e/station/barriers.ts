@@ -26,6 +26,7 @@ export async function smallTargets(page: Page): Promise<string[]> {
 	return page.evaluate(() => {
 		const least = matchMedia('(pointer: coarse)').matches ? 44 : 24;
 		return [...document.querySelectorAll('button, a, input:not(.unseen), select, textarea, summary')].flatMap((element) => {
+			if (!element.checkVisibility()) return [];
 			const { width, height } = (element.closest('label') ?? element).getBoundingClientRect();
 			return width >= least && height >= least ? [] : [`${element.textContent.trim()}: ${width} × ${height}`];
 		});
