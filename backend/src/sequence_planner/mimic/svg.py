@@ -87,18 +87,18 @@ def drawing_of(text: str, file: str, findings: Findings) -> MimicDrawing | None:
         return None
     reader = _Reader(file)
     try:
-        reader.read(text.removeprefix("\ufeff"))
+        reader.walk(text.removeprefix("\ufeff"))
         reader.follow_references()
     except expat.ExpatError as error:
-        reader.tell(Place(file, error.lineno, error.offset + 1), f"this is no SVG: {expat.ErrorString(error.code)}")
+        reader.leave_out(Place(file, error.lineno, error.offset + 1), f"this is no SVG: {expat.ErrorString(error.code)}")
         box = None
     except _RefusedError as error:
-        reader.tell(error.place, str(error))
+        reader.leave_out(error.place, str(error))
         box = None
     else:
         box = reader.box
         if box is None:
-            reader.tell(Place(file, 1, 1), "nobody knows how large this is: give its `svg` a `viewBox`")
+            reader.leave_out(Place(file, 1, 1), "nobody knows how large this is: give its `svg` a `viewBox`")
     told = sorted(set(reader.told), key=lambda each: each[0])
     for place, message in told[:_MOST_TOLD]:
         findings.add(place, message)
@@ -136,7 +136,7 @@ class _Reader:
         self._parser.EndElementHandler = self._end
         self._parser.CharacterDataHandler = self._text
 
-    def read(self, text: str) -> None:
+    def walk(self, text: str) -> None:
         """Read the file. Raises `ExpatError` and `_RefusedError`."""
         self._parser.Parse(text, True)
 
@@ -144,7 +144,7 @@ class _Reader:
         """The place that is being read."""
         return Place(self._file, self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
 
-    def tell(self, place: Place, message: str) -> None:
+    def leave_out(self, place: Place, message: str) -> None:
         """Note what is not drawn there."""
         self.told.append((place, message))
 
@@ -167,7 +167,7 @@ class _Reader:
         elif namespace not in ("", _SVG) or local in _SILENT:
             self._left_out = 1
         elif local not in ELEMENTS:
-            self.tell(self._place(), f"`{local}` is left out: a drawing has shapes, groups, texts and gradients")
+            self.leave_out(self._place(), f"`{local}` is left out: a drawing has shapes, groups, texts and gradients")
             self._left_out = 1
         else:
             self._keep(local, attributes)
@@ -231,25 +231,25 @@ class _Reader:
             if value.startswith("#"):
                 element.attributes[name] = value
             else:
-                self.tell(self._place(), "`href` is left out: it may only name an element of this drawing, as `#wheel`")
+                self.leave_out(self._place(), "`href` is left out: it may only name an element of this drawing, as `#wheel`")
         elif name in _REFERENCES and (found := _LOCAL.fullmatch(value)):
             element.attributes[name] = f"url(#{found[1]})"
         elif allowed is not None:
             if allowed.fullmatch(value):
                 element.attributes[name] = value
             else:
-                self.tell(self._place(), f"`{name}` is left out: `{_short(value)}` is not drawn")
+                self.leave_out(self._place(), f"`{name}` is left out: `{_short(value)}` is not drawn")
         elif name.lower().startswith("on"):
-            self.tell(self._place(), f"`{_short(name)}` is left out: nothing in a drawing runs")
+            self.leave_out(self._place(), f"`{_short(name)}` is left out: nothing in a drawing runs")
         elif name not in _SILENT_ATTRIBUTES and not name.startswith(("data-", "aria-")):
-            self.tell(self._place(), f"`{_short(name)}` is left out: this is not drawn")
+            self.leave_out(self._place(), f"`{_short(name)}` is left out: this is not drawn")
 
     def _identify(self, name: str) -> None:
         at = len(self.elements) - 1
         if not _NAME.fullmatch(name):
-            self.tell(self._place(), f"`{_short(name)}` is no name: use letters, digits, `_`, `-` and `.`")
+            self.leave_out(self._place(), f"`{_short(name)}` is no name: use letters, digits, `_`, `-` and `.`")
         elif name in self._ids:
-            self.tell(self._place(), f"two elements are called `{name}`: this one is drawn without its name")
+            self.leave_out(self._place(), f"two elements are called `{name}`: this one is drawn without its name")
         else:
             self._ids[name] = at
             self.elements[at].attributes["id"] = name
@@ -276,7 +276,7 @@ class _Reader:
                     elif drawn > 2 * MOST_ELEMENTS:
                         fault = f"`#{target}` is left out: too much would be drawn"
                 if fault is not None:
-                    self.tell(self._places[at], fault)
+                    self.leave_out(self._places[at], fault)
                     del element.attributes[name]
 
     def _ends(self) -> list[int]:

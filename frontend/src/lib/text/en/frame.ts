@@ -118,7 +118,7 @@ export const frame = {
 		stepOf: (n: number, all: number): string => `Step ${n} of ${all}`,
 		steps: [
 			{ title: 'The station', text: 'This picture is the station as it is now: what each device does, and how far the product is. Press anything in it for its values and why it waits.' },
-			{ title: 'The plan', text: 'What runs, what comes next, and what waits for what. When the station changes, the plan is made anew.' },
+			{ title: 'The plan', text: 'What runs, what comes next, and what waits for what. When the station changes, there is a new plan.' },
 			{ title: 'Your task', text: 'What the station asks of you stands here. Do it, then press Done. If it cannot be done, press Problem: somebody comes, and nothing stops.' },
 			{ title: 'Pause and Hold', text: 'Pause: running steps finish, nothing new starts. Hold: what can be stopped stops at once. Both are on every page and ask nothing. Neither is an emergency stop.' },
 			{ title: 'When it stops', text: 'An alarm says what failed and what to do. The page Restart then leads back to production, one step at a time.' }
