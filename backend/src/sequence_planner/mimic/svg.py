@@ -90,7 +90,9 @@ def drawing_of(text: str, file: str, findings: Findings) -> MimicDrawing | None:
         reader.walk(text.removeprefix("\ufeff"))
         reader.follow_references()
     except expat.ExpatError as error:
-        reader.leave_out(Place(file, error.lineno, error.offset + 1), f"this is no SVG: {expat.ErrorString(error.code)}")
+        reader.leave_out(
+            Place(file, error.lineno, error.offset + 1), f"this is no SVG: {expat.ErrorString(error.code)}"
+        )
         box = None
     except _RefusedError as error:
         reader.leave_out(error.place, str(error))
@@ -231,7 +233,9 @@ class _Reader:
             if value.startswith("#"):
                 element.attributes[name] = value
             else:
-                self.leave_out(self._place(), "`href` is left out: it may only name an element of this drawing, as `#wheel`")
+                self.leave_out(
+                    self._place(), "`href` is left out: it may only name an element of this drawing, as `#wheel`"
+                )
         elif name in _REFERENCES and (found := _LOCAL.fullmatch(value)):
             element.attributes[name] = f"url(#{found[1]})"
         elif allowed is not None:
