@@ -104,7 +104,7 @@ test('the station is seen as it was, step by step, and taken along @long', async
 		// The record is shorter than most of the lengths.
 		await operate.getByRole('button', { name: 'All', exact: true }).click();
 		await expect(operate.getByRole('button', { name: 'All', exact: true })).toHaveAttribute('aria-pressed', 'true');
-		await expect(operate.getByTestId('strip').locator('.brush')).toBeVisible();
+		await expect(operate.getByTestId('whole').locator('.brush')).toBeVisible();
 	});
 
 	await test.step('one press leads back to now', async () => {

@@ -193,6 +193,13 @@ export const operate = {
 		forbiddenBy: 'forbidden by'
 	},
 	/** Whoever is asked for something says what is in the way; on the watch with one touch, and nothing more. */
+	task: {
+		yours: 'Your task',
+		comesHere: 'What the station asks of you comes here.',
+		goesOn: 'Your task goes on',
+		thenMoves: 'Then moves:',
+		next: 'Next for you:',
+	},
 	problem: {
 		more: 'More about it (if you like)',
 		title: (task: string): string => `What keeps you from “${task}”?`,

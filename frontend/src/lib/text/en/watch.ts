@@ -2,11 +2,6 @@
 export const watch = {
 	forYou: 'For you',
 	nothingToDo: 'Nothing to do',
-	yourTask: 'Your task',
-	comesHere: 'What the station asks of you comes here.',
-	goesOn: 'Your task goes on',
-	thenMoves: 'Then moves:',
-	nextForYou: 'Next for you:',
 	nothingWhenHeard: 'Nothing when last heard',
 	nothingKnown: 'Nothing is known of your tasks',
 	operatorSays: 'An operator says when it is done.',

@@ -191,6 +191,13 @@ export const operate: Text['operate'] = {
 		nothingChanges: 'inget ändras',
 		forbiddenBy: 'förbjuds av'
 	},
+	task: {
+		yours: 'Din uppgift',
+		comesHere: 'Det stationen ber dig om kommer hit.',
+		goesOn: 'Din uppgift fortsätter',
+		thenMoves: 'Sedan rör sig:',
+		next: 'Nästa för dig:',
+	},
 	problem: {
 		more: 'Mer om det (om du vill)',
 		title: (task) => `Vad hindrar ”${task}”?`,

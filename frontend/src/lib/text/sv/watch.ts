@@ -3,11 +3,6 @@ import type { Text } from '../text.svelte.ts';
 export const watch: Text['watch'] = {
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
-	yourTask: 'Din uppgift',
-	comesHere: 'Det stationen ber dig om kommer hit.',
-	goesOn: 'Din uppgift fortsätter',
-	thenMoves: 'Sedan rör sig:',
-	nextForYou: 'Nästa för dig:',
 	nothingWhenHeard: 'Inget när den senast hördes',
 	nothingKnown: 'Inget är känt om dina uppgifter',
 	operatorSays: 'En operatör säger till när det är klart.',
