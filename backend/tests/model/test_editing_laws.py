@@ -201,6 +201,8 @@ def outside(text: str, path: EntryPath) -> list[str]:
     line = document.place(path).line - 1
     lines = text.split("\n")
     top = line
+    while top and re.fullmatch(r" *-( +#.*)?", lines[top - 1]):  # its dash has a line of its own
+        top -= 1
     while top and lines[top - 1].lstrip().startswith("#"):
         top -= 1
     following = [

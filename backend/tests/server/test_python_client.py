@@ -40,7 +40,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("client")
     (folder / "docs").symlink_to(REPOSITORY / "docs")
     (folder / "openapi.json").write_text(document(), encoding="utf-8")
-    typed(GENERATE, folder, PATH=os.pathsep.join((str(BIN), os.environ["PATH"])))
+    typed(GENERATE, folder, 120, PATH=os.pathsep.join((str(BIN), os.environ["PATH"])))
     return folder
 
 
