@@ -18,7 +18,7 @@ from sequence_planner.mes.expected import CycleTimes, ExpectedTimes, expected
 from sequence_planner.mes.order import JobOrder, OrderState, Wish
 from sequence_planner.mes.queue import in_the_way
 from sequence_planner.mes.responses import JobOutcome, JobResponse
-from support.example_view import example_view
+from support.example_view import example_job, example_view
 from support.examples import examples
 
 NOW = 10_000.0
@@ -79,20 +79,7 @@ def worked(number: int, work_master: str = "engine", **more: Any) -> JobOrder:  
 
 
 def job(order: JobOrder, **more: object) -> JobView:
-    view = JobView(
-        title="",
-        work_master=order.work_master,
-        state=JobState.RUNNING,
-        stopping=False,
-        taken=1.0,
-        begun=1.0,
-        ended=None,
-        waits_for=[],
-        waits_for_messages=[],
-        sentence=None,
-        steps={},
-    )
-    return view.model_copy(update=more)
+    return example_job(work_master=order.work_master, **more)
 
 
 def station(*orders: JobOrder, **more: object) -> StationView:

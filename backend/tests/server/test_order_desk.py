@@ -19,7 +19,7 @@ from sequence_planner.mes.order import OrderState
 from sequence_planner.mes.responses import JobOutcome, JobResponse
 from sequence_planner.server.services import orders as order_dispatch
 from sequence_planner.server.settings import Settings
-from support.example_view import example_view
+from support.example_view import example_job, example_view
 from support.server import Loop, Server
 from support.waiting import until
 
@@ -61,19 +61,7 @@ def controller(loop: Loop, settings: Settings, monkeypatch: pytest.MonkeyPatch) 
 
 
 def job(state: JobState) -> JobView:
-    return JobView(
-        title="",
-        work_master="truck_engine",
-        state=state,
-        stopping=False,
-        taken=1.0,
-        begun=1.0,
-        ended=None,
-        waits_for=[],
-        waits_for_messages=[],
-        sentence=None,
-        steps={},
-    )
+    return example_job(state=state)
 
 
 def become(server: Server, id: str, state: OrderState) -> None:

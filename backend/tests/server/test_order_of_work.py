@@ -11,9 +11,10 @@ import pytest
 from sequence_planner.controller.commands.jobs import SequenceJobs, TakeJob
 from sequence_planner.controller.views.details import WorkMasterView, WorkOperationView
 from sequence_planner.controller.views.station import JobStepState, JobStepView, JobView
-from sequence_planner.execution.vocabulary import JobState, Mode
+from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.mes.scheduling.problem import KnownTimes
 from sequence_planner.server.api import job_orders
+from support.example_view import example_job
 from support.server import Server
 from support.waiting import until
 
@@ -49,19 +50,7 @@ def master(title: str) -> WorkMasterView:
 
 def job(title: str, state: JobStepState, started: float | None) -> JobView:
     step = JobStepView(state=state, waits_for=[], started=started, ended=None)
-    return JobView(
-        title=title,
-        work_master=title,
-        state=JobState.RUNNING,
-        stopping=False,
-        taken=1.0,
-        begun=1.0,
-        ended=None,
-        waits_for=[],
-        waits_for_messages=[],
-        sentence=None,
-        steps={f"work {title}": step},
-    )
+    return example_job(title=title, work_master=title, steps={f"work {title}": step})
 
 
 def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:

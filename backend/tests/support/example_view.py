@@ -52,6 +52,24 @@ def ability(resource: str, title: str) -> AbilityView:
     )
 
 
+def example_job(**more: object) -> JobView:
+    """A job that runs, with `more` in place of what it has."""
+    view = JobView(
+        title="",
+        work_master="truck_engine",
+        state=JobState.RUNNING,
+        stopping=False,
+        taken=1.0,
+        begun=1.0,
+        ended=None,
+        waits_for=[],
+        waits_for_messages=[],
+        sentence=None,
+        steps={},
+    )
+    return view.model_copy(update=more)
+
+
 def step(name: str, resource: str, status: StepStatus, tick: int) -> PlanStepView:
     return PlanStepView(
         id=f"{name}@{tick}",

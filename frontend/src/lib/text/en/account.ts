@@ -7,7 +7,6 @@ export const account = {
 	notReached: 'The server cannot be reached. Try again before you leave.',
 	toStation: 'To the station',
 	you: 'you',
-	sendingEllipsis: 'Sending …',
 	acts: 'Acts',
 	name: 'Name',
 	/** A heading and how many, folded away. */

@@ -14,7 +14,6 @@ export const model = {
 	file: 'File',
 	hideFile: 'Hide the file',
 	showFile: 'Show the file',
-	changedOther: 'not as in the station',
 	fileState: { same: 'as in the station', changed: 'changed', new: 'new', removed: 'removed' },
 	findings: (errors: number, warnings: number): string =>
 		[errors ? count(errors, 'error', 'errors') : '', warnings ? count(warnings, 'warning', 'warnings') : '']

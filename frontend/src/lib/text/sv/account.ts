@@ -8,7 +8,6 @@ export const account: Text['account'] = {
 	notReached: 'Servern nås inte. Försök igen innan du går.',
 	toStation: 'Till stationen',
 	you: 'du',
-	sendingEllipsis: 'Skickar …',
 	acts: 'Åtgärder',
 	name: 'Namn',
 	over: (n) => `Återkallade eller utgångna: ${n}`,

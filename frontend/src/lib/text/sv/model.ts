@@ -15,7 +15,6 @@ export const model: Text['model'] = {
 	file: 'Fil',
 	hideFile: 'Dölj filen',
 	showFile: 'Visa filen',
-	changedOther: 'inte som i stationen',
 	fileState: { same: 'som i stationen', changed: 'ändrad', new: 'ny', removed: 'borttagen' },
 	findings: (errors, warnings) =>
 		[errors ? `${errors} fel` : '', warnings ? count(warnings, 'varning', 'varningar') : ''].filter(Boolean).join(', '),
