@@ -49,11 +49,11 @@ def times() -> CycleTimes:
     return known
 
 
-def made(work_master: str, seconds: float, **more: Any) -> dict[str, Any]:  # noqa: ANN401 - JSON
+def made(work_master: str, seconds: float, **more: object) -> dict[str, Any]:
     return {"work_master": work_master, "outcome": "completed", "began": 100.0, "ended": 100.0 + seconds, **more}
 
 
-def order(number: int, work_master: str = "engine", **more: Any) -> JobOrder:  # noqa: ANN401 - any field
+def order(number: int, work_master: str = "engine", **more: object) -> JobOrder:
     fields = {
         "number": number,
         "id": f"o{number}",
@@ -74,7 +74,7 @@ def order(number: int, work_master: str = "engine", **more: Any) -> JobOrder:  #
     return JobOrder.model_validate(fields | more)
 
 
-def worked(number: int, work_master: str = "engine", **more: Any) -> JobOrder:  # noqa: ANN401 - any field
+def worked(number: int, work_master: str = "engine", **more: object) -> JobOrder:
     return order(number, work_master, **{"state": OrderState.RUNNING, "handed_over": 1.0, "began": NOW - 100, **more})
 
 

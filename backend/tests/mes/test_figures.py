@@ -59,16 +59,16 @@ MASTERS = WorkMastersView(
 class Station:
     """Writes records at times of its own, on a wall clock that can be set."""
 
-    def __init__(self, at: float = MORNING, **whole: Any) -> None:  # noqa: ANN401 - JSON
+    def __init__(self, at: float = MORNING, **whole: object) -> None:
         self.records: list[RunRecord] = []
         self.now, self.monotonic = at, 50.0
         self.begin(**whole)
 
-    def add(self, kind: str, **content: Any) -> None:  # noqa: ANN401
+    def add(self, kind: str, **content: object) -> None:
         number = len(self.records) + 1
         self.records.append(RunRecord(number, self.now, kind, json.dumps(content), ""))
 
-    def begin(self, **whole: Any) -> None:  # noqa: ANN401
+    def begin(self, **whole: object) -> None:
         self.add("begun", **{"values": {}, "senses": {}, "memory": {}, "jobs": {}, "by_order": False, **whole})
 
     def after(self, seconds: float) -> Station:
@@ -76,7 +76,7 @@ class Station:
         self.monotonic += seconds
         return self
 
-    def tick(self, **content: Any) -> None:  # noqa: ANN401
+    def tick(self, **content: object) -> None:
         self.add("ticked", now=[self.now, self.monotonic], **content)
 
     def packml(self, state: str) -> None:

@@ -122,7 +122,7 @@ def test_without_orders_the_products_are_counted_where_the_model_tells(mes: http
     now, monotonic = time.time(), time.monotonic()
     begun = {"values": {}, "senses": {}, "memory": {}, "jobs": {}, "mode": "automatic", "by_order": False}
 
-    def ticked(ago: float, **content: Any) -> tuple[str, float, dict[str, Any]]:  # noqa: ANN401 - JSON
+    def ticked(ago: float, **content: object) -> tuple[str, float, dict[str, Any]]:
         return "ticked", now - ago, {"now": [now - ago, monotonic - ago], **content}
 
     write(
