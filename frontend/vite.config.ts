@@ -28,6 +28,8 @@ export default defineConfig({
 					'style-src-attr': ['unsafe-hashes', 'sha256-S8qMpvofolR8Mpjy4kQvEm7m1q8clzU4dfDH0AmvZjo='],
 					'base-uri': ['self'],
 					'object-src': ['none'],
+					// Which frames there may be the server says in a header; browsers keep to both.
+					'frame-src': ['http:', 'https:'],
 					'form-action': ['self']
 				}
 			},

@@ -62,6 +62,8 @@ export interface Options {
 	readonly copied?: string | null;
 	/** Further variables of the environment in which it is started. */
 	readonly environment?: Readonly<Record<string, string>>;
+	/** The port that it has; else one that is free. */
+	readonly port?: number;
 	/** A program that is started beside the station, on its network. */
 	readonly beside?: readonly [command: string, args: readonly string[]];
 }
@@ -136,7 +138,7 @@ export class Station {
 
 	/** Starts a station and waits until it answers. */
 	static async start(options: Options): Promise<Station> {
-		const station = new Station(await freePort(), await Domain.free(), options);
+		const station = new Station(options.port ?? (await freePort()), await Domain.free(), options);
 		try {
 			await station.#answers();
 			if (!options.byItself) await station.#let(options.people);

@@ -303,4 +303,5 @@ def _options(endpoint: Endpoint) -> list[str]:
     if endpoint.certificate is not None:
         options += [f"--certificate={endpoint.certificate}", f"--private-key={endpoint.private_key}"]
     options += [f"--proxy={proxy}" for proxy in endpoint.proxies]
-    return [*options, *(f"--name={name}" for name in endpoint.names)]
+    options += [f"--name={name}" for name in endpoint.names]
+    return [*options, *(f"--wall-beside={url}" for url in endpoint.wall_beside)]

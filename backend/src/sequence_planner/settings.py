@@ -32,7 +32,7 @@ from sequence_planner.ros.transports.choice import TransportChoice
 PREFIX: Final = "SEQUENCE_PLANNER_"
 FILE: Final = f"{PREFIX}CONFIGURATION"  # the variable that names the file
 _ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, CLIENT_SECRET}  # variables that others read
-_LISTS: Final = ("proxy", "name", "oidc_scope", "oidc_role", "webhook_host", "webhook_network")
+_LISTS: Final = ("proxy", "name", "wall_beside", "oidc_scope", "oidc_role", "webhook_host", "webhook_network")
 _PATHS: Final = (
     "model",
     "certificate",
@@ -56,6 +56,7 @@ class Configuration(DataModel):
     private_key: Path | None = None
     proxy: list[str] | None = None
     name: list[str] | None = None
+    wall_beside: list[str] | None = None
     database: str | None = None
     database_file: Path | None = None
     transport: TransportChoice | None = None

@@ -168,6 +168,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/capabilities": ("viewer", "orders-read"),
     "GET /api/v1/schedule": ("viewer", "orders-read"),
     "GET /api/v1/figures": ("viewer", "read"),
+    "GET /api/v1/wall": ("viewer", "read"),
     "GET /api/v1/webhooks": ("administrator", "webhooks"),
     "POST /api/v1/webhooks": ("administrator", "webhooks"),
     "GET /api/v1/webhooks/{webhook}": ("administrator", "webhooks"),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
+import dataclasses
 from pathlib import Path
 
 import httpx
 import pytest
 
 from sequence_planner.server.http.middleware import document_policy
+from sequence_planner.server.http.page_files import PageFiles
 from support.server import Server
 
 HASH = "'sha256-pODQO96uX/EpWyr2+2ROQmWa44F+aFLu14EKEhc5T/0='"
@@ -53,3 +56,31 @@ def test_a_document_without_a_policy_of_its_own_gets_ours(tmp_path: Path) -> Non
     document = tmp_path / "index.html"
     document.write_text("<!doctype html>")
     assert rules(document_policy(document))["script-src"] == "'self'"
+
+
+def test_a_wall_stands_in_one_page_with_those_of_the_stations_that_are_named(tmp_path: Path) -> None:
+    document = tmp_path / "wall.html"
+    document.write_text(DOCUMENT)
+    policy = rules(document_policy(document, ("https://press.example", "https://weld.example:8443")))
+    assert policy["frame-src"] == policy["frame-ancestors"] == "'self' https://press.example https://weld.example:8443"
+    alone = rules(document_policy(document))
+    assert {name: rule for name, rule in policy.items() if rule != alone[name]}.keys() == {
+        "frame-src",
+        "frame-ancestors",
+    }
+
+
+@pytest.mark.parametrize("path, framed", [("/wall", True), ("/", False), ("/state", False)])
+def test_no_page_but_the_wall_stands_within_another(server: Server, path: str, framed: bool) -> None:
+    page = server.settings.page
+    for name in ("index", "wall", "state"):
+        (page / f"{name}.html").write_text(DOCUMENT)
+    beside = dataclasses.replace(server.settings, wall_beside=("HTTPS://Press.example:443/",)).beside
+
+    async def ask() -> httpx.Response:
+        files = httpx.ASGITransport(PageFiles(page, beside))
+        async with httpx.AsyncClient(transport=files, base_url=server.settings.address) as client:
+            return await client.get(path)
+
+    ancestors = rules(asyncio.run(ask()).headers["content-security-policy"])["frame-ancestors"]
+    assert ancestors == ("'self' https://press.example" if framed else "'none'")

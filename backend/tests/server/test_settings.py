@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.server.binding import bind, check_demonstration, check_endpoint, server_context
-from sequence_planner.server.settings import Endpoint, SettingsError, split_name
+from sequence_planner.server.settings import Endpoint, SettingsError, origin_of, split_name
 from support.certificates import certify
 from support.examples import examples
 from support.network import free_port
@@ -166,3 +166,42 @@ def test_a_demonstration_is_for_this_machine_alone(tmp_path: Path) -> None:
     ):
         with pytest.raises(SettingsError, match="--demonstration is for this machine alone"):
             check_demonstration(beyond)
+
+
+@pytest.mark.parametrize(
+    "url, origin",
+    [
+        ("http://127.0.0.1:8001", "http://127.0.0.1:8001"),
+        ("HTTPS://Weld.Example/", "https://weld.example"),
+        ("https://weld.example:443", "https://weld.example"),
+        ("http://[::1]:80/", "http://[::1]"),
+        ("https://weld.example:80", "https://weld.example:80"),
+    ],
+)
+def test_a_station_beside_is_told_by_its_origin(url: str, origin: str) -> None:
+    assert origin_of(url) == origin
+    assert origin_of(origin) == origin
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "weld.example",
+        "ftp://weld.example",
+        "https://",
+        "https://weld.example/wall",
+        "https://a b",
+        "https://*",
+        "https://u@weld.example",
+    ],
+)
+def test_what_is_no_station_does_not_stand_beside(url: str) -> None:
+    said = refusal(Endpoint(wall_beside=(url,)))
+    assert repr(url) in said
+    assert "--wall-beside" in said
+
+
+def test_a_page_of_https_shows_no_wall_by_http(tmp_path: Path) -> None:
+    endpoint = dataclasses.replace(secured(tmp_path, NAME), wall_beside=("http://weld.example",))
+    assert "no HTTPS" in refusal(endpoint)
+    check_endpoint(dataclasses.replace(endpoint, wall_beside=("https://weld.example",)))

@@ -22,6 +22,7 @@ export type Ability = Schemas['AbilityView'];
 export type Operation = Schemas['OperationView'];
 export type Job = Schemas['JobView'];
 export type Figures = Schemas['FiguresAnswer'];
+export type Wall = Schemas['WallAnswer'];
 export type Plan = Schemas['PlanView'];
 export type Diagnosis = Schemas['DiagnosisView'];
 export type PlanStep = Schemas['PlanStepView'];

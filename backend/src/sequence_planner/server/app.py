@@ -217,7 +217,7 @@ def _route(app: FastAPI, settings: Settings) -> None:
     for part in (*PARTS, health.health_router, metrics.metrics_router):
         app.router.routes.extend(part.routes)
     check_declared(app.routes)
-    app.router.default = Renamed(app.router, PageFiles(settings.page))
+    app.router.default = Renamed(app.router, PageFiles(settings.page, settings.beside))
 
 
 def _surround(app: FastAPI, settings: Settings) -> None:

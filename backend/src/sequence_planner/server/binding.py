@@ -8,7 +8,7 @@ import ssl
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from sequence_planner.server.settings import LOCALHOST, Endpoint, SettingsError, address_of, split_name
+from sequence_planner.server.settings import LOCALHOST, Endpoint, SettingsError, address_of, origin_of, split_name
 
 # The server's own certificate: looked at before anything starts, so that what is wrong is said in plain words.
 #
@@ -156,6 +156,14 @@ def wrong_with(endpoint: Endpoint) -> Iterator[str]:
             hosts.append(split_name(name)[0])
         except SettingsError as error:
             yield str(error)
+    for url in endpoint.wall_beside:
+        try:
+            origin = origin_of(url)
+        except SettingsError as error:
+            yield str(error)
+        else:
+            if endpoint.https and not origin.startswith("https:"):
+                yield f"{url!r} is no HTTPS, and browsers show nothing else in a page that is; use --wall-beside with https://"
     if not endpoint.names and (endpoint.proxies or (is_address and not endpoint.loopback)):
         yield "use --name with the host name by which people open the page; no other is answered"
     if (endpoint.certificate is None) != (endpoint.private_key is None):

@@ -43,7 +43,8 @@ class Endpoint:
 
     `host` is an address of this machine or `localhost`. With `certificate` and `private_key` (PEM) it speaks HTTPS
     itself; with `proxies`, the addresses of reverse proxies that do, it serves those and nobody else. `names` are the
-    host names, with a port where it is not the usual one, by which people open it.
+    host names, with a port where it is not the usual one, by which people open it. `wall_beside` are the addresses of
+    other stations: each shows this one's wall beside its own, and this one theirs.
     """
 
     host: str = "127.0.0.1"
@@ -52,6 +53,7 @@ class Endpoint:
     private_key: Path | None = None
     proxies: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
+    wall_beside: tuple[str, ...] = ()
 
     @property
     def https(self) -> bool:
@@ -83,6 +85,11 @@ class Endpoint:
     def address(self) -> str:
         """The address that people open: by the first of its names, or else where it listens."""
         return f"{self.scheme}://{next(self._hosts())}"
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """The origins of the stations whose walls stand beside this one's, as browsers write them, each once."""
+        return tuple(dict.fromkeys(origin_of(each) for each in self.wall_beside))
 
     def _hosts(self) -> Iterator[str]:
         """Each name as browsers send it, the first of its spellings first."""
@@ -132,6 +139,24 @@ def address_of(host: str) -> IPv4Address | IPv6Address | None:
     except ValueError:
         return None
     return getattr(found, "ipv4_mapped", None) or found
+
+
+def origin_of(url: str) -> str:
+    """The origin of the server at `url`, as browsers write it: `https://HOST[:PORT]` or `http://HOST[:PORT]`.
+
+    Raises `SettingsError` when it names more than a server, or none.
+    """
+    scheme, _, rest = url.partition("://")
+    if scheme.lower() not in STANDARD_PORTS:
+        raise SettingsError(f"{url!r} is not the address of a station; use --wall-beside with https:// and its name")
+    try:
+        host, port = split_name(rest.removesuffix("/"))
+    except SettingsError:
+        raise SettingsError(
+            f"{url!r} is not the address of a station; use --wall-beside as in https://station-2.example:8443"
+        ) from None
+    scheme = scheme.lower()
+    return f"{scheme}://{host}" if port in (None, STANDARD_PORTS[scheme]) else f"{scheme}://{host}:{port}"
 
 
 def split_name(name: str) -> tuple[str, int | None]:

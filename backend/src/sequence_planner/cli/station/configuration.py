@@ -64,6 +64,7 @@ def _endpoint(told: Mapping[str, ConfiguredSetting]) -> Iterator[str]:
         private_key=_path(given.get("private_key")),
         proxies=_list(given.get("proxy")),
         names=_list(given.get("name")),
+        wall_beside=_list(given.get("wall_beside")),
     )
     yield from _placed(told, wrong_with(endpoint))
     if given.get("demonstration"):

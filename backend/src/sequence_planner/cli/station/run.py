@@ -145,6 +145,14 @@ Names = Annotated[
     list[str] | None,
     typer.Option("--name", metavar="HOST[:PORT]", help="A name by which people open the page; can be repeated."),
 ]
+WallBeside = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--wall-beside",
+        metavar="URL",
+        help="Another station, whose wall stands beside this one's, and this one's beside that one's; can be repeated.",
+    ),
+]
 _NICENESS = 2  # of the server: ticks come before whoever looks on
 WebhookHosts = Annotated[
     list[str] | None,
@@ -235,6 +243,7 @@ def run(
     private_key: PrivateKey = None,
     proxy: Proxies = None,
     name: Names = None,
+    wall_beside: WallBeside = None,
     database: DatabaseOption = None,
     database_file: Annotated[
         Path | None, typer.Option(metavar="FILE", help="A file that holds the database's URL, with its password.")
@@ -292,6 +301,7 @@ def run(
         private_key=private_key,
         proxies=tuple(proxy or ()),
         names=tuple(name or ()),
+        wall_beside=tuple(wall_beside or ()),
     )
     wrong = wrong_together(
         emulator=emulator,
@@ -389,6 +399,7 @@ def server(
     private_key: PrivateKey = None,
     proxy: Proxies = None,
     name: Names = None,
+    wall_beside: WallBeside = None,
     database: DatabaseOption = None,
     demonstration: Demonstration = False,
     emulated: Annotated[bool, typer.Option("--emulated")] = False,
@@ -446,6 +457,7 @@ def server(
         private_key=private_key,
         proxies=tuple(proxy or ()),
         names=tuple(name or ()),
+        wall_beside=tuple(wall_beside or ()),
         model=model,
         transport=transport,
         demonstration=demonstration,

@@ -59,6 +59,12 @@ class Answer(AnswerModel):
     time: float
 
 
+class WallAnswer(AnswerModel):
+    """The other stations of a wall: `https://HOST[:PORT]` or `http://HOST[:PORT]` of each."""
+
+    beside: list[str]
+
+
 class StationAnswer(Answer):
     """State of the running station, with requests of people to it and of it to people."""
 
@@ -219,6 +225,12 @@ async def figures(request: Request, office: Identity, view: LiveView) -> Figures
     how long the station worked.
     """
     return await figures_of(request.app.state.order_desk, office, view)
+
+
+@router.get("/wall")
+async def wall(request: Request) -> WallAnswer:
+    """The stations whose walls this station's page shows side by side with its own: the addresses of their servers."""
+    return WallAnswer(beside=list(request.app.state.settings.beside))
 
 
 # The ROS graph, read once or as it changes.

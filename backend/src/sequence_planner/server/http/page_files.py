@@ -7,6 +7,7 @@ takes them so gets them so. Without a build, a page says how to make one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from starlette.datastructures import Headers
@@ -18,6 +19,7 @@ from starlette.types import Receive, Scope, Send
 from sequence_planner.server.http.middleware import document_policy
 
 IMMUTABLE = "_app/immutable/"
+WALL = "wall.html"
 FOR_EVER = "public, max-age=31536000, immutable"
 COMPRESSED = {"br": ".br", "gzip": ".gz"}  # how the build names what it has compressed so, the smallest first
 NOT_BUILT = """<!doctype html>
@@ -30,10 +32,13 @@ NOT_BUILT = """<!doctype html>
 
 
 class PageFiles:
-    """Answers with files of `folder` whatever no other route answers."""
+    """Answers with files of `folder` whatever no other route answers; the wall stands with those of the origins
+    `beside`.
+    """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, beside: Sequence[str] = ()) -> None:
         self.folder = folder
+        self.beside = beside
         self._files = StaticFiles(directory=folder, check_dir=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -61,7 +66,9 @@ class PageFiles:
         kept = path.startswith(IMMUTABLE) and response.status_code in (200, 206, 304)
         response.headers["Cache-Control"] = FOR_EVER if kept else "no-cache"
         if path.endswith(".html"):  # also when it has not changed: a browser then takes the new headers
-            response.headers["Content-Security-Policy"] = document_policy(self.folder / path)
+            response.headers["Content-Security-Policy"] = document_policy(
+                self.folder / path, self.beside if path == WALL else ()
+            )
         return response
 
     def _compressed(self, path: str, accepted: str) -> tuple[str, str]:

@@ -35,6 +35,10 @@ export const figures = {
 		then: (what: string): string => `then ${what}`,
 		next: 'Next:',
 		notLive: 'Not live',
+		sideBySide: 'Side by side',
+		alone: 'This station alone',
+		silent: (station: string): string => `Nothing heard from ${station}`,
+		wallOf: (station: string): string => `Wall of ${station}`,
 		fullScreen: 'Full screen',
 		leave: 'Leave full screen'
 	}

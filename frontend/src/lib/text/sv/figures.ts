@@ -36,6 +36,10 @@ export const figures: Text['figures'] = {
 		then: (what) => `sedan ${what}`,
 		next: 'Sedan:',
 		notLive: 'Inte direkt',
+		sideBySide: 'Sida vid sida',
+		alone: 'Bara den här stationen',
+		silent: (station) => `Inget hörs från ${station}`,
+		wallOf: (station) => `Vägg för ${station}`,
 		fullScreen: 'Helskärm',
 		leave: 'Lämna helskärm'
 	}
