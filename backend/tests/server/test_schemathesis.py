@@ -58,8 +58,8 @@ def roles(server: Server) -> dict[str, str]:
 
 
 def edges_of(operations: Collection[str]) -> set[str]:
-    """The operations whose edges are asked for: a part of those with something in their path outside campaigns."""
-    return {each for each in operations if SHARE >= 1 or "{" not in each or zlib.crc32(each.encode()) % 3 == 0}
+    """The operations whose edges are asked for: a part of them outside campaigns, always the same one."""
+    return {each for each in operations if SHARE >= 1 or zlib.crc32(each.encode()) % 3 == 0}
 
 
 def test_an_administrator_finds_every_answer_as_it_is_described(tmp_path: Path) -> None:

@@ -14,13 +14,15 @@ TIMED = SHARE >= 1
 ONLY_TIMED = pytest.mark.skipif(not TIMED, reason="how long it takes is for `make campaign`, on a quiet machine")
 
 
-def examples(number: int, share: float = SHARE) -> settings:
-    """So many examples where all are tried, always the same ones; how long one takes does not matter."""
+def examples(number: int, share: float = SHARE, least: int = 10) -> settings:
+    """So many examples where all are tried, always the same ones, and never less than the `least`; how long one takes
+    does not matter.
+    """
     slow = (
         HealthCheck.too_slow,
         HealthCheck.data_too_large,
         HealthCheck.large_base_example,
         HealthCheck.filter_too_much,
     )
-    tried = max(min(number, 10), round(share * number))
+    tried = max(min(number, least), round(share * number))
     return settings(max_examples=tried, derandomize=True, deadline=None, database=None, suppress_health_check=slow)

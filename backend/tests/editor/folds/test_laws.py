@@ -84,7 +84,7 @@ def stations(draw: st.DrawFn) -> dict[str, str]:
 
 
 @given(stations())
-@examples(15)
+@examples(15, least=4)
 def test_whatever_is_offered_means_the_same(files: dict[str, str]) -> None:
     before = _read(files)
     with tempfile.TemporaryDirectory() as folder:
