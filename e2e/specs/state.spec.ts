@@ -1,5 +1,5 @@
 import { findings, smallTargets } from '../station/barriers.ts';
-import { acknowledge, picture, restsOnPerson, variable } from '../station/seen.ts';
+import { acknowledge, picture, restsOnPerson, takeControl, variable } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 import type { Locator, Page } from '@playwright/test';
 
@@ -134,6 +134,10 @@ test('from any page a correction is four presses away: control and restart mode 
 	browse
 }) => {
 	await restsOnPerson(operate, watch);
+	// Who took it before may have it still: to take it from somebody is a press more.
+	await takeControl(operate);
+	await operate.getByRole('button', { name: 'Release control' }).click();
+	await expect(operate.getByTestId('control')).toHaveAttribute('data-holder', 'nobody');
 	const page = await browse(null, '/history');
 	await page.evaluate(() => {
 		const counted = window as unknown as { presses: number };
