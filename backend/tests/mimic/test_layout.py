@@ -10,11 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.automaton.automaton import Ability, Automaton, HumanTask, Kind, VariableDeclaration
+from sequence_planner.automaton.findings import Findings
 from sequence_planner.language.syntax import FALSE, TRUE, Assignment, Comparison, Constant, Or, Variable
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type
+from sequence_planner.mimic.drawn import drawn
 from sequence_planner.mimic.layout import made_from
 from sequence_planner.mimic.motion import motions
+from sequence_planner.mimic.picture_file import picture_file
 from sequence_planner.mimic.views import Box, MimicStop, MimicView
+from sequence_planner.model.mimic.documents import MimicDocument
+from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import prepare_station
 from support.examples import examples
 from support.places import MODELS, TRUCK_ENGINE_STATION
@@ -78,6 +83,20 @@ def assert_good_stops(stops: list[MimicStop], view: MimicView, of: str) -> None:
         told = sorted((stop for stop in stops if stop.label == side), key=lambda stop: stop.x)
         for one, other in pairwise(told):
             assert one.x + one.room / 2 <= other.x - other.room / 2 + 1e-6
+
+
+def drawn_from_its_file(view: MimicView, automaton: Automaton) -> MimicView:
+    """The picture of the file that is written of another one, which can be read and draws all it binds."""
+    document = MimicDocument.model_validate(read_text(picture_file(view), "mimic.yaml").content)
+    return drawn(automaton, document, {}, Findings())
+
+
+@pytest.mark.parametrize("path", STATIONS, ids=lambda path: path.name)
+def test_the_file_to_begin_with_draws_what_is_made_from_the_model(path: Path) -> None:
+    """Who draws the picture themselves begins with the one that is there; so it can be said in the file."""
+    automaton = prepare_station(path).automaton
+    view = made_from(automaton)
+    assert drawn_from_its_file(view, automaton) == view.model_copy(update={"made_from": "file"})
 
 
 @pytest.mark.parametrize("path", STATIONS, ids=lambda path: path.name)
@@ -180,3 +199,18 @@ def stations(draw: st.DrawFn) -> Automaton:
 def test_any_station_has_a_good_picture(automaton: Automaton) -> None:
     """Whatever it is made of."""
     assert_good(made_from(automaton), automaton)
+
+
+@given(stations())
+@examples(200)
+def test_any_picture_made_from_a_model_can_be_written_as_a_file(automaton: Automaton) -> None:
+    """With names and numbers of stops and parts as they come; nothing of it is left out or drawn elsewhere."""
+    view = made_from(automaton)
+    assert drawn_from_its_file(view, automaton) == view.model_copy(update={"made_from": "file"})
+
+
+def test_a_resource_may_be_called_product() -> None:
+    """Each thing of a picture has a name of its own."""
+    variables = {"tight": VariableDeclaration("tight", BOOLEAN, Kind.ESTIMATED, False, None)}
+    automaton = Automaton("station", "Station", "", {"product": "Product"}, variables, {}, ())
+    assert sorted(each.name for each in made_from(automaton).symbols) == ["product", "product_2"]

@@ -85,6 +85,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/model/usages": ("viewer", "read"),
     "GET /api/v1/model/graph": ("viewer", "read"),
     "GET /api/v1/model/folds": ("viewer", "read"),
+    "GET /api/v1/model/mimic": ("viewer", "read"),
     "POST /api/v1/model/undo": ("engineer", None),
     "POST /api/v1/model/redo": ("engineer", None),
     "GET /api/v1/mimic": ("viewer", "read"),

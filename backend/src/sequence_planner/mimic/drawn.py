@@ -11,7 +11,7 @@ from sequence_planner.automaton.findings import Findings, without_arguments
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import IntegerRange, Value
 from sequence_planner.mimic.motion import motions
-from sequence_planner.mimic.parts import labels_of, looks_of, text_of_value, titles_of
+from sequence_planner.mimic.parts import MOST_PARTS, label_place, labels_of, looks_of, text_of_value, titles_of
 from sequence_planner.mimic.svg import TEXTS, drawing_of
 from sequence_planner.mimic.views import (
     Box,
@@ -40,7 +40,6 @@ from sequence_planner.model.mimic.documents import (
 )
 from sequence_planner.model.source import SourceText
 
-_ROOM: Final = 120.0  # for the title of a stop
 _MOST_ELEMENTS: Final = 20_000
 _PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 
@@ -180,7 +179,7 @@ class _Drawing:
                 x=stop.at[0],
                 y=stop.at[1],
                 label=stop.label,
-                room=_ROOM,
+                room=stop.room,
                 branch=stop.branch,
             )
             for value, stop in document.stops.items()
@@ -267,6 +266,10 @@ class _Drawing:
                 document.of, f"there is no variable `{document.of}`{suggestion(document.of, self._families)}"
             )
             return []
+        if len(members) > MOST_PARTS:
+            count = f"{MOST_PARTS} of the {len(members)}"
+            self._findings.add(document.of, f"the first {count} parts are drawn: more could not be told apart")
+            members = members[:MOST_PARTS]
         of = self._automaton.variables[members[0]].type
         looks = looks_of(of)
         for value, look in document.looks.items():
@@ -277,24 +280,21 @@ class _Drawing:
         titles = titles_of(self._automaton, members[0])
         single = members == [str(document.of)]
         labels = [""] if single else labels_of([name[name.index("[") + 1 : -1].split(", ")[-1] for name in members])
-        marks = document.marks
-        beside = (
-            sum(x for x, _ in marks) / len(marks),
-            sum(y for _, y in marks) / len(marks) + (document.size * 1.4 if len(marks) == 1 else 4),
-        )
         parts: list[MimicPart] = []
         for number, (name, label) in enumerate(zip(members, labels, strict=True)):
             column, row = number % document.columns, number // document.columns
             x = document.at[0] + column * document.step[0] + row * document.row[0]
             y = document.at[1] + column * document.step[1] + row * document.row[1]
+            marks = [(x + dx, y + dy) for dx, dy in document.marks]
+            label_x, label_y = label_place(marks, document.size, document.label)
             parts.append(
                 MimicPart(
                     variable=name,
                     title=dict(words_of(document.title)) if single else {},
                     label=label,
-                    label_x=x + beside[0],
-                    label_y=y + beside[1],
-                    marks=[(x + dx, y + dy) for dx, dy in marks],
+                    label_x=label_x,
+                    label_y=label_y,
+                    marks=marks,
                     size=document.size,
                     looks=looks,
                     titles=titles,

@@ -5,18 +5,20 @@ The same model always gives the same picture. Numbers are units of the drawing, 
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from itertools import count
+from typing import Final, Literal
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.language.types import IntegerRange
 from sequence_planner.mimic.motion import Motion, motions
-from sequence_planner.mimic.parts import labels_of, looks_of, titles_of
+from sequence_planner.mimic.parts import MOST_PARTS, label_place, labels_of, looks_of, titles_of
 from sequence_planner.mimic.views import Box, MimicLevel, MimicPart, MimicStop, MimicSymbol, MimicTrack, MimicView
-from sequence_planner.model.mimic.documents import SymbolKind
+from sequence_planner.model.mimic.documents import ROOM, SymbolKind
 
 WIDTH: Final = 872.0
 _MARGIN, _GAP = 22.0, 14.0
@@ -27,7 +29,8 @@ _FEW_STOPS = 4  # of what moves within its card
 _LETTER = 6.0  # wide, at most
 _PRODUCT, _EDGE, _CELL, _LOOSE = 300.0, 24.0, 39.0, 140.0
 _ROW, _LOOSE_ROW, _HEADING = 44.0, 40.0, 18.0
-_MOST_COLUMNS, _MOST_CELLS = 12, 240
+_MOST_COLUMNS = 12
+_PRODUCT_TITLE: Final = {"en": "Product", "sv": "Produkt"}
 
 # What a resource is, by a word of its name or its title, in English or in Swedish.
 _WORDS: Final[tuple[tuple[str, SymbolKind], ...]] = (
@@ -92,7 +95,7 @@ def _families(automaton: Automaton) -> tuple[list[_Family], list[str]]:
         if "[" not in names[0]:
             loose += names
             continue
-        names = names[:_MOST_CELLS]
+        names = names[:MOST_PARTS]
         indices = tuple(name[name.index("[") + 1 : -1].split(", ")[-1] for name in names)
         across = len(dict.fromkeys(indices))  # of two indices the last one goes along the row
         indexed.append(_Family(family, tuple(names), indices, min(across, _MOST_COLUMNS)))
@@ -160,29 +163,30 @@ class _Layout:
             for number, (name, label) in enumerate(zip(family.members, labels, strict=True)):
                 x = self._cell(box, family, number % family.columns)
                 middle = y + _HEADING + (number // family.columns) * _ROW
-                parts.append(self._part(name, label, (x, middle), 16.0, (x, middle + 22)))
+                parts.append(self._part(name, label, (x, middle), 16.0))
             y += family.rows * _ROW + _HEADING
         columns = self._loose_columns(box.width)
         for number, name in enumerate(self._loose):
             x = box.x + _EDGE + 10 + (number % columns) * (box.width - 2 * _EDGE) / columns
             middle = y + (number // columns) * _LOOSE_ROW + _LOOSE_ROW / 2
-            parts.append(self._part(name, "", (x, middle), 20.0, (x + 18, middle)))
-        return _symbol("product", "workpiece", None, box, parts=parts)
+            parts.append(self._part(name, "", (_whole(x), _whole(middle)), 20.0))
+        name = next(each for each in _names("product") if each not in self._automaton.resources)
+        return _symbol(name, "workpiece", None, box, parts=parts).model_copy(update={"title": _PRODUCT_TITLE})
 
     @staticmethod
     def _cell(box: Box, family: _Family, column: int) -> float:
-        return box.x + box.width / 2 + (column - (family.columns - 1) / 2) * _CELL
+        return _whole(box.x + box.width / 2 + (column - (family.columns - 1) / 2) * _CELL)
 
-    def _part(
-        self, name: str, label: str, at: tuple[float, float], size: float, beside: tuple[float, float]
-    ) -> MimicPart:
+    def _part(self, name: str, label: str, at: tuple[float, float], size: float) -> MimicPart:
+        """A part; what has no number is called at the right of it."""
+        label_x, label_y = label_place([at], size, "below" if label else "right")
         looks = looks_of(self._automaton.variables[name].type)
         return MimicPart(
             variable=name,
             title={},
             label=label,
-            label_x=beside[0],
-            label_y=beside[1],
+            label_x=label_x,
+            label_y=label_y,
             marks=[at],
             size=size,
             looks=looks,
@@ -231,13 +235,11 @@ class _Layout:
                 places[leaf] = (edge + side * most * (order + 1) / (steps + 1), top + _LEAF)
                 rooms[leaf] = most / (steps + 1)
         stops = [
-            MimicStop(
-                value=stop,
-                title={},
-                x=places[stop][0],
-                y=places[stop][1],
-                label="none" if stop in fan or rooms[stop] < 3 * _LETTER else "above" if stop in main else "below",
-                room=rooms[stop],
+            _stop(
+                stop,
+                places[stop],
+                "none" if stop in fan or rooms[stop] < 3 * _LETTER else "above" if stop in main else "below",
+                rooms[stop],
                 branch=stop not in main,
             )
             for stop in motion.stops
@@ -300,15 +302,7 @@ class _Layout:
         if motion is not None:
             room = box.width / len(motion.stops)
             stops = [
-                MimicStop(
-                    value=stop,
-                    title={},
-                    x=box.x + room * (number + 0.5),
-                    y=box.y + _CARD + _TRACK - 16,
-                    label="above",
-                    room=room - 4,
-                    branch=False,
-                )
+                _stop(stop, (box.x + room * (number + 0.5), box.y + _CARD + _TRACK - 16), "above", room - 4)
                 for number, stop in enumerate(motion.stops)
             ]
             track = track_of(motion, stops)
@@ -321,6 +315,35 @@ class _Layout:
             if variable.resource == resource and is_measured and isinstance(of, IntegerRange):
                 return MimicLevel(variable=name, lowest=of.minimum, highest=of.maximum)
         return None
+
+
+def _whole(number: float) -> float:
+    """The nearest whole number, always in the same direction: what stands at equal distances goes on doing so."""
+    return float(math.floor(number + 0.5))
+
+
+def _whole_box(box: Box) -> Box:
+    x, y = _whole(box.x), _whole(box.y)
+    return Box(x=x, y=y, width=_whole(box.x + box.width) - x, height=_whole(box.y + box.height) - y)
+
+
+def _names(name: str) -> Iterator[str]:
+    """The name, and what it is called where that is taken."""
+    yield name
+    yield from (f"{name}_{number}" for number in count(2))
+
+
+def _stop(
+    value: str,
+    at: tuple[float, float],
+    label: Literal["above", "below", "none"],
+    room: float,
+    *,
+    branch: bool = False,
+) -> MimicStop:
+    """A stop; in whole numbers, its title keeps apart from those beside it."""
+    room = ROOM if label == "none" else float(math.floor(room - 1))
+    return MimicStop(value=value, title={}, x=_whole(at[0]), y=_whole(at[1]), label=label, room=room, branch=branch)
 
 
 def _columns(start: float, end: float, top: float) -> list[list[float]]:
@@ -365,7 +388,7 @@ def _symbol(
         symbol=symbol,
         resource=resource,
         title={},
-        box=box,
+        box=_whole_box(box),
         texts=[],
         active=[],
         visible=[],

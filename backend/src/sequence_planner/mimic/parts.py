@@ -4,11 +4,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Final, Literal
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.language.types import IntegerRange, Type, Value
 from sequence_planner.model.mimic.documents import Look
+
+MOST_PARTS: Final = 240  # of one variable: more could not be told apart
+
+
+def label_place(
+    marks: Sequence[tuple[float, float]], size: float, side: Literal["below", "right"]
+) -> tuple[float, float]:
+    """Return where the label of a part stands whose marks are drawn there."""
+    x, y = (sum(each) / len(marks) for each in zip(*marks, strict=True))
+    if side == "right":
+        return max(each for each, _ in marks) + size * 0.9, y
+    return x, y + (size * 1.4 if len(marks) == 1 else 4)
 
 
 def looks_of(of: Type) -> dict[str, Look]:

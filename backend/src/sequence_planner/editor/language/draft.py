@@ -12,7 +12,7 @@ from sequence_planner.model.loader import load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.ros.types.errors import MessageDefinitionError
 from sequence_planner.ros.types.messages import MessageRegistry
-from sequence_planner.station import Before, read_station
+from sequence_planner.station import Before, MeantStation, read_station
 
 STATION, NOTHING = "station.yaml", "name: draft\n"
 
@@ -56,12 +56,16 @@ class LanguageDraft:
 
     def errors(self) -> list[Finding]:
         """Return what makes it unusable, all that a check of it finds before it builds pipelines."""
-        with self._folder_of(self._files):
-            try:
-                read_station(Path(), self._before)
-            except ModelError as error:
-                return error.findings
+        try:
+            self.meant()
+        except ModelError as error:
+            return error.findings
         return []
+
+    def meant(self) -> MeantStation:
+        """Return what it means, before its pipelines are built. Raises `ModelError`."""
+        with self._folder_of(self._files):
+            return read_station(Path(), self._before)
 
     def messages(self) -> MessageRegistry | None:
         """The message types that it defines; None where they cannot be read."""

@@ -14,6 +14,7 @@ from sequence_planner.controller.views.part import View
 from sequence_planner.editor.draft import ChangeKind, Draft, DraftChange, Edit, digest
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView
+from sequence_planner.mimic.views import MimicView
 from sequence_planner.model.source import ModelError
 from sequence_planner.model.yaml.editor import plain
 from sequence_planner.model.yaml.reader import read_text
@@ -112,6 +113,21 @@ class UsagesView(View):
     dependants: list[UsageView]
     unread: list[FindingDocument]
     bound: str | None
+
+
+class DraftPictureView(View):
+    """The picture of the draft after change `number`, as Operate would show it, and the titles of its resources.
+
+    `digest` is that of the `mimic.yaml` it was made with, null where there is none; then `file` is the text of one that
+    draws the same. Of a draft that is not `usable` there is no picture.
+    """
+
+    number: int
+    usable: bool
+    digest: str | None
+    picture: MimicView | None
+    titles: dict[str, str]
+    file: str | None
 
 
 class RevisionView(View):

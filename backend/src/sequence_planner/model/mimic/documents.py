@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
@@ -28,8 +28,9 @@ SymbolKind = Literal[
 Look = Literal["empty", "placed", "done"]
 ColourRole = Literal["accent", "high", "medium", "low", "quiet"]
 
-Coordinate = Annotated[float, Field(ge=-10_000, le=10_000)]
-Length = Annotated[float, Field(ge=4, le=10_000)]
+ROOM: Final = 120.0  # for the title of a stop, where nothing else is said
+Coordinate = Annotated[float, Field(ge=-100_000, le=100_000)]
+Length = Annotated[float, Field(ge=4, le=100_000)]
 Point = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 Size = Annotated[list[Length], Field(min_length=2, max_length=2)]
 SingleValue = bool | int | SourceText
@@ -55,6 +56,8 @@ class StopDocument(DocumentPart):
     """For people; without it the value in plain words."""
     label: Literal["above", "below", "left", "right", "none"] = "above"
     """On which side of the stop its title stands."""
+    room: Length = ROOM
+    """The width there is for its title."""
     branch: bool = False
     """A place off the main line, drawn smaller."""
 
@@ -91,6 +94,8 @@ class PartDocument(DocumentPart):
     """Where each is drawn, from its place: `[[0, 0], [0, 62]]` draws it twice, as the two bolts of a pair."""
     size: Length = 16.0
     """Its width."""
+    label: Literal["below", "right"] = "below"
+    """On which side of it its title stands; what it is called at the right of it is followed by its value."""
     title: Given[Words] = None
     """For people; without it the name in plain words."""
     looks: dict[SourceText, Look] = Field(default_factory=dict)

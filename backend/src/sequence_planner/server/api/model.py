@@ -48,7 +48,7 @@ from sequence_planner.editor.processes import (
     TextAt,
 )
 from sequence_planner.editor.schemas.check import CheckView
-from sequence_planner.editor.schemas.draft import DraftView, FilesView, FoldsView, UsagesView
+from sequence_planner.editor.schemas.draft import DraftPictureView, DraftView, FilesView, FoldsView, UsagesView
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.model.files import read_files, write_files
@@ -186,6 +186,12 @@ async def usages(shop: TheWorkshop, part: PartId) -> Response:
 async def model_graph(shop: TheWorkshop) -> Response:
     """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
     return found(await shop.tied())
+
+
+@model_router.get("/mimic", dependencies=[VIEWER], response_model=DraftPictureView)
+async def draft_picture(shop: TheWorkshop) -> Response:
+    """The live picture of the draft, drawn as that of the station would be with it."""
+    return found(await shop.pictured())
 
 
 @model_router.get("/folds", dependencies=[VIEWER], response_model=FoldsView, responses=refused(422))

@@ -184,6 +184,13 @@ class Workshop:
                 self._tied = draft.number, found
             return self._tied[1]
 
+    async def pictured(self) -> str:
+        """Return the picture of the draft, as JSON of a `DraftPictureView`. Raises `WorkerError`."""
+        draft = await self.open()
+        found = await self._process.ask(draft.files, "pictured", draft.number)
+        assert isinstance(found, str)
+        return found
+
     async def folded(self, wanted: str | None, name: str | None) -> str:
         """Return what could be said shorter, or one of that with another name for what it adds, as JSON of a
         `FoldsView`.
