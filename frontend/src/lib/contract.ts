@@ -210,6 +210,7 @@ export type FlowsMessage = Schemas['FlowsStreamMessage'];
 export type Attachment = Schemas['AttachmentAnswer'];
 
 export type Mimic = Schemas['MimicView'];
+export type DraftPicture = Schemas['DraftPictureView'];
 export type MimicSymbol = Schemas['MimicSymbol'];
 export type MimicTrack = Schemas['MimicTrack'];
 export type MimicStop = Schemas['MimicStop'];

@@ -17,8 +17,7 @@ export interface Now {
 /** What a thing is called. */
 export function nameOf(symbol: MimicSymbol, resources: StationView['resources'], language: string): string {
 	const own = inLanguage(symbol.title, language);
-	if (own !== '') return own;
-	if (symbol.resource === null) return say().mimic.product;
+	if (own !== '' || symbol.resource === null) return own;
 	return resources[symbol.resource]?.title ?? plain(symbol.resource);
 }
 

@@ -24,6 +24,7 @@ export type EntryKind =
 	| 'sequence'
 	| 'specification'
 	| 'work_master'
+	| 'symbol'
 	| 'message';
 
 /** Where entries of one kind stand together. */
@@ -50,6 +51,7 @@ export type SectionName =
 	| 'operations'
 	| 'specifications'
 	| 'work_masters'
+	| 'picture'
 	| 'messages';
 
 export interface Node {
@@ -70,6 +72,8 @@ export interface Node {
 }
 
 export const STATION = 'station.yaml';
+/** The file of the live picture. */
+export const PICTURE = 'mimic.yaml';
 const IN_FILES = { operations: 'operation', specifications: 'specification', work_masters: 'work_master' } as const;
 
 /** The sections of a resource, by the key under which each stands, and what is in them. */
@@ -211,6 +215,7 @@ export function treeOf(
 			const file = `${name}.yaml`;
 			return section(name, file, [], entriesIn(kind, file, [], contents[file]));
 		}),
+		section('picture', PICTURE, [], entriesIn('symbol', PICTURE, ['symbols'], contents[PICTURE])),
 		section('messages', '', [], messages)
 	];
 }
@@ -313,6 +318,7 @@ export function partOf(node: Node): string | null {
 	switch (node.kind) {
 		case 'station':
 		case 'section':
+		case 'symbol':
 			return null;
 		case 'variable':
 		case 'ability':
@@ -338,7 +344,7 @@ export function parameterOf(node: Node, name: string): string | null {
 }
 
 /** What has no form of fields: it is written as text. */
-const WITHOUT_FORM: readonly string[] = ['section', 'message'];
+const WITHOUT_FORM: readonly string[] = ['section', 'symbol', 'message'];
 
 /** The shape of a node's document: what its form has. */
 export function shapeOf(node: Node): string | null {

@@ -5,6 +5,7 @@ import { backups } from './en/backups.ts';
 import { check } from './en/check.ts';
 import { deploy } from './en/deploy.ts';
 import { model } from './en/model.ts';
+import { picture } from './en/picture.ts';
 import { pipelines } from './en/pipelines.ts';
 import { ros } from './en/ros.ts';
 import { station } from './en/station.ts';
@@ -12,4 +13,4 @@ import { storage } from './en/storage.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...ofStation, ability, backups, check, deploy, model, pipelines, ros, station, storage, webhooks, whatIf };
+export const en = { ...ofStation, ability, backups, check, deploy, model, picture, pipelines, ros, station, storage, webhooks, whatIf };

@@ -5,6 +5,7 @@ import { backups } from './sv/backups.ts';
 import { check } from './sv/check.ts';
 import { deploy } from './sv/deploy.ts';
 import { model } from './sv/model.ts';
+import { picture } from './sv/picture.ts';
 import { pipelines } from './sv/pipelines.ts';
 import { ros } from './sv/ros.ts';
 import { station } from './sv/station.ts';
@@ -13,4 +14,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...ofStation, ability, backups, check, deploy, model, pipelines, ros, station, storage, webhooks, whatIf };
+export const sv: Text = { ...ofStation, ability, backups, check, deploy, model, picture, pipelines, ros, station, storage, webhooks, whatIf };

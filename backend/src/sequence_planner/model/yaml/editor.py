@@ -666,13 +666,18 @@ def _position(
 
 
 def same(one: object, other: object) -> bool:
-    """Return whether two contents are equal, in their types and the order of their entries too."""
+    """Return whether two contents are equal, in their types and the order of their entries too.
+
+    `2.0` is `2`: a browser knows one kind of number, and tells what it has read as the shorter one.
+    """
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return list(map(str, one)) == list(map(str, other)) and all(same(one[key], other[key]) for key in one)
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, str) and isinstance(other, str):
         return str(one) == str(other)
+    if all(isinstance(each, int | float) and not isinstance(each, bool) for each in (one, other)):
+        return one == other or (one != one and other != other)  # noqa: PLR0124
     return type(one) is type(other) and (one == other or (one != one and other != other))  # noqa: PLR0124
 
 

@@ -6,7 +6,6 @@ export const mimic = {
 	keys: 'Arrow keys go from one thing to the next, Enter shows it.',
 	waits: 'The picture is being loaded.',
 	noPicture: 'There is no picture of the station.',
-	product: 'Product',
 	columns: { thing: 'Thing', now: 'Now', alarm: 'Alarm' },
 	looks: { empty: 'empty', placed: 'placed', done: 'done', doubt: 'unknown' },
 	towards: (stop: string): string => `On its way · ${stop}`,

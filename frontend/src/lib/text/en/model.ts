@@ -41,6 +41,7 @@ export const model = {
 		sequence: 'Sequence',
 		specification: 'Specification',
 		work_master: 'Work master',
+		symbol: 'Symbol',
 		message: 'Message definition'
 	},
 	section: {
@@ -67,6 +68,7 @@ export const model = {
 		operations: 'Operations',
 		specifications: 'Specifications',
 		work_masters: 'Work masters',
+		picture: 'Live picture',
 		messages: 'Message definitions'
 	},
 	aboutSection: {
@@ -93,6 +95,7 @@ export const model = {
 		operations: 'What is produced: from its precondition to its goal.',
 		specifications: 'What must never be.',
 		work_masters: 'What a job of a MES consists of.',
+		picture: 'The picture of the station on Operate: drawn by hand, or made from the model.',
 		messages: 'The definitions of the messages that the topics carry.'
 	},
 	/** Fields by their keys in the files. */

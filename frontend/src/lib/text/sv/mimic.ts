@@ -6,7 +6,6 @@ export const mimic = {
 	keys: 'Piltangenterna går från sak till sak, Enter visar den.',
 	waits: 'Bilden laddas.',
 	noPicture: 'Det finns ingen bild av stationen.',
-	product: 'Produkt',
 	columns: { thing: 'Sak', now: 'Nu', alarm: 'Larm' },
 	looks: { empty: 'tom', placed: 'placerad', done: 'klar', doubt: 'okänd' },
 	towards: (stop: string): string => `På väg · ${stop}`,

@@ -40,6 +40,7 @@ export const model: Text['model'] = {
 		sequence: 'Sekvens',
 		specification: 'Specifikation',
 		work_master: 'Arbetsmall',
+		symbol: 'Symbol',
 		message: 'Meddelandedefinition'
 	},
 	section: {
@@ -66,6 +67,7 @@ export const model: Text['model'] = {
 		operations: 'Operationer',
 		specifications: 'Specifikationer',
 		work_masters: 'Arbetsmallar',
+		picture: 'Levande bild',
 		messages: 'Meddelandedefinitioner'
 	},
 	aboutSection: {
@@ -92,6 +94,7 @@ export const model: Text['model'] = {
 		operations: 'Vad som produceras: från förvillkor till mål.',
 		specifications: 'Vad som aldrig får inträffa.',
 		work_masters: 'Vad ett jobb från ett MES består av.',
+		picture: 'Bilden av stationen på Drift: ritad för hand, eller gjord av modellen.',
 		messages: 'Definitionerna av de meddelanden som topics bär.'
 	},
 	field: {
