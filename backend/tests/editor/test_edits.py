@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -19,6 +21,7 @@ from sequence_planner.editor.merging import MergeConflictError, merged
 from sequence_planner.model.files import LONGEST_FILE, MOST_CHARACTERS
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.yaml.editor import value_at
+from support.places import MODELS
 
 ROBOT = """\
 # The robot of the cell.
@@ -180,3 +183,38 @@ def test_a_model_has_no_more_text_than_can_be_looked_at() -> None:
     files = {f"resources/r{number}.yaml": "x" * LONGEST_FILE for number in range(MOST_CHARACTERS // LONGEST_FILE)}
     with pytest.raises(EditError, match=f"at most {MOST_CHARACTERS} in all its files"):
         applied(files, [WriteText(file="resources/more.yaml", was=None, text="x")])
+
+
+PICTURES = sorted(MODELS.glob("*/mimic.yaml"))
+
+
+def numbers_in(content: object, path: tuple[str | int, ...] = ()) -> list[tuple[tuple[str | int, ...], float]]:
+    """Every number of a file, with the way to it."""
+    if isinstance(content, dict):
+        return [found for key, each in content.items() for found in numbers_in(each, (*path, str(key)))]
+    if isinstance(content, list):
+        return [found for key, each in enumerate(content) for found in numbers_in(each, (*path, key))]
+    return [(path, content)] if isinstance(content, int | float) and not isinstance(content, bool) else []
+
+
+@given(st.data())
+def test_a_number_of_a_picture_is_set_and_nothing_else_in_its_file_changes(data: st.DataObject) -> None:
+    """What is dragged changes numbers alone: all around them stays as a person has written it."""
+    text = data.draw(st.sampled_from(PICTURES)).read_text(encoding="utf-8")
+    path, was = data.draw(st.sampled_from(numbers_in(value_at(text, ()))))
+    value = data.draw(st.integers(-900, 900).map(lambda hundredths: hundredths / 4))
+    edit = SetEntry(file="mimic.yaml", path=list(path), was=was, value=int(value) if value == int(value) else value)
+    after = applied({"mimic.yaml": text}, [edit])["mimic.yaml"]
+    shape = re.compile(r"-?\d+(\.\d+)?")
+    assert shape.sub("", after) == shape.sub("", text)
+    others = [(a, b) for a, b in zip(shape.finditer(text), shape.finditer(after), strict=True) if a[0] != b[0]]
+    assert len(others) == (value != was)
+    assert value_at(after, path) == value
+
+
+def test_a_number_is_the_same_with_a_point_and_without() -> None:
+    """A browser reads `418.0` as 418, and says so of what it edits."""
+    edit = SetEntry(file="mimic.yaml", path=["size", 0], was=418, value=420)
+    assert applied({"mimic.yaml": "size: [418.0, 200] # wide\n"}, [edit]) == {"mimic.yaml": "size: [420, 200] # wide\n"}
+    with pytest.raises(PartChangedError):
+        applied({"mimic.yaml": "size: [true, 200]\n"}, [edit.model_copy(update={"was": 1})])

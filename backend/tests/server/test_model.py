@@ -312,6 +312,34 @@ def test_what_could_be_said_shorter_is_one_change(eva: httpx.Client, adam: httpx
     assert read(eva, "/folds")["usable"] is False
 
 
+def test_the_picture_of_the_draft_is_drawn_as_that_of_the_station(eva: httpx.Client) -> None:
+    """What is drawn by hand, what is made without a file, and the file to begin with, which draws the same."""
+    found = read(eva, "/mimic")
+    files = read(eva)["files"]
+    assert (found["number"], found["digest"]) == (read(eva)["number"], files["mimic.yaml"]["digest"])
+    assert (found["picture"]["made_from"], found["file"]) == ("file", None)
+    assert found["titles"]["nutrunner"] == "Smart nutrunner"
+    at = {"kind": "set", "file": "mimic.yaml", "path": ["symbols", "nutrunner", "at", 0], "was": 40, "value": 44}
+    made(eva, at, {**at, "path": ["symbols", "nutrunner", "resource"], "was": "nutrunner", "value": "nutruner"})
+    picture = read(eva, "/mimic")["picture"]
+    (nutrunner,) = (each for each in picture["symbols"] if each["name"] == "nutrunner")
+    assert (nutrunner["box"]["x"], nutrunner["resource"]) == (44, None)
+    assert [each["message"] for each in picture["findings"]] == [
+        "there is no resource `nutruner`; did you mean `nutrunner`?"
+    ]
+    text = read(eva, "/files", path="mimic.yaml")["files"]["mimic.yaml"]["text"]
+    made(eva, {"kind": "text", "file": "mimic.yaml", "was": text, "text": None})
+    without = read(eva, "/mimic")
+    assert (without["picture"]["made_from"], without["digest"]) == ("model", None)
+    made(eva, {"kind": "text", "file": "mimic.yaml", "was": None, "text": without["file"]})
+    drawn = read(eva, "/mimic")
+    assert drawn["picture"] == {**without["picture"], "made_from": "file"}
+    wrong = {"kind": "set", "file": "station.yaml", "path": ["rest"], "value": "robot.pos == home"}
+    made(eva, {**wrong, "was": read(eva, "/files", path="station.yaml")["files"]["station.yaml"]["content"]["rest"]})
+    unusable = read(eva, "/mimic")
+    assert (unusable["usable"], unusable["picture"]) == (False, None)
+
+
 def test_the_model_as_a_whole_follows_the_draft(eva: httpx.Client) -> None:
     def tied(part: str) -> set[tuple[str, str]]:
         """What the part uses, and how."""
