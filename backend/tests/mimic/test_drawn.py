@@ -8,8 +8,15 @@ from pathlib import Path
 import pytest
 
 from model.breaking import write
+from sequence_planner.automaton.automaton import Automaton, Kind, VariableDeclaration
+from sequence_planner.automaton.findings import Findings
+from sequence_planner.language.types import BOOLEAN
+from sequence_planner.mimic.drawn import drawn
+from sequence_planner.mimic.layout import made_from
 from sequence_planner.mimic.picture import picture_of
 from sequence_planner.mimic.views import MimicView
+from sequence_planner.model.mimic.documents import MimicDocument
+from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import prepare_station
 from support.places import BOLT_TIGHTENING, MODELS
 
@@ -138,3 +145,19 @@ symbols:
     assert plate.parts[0].looks == {"empty": "empty", "placed": "placed", "tightened": "done"}
     assert arm.track is not None
     assert arm.track.ways == [("home", "above_engine"), ("above_engine", "bolt_pair_1")]
+
+
+def test_of_very_many_parts_the_first_are_drawn_and_the_rest_is_told() -> None:
+    """As many as in a picture that is made from the model: more could not be told apart."""
+    pairs = [f"bolts[pair_{number}]" for number in range(300)]
+    variables = {name: VariableDeclaration(name, BOOLEAN, Kind.ESTIMATED, False, None) for name in pairs}
+    automaton = Automaton("station", "Station", "", {}, variables, {}, ())
+    text = "symbols:\n  plate:\n    at: [0, 0]\n    parts:\n      - {of: bolts, at: [20, 20], columns: 20}\n"
+    document = MimicDocument.model_validate(read_text(text, "mimic.yaml").content)
+    findings = Findings()
+    (plate,) = drawn(automaton, document, {}, findings).symbols
+    assert [part.variable for part in plate.parts] == pairs[:240]
+    assert [each.message for each in findings.all] == [
+        "the first 240 of the 300 parts are drawn: more could not be told apart"
+    ]
+    assert [part.variable for each in made_from(automaton).symbols for part in each.parts] == pairs[:240]

@@ -51,8 +51,7 @@ test('stops on a card go where it goes; those beyond it are places of their own'
 	]);
 	expect(told(editsOf(content, thing('robot'), shift('robot', { dx: 10 })))).toEqual(['symbols.robot.at.0: 500 510']);
 	expect(told(editsOf(content, thing('robot'), shift('robot', { piece: 'stop:home', dx: 2, dy: 3 })))).toEqual([
-		'symbols.robot.track.stops.home.at.0: 70 72',
-		'symbols.robot.track.stops.home.at.1: 76 79'
+		'symbols.robot.track.stops.home.at: [70,76] [72,79]'
 	]);
 });
 

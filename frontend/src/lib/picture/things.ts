@@ -178,15 +178,15 @@ export function shiftedPicture(mimic: Mimic, thing: Thing, shift: Shift): Mimic 
 /** So many digits behind the point: no noise of binary fractions comes into the file. */
 export const tidy = (number: number): number => Math.round(number * 100) / 100;
 
-/** Edits of two numbers at `path`, each where it is another one; of what is not there, one that adds both. */
+/** An edit of what of two numbers at `path` is another one; of what is not there, one that adds both. */
 function edited(content: Json | undefined, path: Path, now: readonly [number, number], otherwise: readonly [number, number] | null): Edit[] {
 	const was = valueAt(content, path);
 	const [x, y] = [tidy(now[0]), tidy(now[1])];
 	if (!isList(was)) return otherwise !== null && otherwise[0] === x && otherwise[1] === y ? [] : [{ kind: 'add', file: FILE, path: [...path], value: [x, y] }];
-	return [x, y].flatMap((value, axis): Edit[] => {
-		const before = was[axis];
-		return before === value || before === undefined ? [] : [{ kind: 'set', file: FILE, path: [...path, axis], was: before, value }];
-	});
+	// Who moves it down goes together with who moves it to the side.
+	if (was[1] === y) return was[0] === x ? [] : [{ kind: 'set', file: FILE, path: [...path, 0], was: was[0] ?? null, value: x }];
+	if (was[0] === x) return [{ kind: 'set', file: FILE, path: [...path, 1], was: was[1] ?? null, value: y }];
+	return [{ kind: 'set', file: FILE, path: [...path], was, value: [x, y] }];
 }
 
 /** The edits of the file that make a change of a place: only numbers become others. */
