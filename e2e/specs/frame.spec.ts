@@ -1,7 +1,7 @@
 /** The frame of the pages: the rail, the bar, the palette, the keys. */
 import { findings, overflow } from '../station/barriers.ts';
 import { picture, takeControl } from '../station/seen.ts';
-import { EVA } from '../station/station.ts';
+import { ADA, EVA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
 test.use({ shared: 'staffed', byItself: false, people: 'everybody' });
@@ -66,8 +66,41 @@ test('the rail is made slim, which the browser remembers, and the keys are told'
 
 	await expect(page.getByTestId('strip')).toHaveAttribute('data-live', 'true');
 	await page.keyboard.press('?');
-	await expect(page.getByRole('dialog', { name: 'Keys' })).toContainText('Search or act');
+	await expect(page.getByRole('dialog', { name: 'Operate: what you do here' })).toContainText('Search or act');
 	await page.keyboard.press('Escape');
 	await page.keyboard.press('Tab');
 	expect(await overflow(page)).toBe(0);
+});
+
+test('every page has its help: a picture whose numbers are those of the lines @theme', async ({ browse }) => {
+	const page = await browse(ADA, '/');
+	const rail = page.getByRole('navigation', { name: 'Pages' });
+	const help = page.getByRole('dialog');
+	await expect(rail.getByRole('link', { name: 'Storage' })).toBeVisible();
+	const titles = (await rail.getByRole('link').allInnerTexts()).map((title) => title.trim());
+	// The wall, which has no rail, comes last.
+	const wall = titles.indexOf('Wall view');
+	expect(wall).toBeGreaterThan(0);
+	for (const title of [...titles.toSpliced(wall, 1), 'Account', 'Wall view']) {
+		if (title === 'Account') await page.goto(new URL('/account', page.url()).href);
+		else await rail.getByRole('link', { name: title, exact: true }).click();
+		const button = page.getByRole('main').getByRole('button', { name: `Help: ${title}`, exact: true });
+		await button.press('Enter');
+		await expect(help.getByRole('heading', { name: `${title}: what you do here` })).toBeFocused();
+		const lines = await help.getByRole('listitem').count();
+		expect(lines, title).toBeGreaterThan(1);
+		expect(lines, title).toBeLessThan(10);
+		const numbers = await help.getByTestId('help-picture').locator('text').allTextContents();
+		expect(numbers, title).toEqual(numbers.map((_, at) => String(at + 1)));
+		expect(numbers.length, title).toBeLessThanOrEqual(lines);
+		if (title === 'Restart') {
+			expect(await findings(page)).toEqual([]);
+			await page.setViewportSize({ width: 320, height: 640 });
+			expect(await overflow(page)).toBe(0);
+			await page.setViewportSize({ width: 1440, height: 900 });
+		}
+		await page.keyboard.press('Escape');
+		await expect(help).toHaveCount(0);
+		await expect(button).toBeFocused();
+	}
 });

@@ -2,12 +2,6 @@ import { count } from '../count.ts';
 
 /** An ability: its automaton, live, and a trial of it alone. */
 export const ability = {
-	about: 'What an ability is made of, what of that holds now, and how it does when it is tried alone.',
-	how: [
-		'Choose an ability on the left.',
-		'Its states, with the one it is in now, and what each step between them needs.',
-		'Try it alone: the station must be paused.'
-	],
 	list: 'Abilities',
 	choose: 'Choose an ability to see its automaton.',
 	unknown: (name: string): string => `The station has no ability ${name}.`,

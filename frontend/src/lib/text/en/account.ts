@@ -77,12 +77,6 @@ export const account = {
 	},
 	copy: { word: 'Copy', of: (what: string): string => `Copy: ${what}`, done: 'Copied', selected: 'Selected: copy it with the keyboard' },
 	people: {
-		about: 'Each role may also do what those before it may: viewer, operator, engineer, administrator.',
-		how: [
-			'Add a person with a role. Hand the temporary password over yourself: it is shown once.',
-			'Change a role, or take somebody’s access away: they are signed out everywhere.',
-			'A forgotten password: give a new temporary one.'
-		],
 		everybody: 'Everybody',
 		role: 'Role',
 		access: 'Access',
@@ -129,14 +123,8 @@ export const account = {
 		atFirst: 'It has to be changed at the first sign-in.'
 	},
 	keys: {
-		about: 'With a key another system reads the station over its interface, or gives orders. Whether the station works on those is for people to say.',
 		noneYet: 'No key is valid',
 		howYet: 'Make one below for each system that reads the station or gives orders.',
-		how: [
-			'Make a key for each system of its own, with no more rights than it needs.',
-			'Keep its secret at once: it is shown once.',
-			'Before a key expires give it a new secret; the old one works on for the time you choose.'
-		],
 		working: 'Valid keys',
 		overTitle: 'Revoked and expired keys',
 		revoked: (name: string): string => `The key ${name} is revoked.`,
@@ -178,15 +166,8 @@ export const account = {
 		most: (most: number): string => `1 to ${most}`
 	},
 	watches: {
-		about: 'A wearable, such as a watch, shows the tasks of one resource and says when they are done, without anybody signed in on it.',
 		noneYet: 'No wearable is paired',
 		howYet: 'Get a code above and type it in on the device. It is then listed here.',
-		how: [
-			'Choose whose tasks it shows, and get a code. The code works once, for two minutes.',
-			'Open the operator view on the device and type the code in.',
-			'Look at the device, then confirm here that it is the one you meant.',
-			'Revoke a device that is lost: within two seconds it shows nothing.'
-		],
 		paired: 'Paired wearables',
 		overTitle: 'Wearables that are paired no more',
 		none: 'No wearable can be paired now: the controller is not heard, or no resource has tasks for people.',

@@ -1,7 +1,6 @@
 /** Alarms. */
 export const alarms = {
 	title: 'Alarms',
-	about: 'What wants a person’s attention: what is wrong, what follows from it, and what to do.',
 	priority: { high: 'High', medium: 'Medium', low: 'Low' },
 	priorityOf: { high: 'High priority', medium: 'Medium priority', low: 'Low priority' },
 	state: {

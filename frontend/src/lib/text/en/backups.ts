@@ -1,12 +1,5 @@
 /** Backups of the station: which there are, how old they are, and how one is restored. */
 export const backups = {
-	about: 'A backup has the database, the revisions and the model of the station as they were at one moment, in one file on the machine of the station.',
-	how: [
-		'See whether the newest backup is recent and whole.',
-		'Make one before you change anything large; check one to know that it can be read.',
-		'Copy the files to another machine: if this disk fails, backups on it are lost too.',
-		'A backup is restored at the command line; the page says how.'
-	],
 	standing: 'How it stands',
 	none: 'There is no backup. If the disk fails, all that is known of the station is lost.',
 	noneWhole: 'There is no backup that is whole.',

@@ -2,13 +2,6 @@ import { count } from '../count.ts';
 
 /** Check: what is found in the draft. */
 export const check = {
-	about: 'What is found in the draft of the model: what keeps it from being used, what is suspicious, and what the supervisor adds. It is checked whenever it changes.',
-	how: [
-		'Nothing is to be started: the draft is checked whenever it changes.',
-		'Errors keep it from being used. Choose one to go to its place in the model.',
-		'Play what leads to a finding, step by step.',
-		'Without errors go on to Deploy.'
-	],
 	asking: 'The draft is being read.',
 	notLive: 'Not live: the draft may be another one by now.',
 	running: 'What the station runs was checked too: see Supervisor on Operate.',

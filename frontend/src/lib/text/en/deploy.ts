@@ -2,13 +2,6 @@ import { count } from '../count.ts';
 
 /** Deploy: revisions of the model, their differences, and which of them runs. */
 export const deploy = {
-	about: 'Revisions of the model: saved under a name, compared in text and in behaviour, and deployed once checked. To roll back is to take an older revision back into the draft and deploy it.',
-	how: [
-		'Save the draft as a revision, with a name and why.',
-		'Compare it with what runs: texts, behaviour and plan.',
-		'Deploy it. What must be so first is listed there.',
-		'To go back, take an older revision into the draft and deploy that.'
-	],
 	lookOn: (role: string): string => `As ${role} you can look on and compare. Engineers save, take back and deploy.`,
 	notRead: 'The revisions are being read.',
 	notLive: 'Not live: wait until the draft is heard again.',

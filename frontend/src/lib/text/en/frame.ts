@@ -93,19 +93,6 @@ export const frame = {
 		production: 'nothing starts before production does'
 	},
 	release: 'Release',
-	/** What is pressed, and what it does. */
-	keys: {
-		title: 'Keys',
-		all: [
-			['Ctrl K', 'Search or act'],
-			['?', 'These keys'],
-			['Tab, Shift Tab', 'To the next part of the page, or the one before'],
-			['Arrow keys', 'Within a list, a tree, the time line, the plan or the picture of the station'],
-			['Escape', 'Puts a dialog or a menu away; what was typed in a field stays'],
-			['Ctrl Space', 'In a condition: what could stand there'],
-			['F12, Shift F12', 'In a condition: to where a name is declared, and where it is used']
-		] as readonly (readonly [string, string])[]
-	},
 	/** Shown to whoever is new here, beside what each step is about. */
 	round: {
 		offer: 'New here? Five short steps show you around.',
@@ -125,7 +112,7 @@ export const frame = {
 		] as readonly { readonly title: string; readonly text: string }[]
 	},
 	notices: 'Notices',
-	about: (page: string): string => `What is the page “${page}” for?`,
+	help: (page: string): string => `Help: ${page}`,
 	search: 'Search or act',
 	/** Said of Pause or Hold pressed while the view was old: it arrived. */
 	arrived: {

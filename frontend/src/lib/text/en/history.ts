@@ -2,7 +2,6 @@ import { count } from '../count.ts';
 
 /** History, and the journal of what people did. */
 export const history = {
-	about: 'What happened at the station, and what people did. Any moment of it can be looked at again; nothing of it can be changed.',
 	toJournal: 'All that people did, also with accounts, keys and watches, is in the Journal.',
 	reading: 'Reading',
 	notThere: { title: 'Nothing is there yet', detail: 'No record is as old as that. Choose another moment, or open the link again in a moment.' },
@@ -224,12 +223,6 @@ export const history = {
 		different: 'Otherwise than at the chosen record'
 	},
 	journal: {
-		about: 'Everything that was done or refused. It can be read here and changed by nobody.',
-		how: [
-			'Each record says who did what, when, on what and from where. The newest is on top.',
-			'Choose an act or a person above the list to see fewer.',
-			'Open a record for its details, and from there the station as it was then.'
-		],
 		toHistory: 'How the station was then',
 		title: 'What was done',
 		caption: 'Journal, the newest first',

@@ -3,7 +3,6 @@ import { count } from '../count.ts';
 
 export const model = {
 	title: 'Model',
-	about: 'The draft of the station’s model, which all engineers share. The station that runs is not touched by it.',
 	loading: 'The model is being read.',
 	notLive: 'The draft is not heard any more: what is shown may be old. What you write is kept here until it can be sent.',
 	readOnly: (role: string): string => `You can look at the model. To change it the role ${role} is needed.`,

@@ -2,8 +2,6 @@ import { count } from '../count.ts';
 
 /** Orders: what is asked of the station, where that stands, and what was made. */
 export const orders = {
-	about:
-		'What is to be made, from left to right: what may not start yet, what waits for its turn, what is in work, and what was made. Press the name of an order for all about it. By order, operations of work masters run for an order alone; freely, they become active whenever they can, and orders wait.',
 	summary: (made: string, left: number, last: string | null): string => {
 		const open = left === 0 ? 'nothing is to be made' : `${left} to be made`;
 		return `${made} made today, ${open}${last === null ? '' : `; the last is expected at ${last}`}`;

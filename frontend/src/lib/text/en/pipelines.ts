@@ -3,12 +3,6 @@ import { count } from '../count.ts';
 
 export const pipelines = {
 	title: 'Pipelines',
-	about: 'From messages to variables and back, as the draft of the model has it, with what passes there in the station that runs.',
-	how: [
-		'Choose a pipeline from the list to see it from message to variable.',
-		'Choose a box or a line to edit it. Changes go into the draft; what runs is not touched.',
-		'Try it with a message, and keep that as an example that must hold.'
-	],
 	loading: 'The pipelines are being read.',
 	unread: (files: string): string => `Cannot be read now, and shown as before: ${files}.`,
 	list: 'Pipelines by resource',

@@ -2,7 +2,6 @@ import { count } from '../count.ts';
 
 /** Restart. */
 export const restart = {
-	about: 'Four steps lead a station that has stopped back to production. Each button says all that it does, and each act is recorded.',
 
 	/** The short notice on Operate. */
 	notice: {

@@ -1,12 +1,6 @@
 /** The ROS graph. */
 export const ros = {
 	title: 'ROS network',
-	about: 'Who and what is on the ROS network, and how the station stands to it: for those who look for a topic that is silent.',
-	how: [
-		'What is wrong stands on top, with what to do.',
-		'Choose a topic for its publishers, subscribers, settings and last message.',
-		'See fewer by words, resource or state.'
-	],
 	noGraph: 'The network has not been read yet.',
 	read: (age: string): string => `Network read ${age}.`,
 	readOld: (age: string): string => `Not live. What is shown is old: read ${age}.`,

@@ -2,7 +2,6 @@ import { count } from '../count.ts';
 
 /** State, and corrections of it. */
 export const state = {
-	about: 'Every variable of the station, as it is now. What is estimated can be corrected.',
 	variables: 'Variables',
 	none: 'No variable is like that.',
 	shown: (n: number, all: number): string =>

@@ -2,7 +2,6 @@
 import { count } from '../count.ts';
 
 export const station = {
-	about: 'The draft of the model as a whole: four layers, and what is tied to what. Choose something to see what it rests on, and what rests on it.',
 	loading: 'The model is being looked through.',
 	old: 'The draft has changed; what is shown is being looked through again.',
 	unread: (n: number): string =>

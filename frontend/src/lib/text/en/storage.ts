@@ -1,11 +1,5 @@
 /** How much the station keeps, for how long, and its archive. */
 export const storage = {
-	about: 'What happened, and job orders that are over, leave the database for the archive after a while. History and replay read both.',
-	how: [
-		'See how large the records are, how fast they grow, and when the disk would be full.',
-		'Archive now, if you do not want to wait.',
-		'How long records are kept is an option of the start; the page names it.'
-	],
 	standing: 'How it stands',
 	fine: 'Old records leave the database by themselves.',
 	troubled: 'Old records cannot be archived. Nothing is cut and nothing is lost, but the database grows.',

@@ -1,11 +1,5 @@
 /** Webhooks: other systems that are told what becomes of orders and of the station. */
 export const webhooks = {
-	about: 'A webhook tells another system of each event of orders and of the station: at least once, signed, and only where the list below allows it.',
-	how: [
-		'Make one with the address that events are sent to. It must be allowed by the list on this page.',
-		'Keep its secret at once: with it the other system knows that a message comes from here.',
-		'What was given up can be sent again.'
-	],
 	table: 'Who is told',
 	none: 'Nobody is told.',
 	howYet: 'Make one below: the other system is then told of each event.',

@@ -3,12 +3,6 @@ import { count } from '../count.ts';
 /** What if: simulating the draft of the model. */
 export const whatIf = {
 	title: 'What-if',
-	about: 'How the station would go on with the model as it is edited: simulated, with emulated devices and people who do what they are asked. The station is not touched by it.',
-	how: [
-		'Choose where it begins: now, or at a record of the history.',
-		'Choose how many seconds, and simulate.',
-		'Read what would start and end, and what would be otherwise in the end.'
-	],
 	role: 'Only engineers simulate. Ask one of them.',
 	from: 'Where it begins',
 	present: 'The station as it is now',

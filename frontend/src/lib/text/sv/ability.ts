@@ -1,12 +1,6 @@
 import type { Text } from '../text.svelte.ts';
 
 export const ability: Text['ability'] = {
-	about: 'Vad en förmåga består av, vad av det som gäller nu, och hur den gör när den provas för sig.',
-	how: [
-		'Välj en förmåga till vänster.',
-		'Dess tillstånd, med det som gäller nu, och vad varje steg mellan dem kräver.',
-		'Prova den ensam: stationen måste vara pausad.'
-	],
 	list: 'Förmågor',
 	choose: 'Välj en förmåga för att se dess automat.',
 	unknown: (name) => `Stationen har ingen förmåga ${name}.`,

@@ -82,12 +82,6 @@ export const account: Text['account'] = {
 		selected: 'Markerat: kopiera med tangentbordet'
 	},
 	people: {
-		about: 'Varje roll får också göra det som rollerna före den får: betraktare, operatör, ingenjör, administratör.',
-		how: [
-			'Lägg till en person med en roll. Lämna över det tillfälliga lösenordet själv: det visas en gång.',
-			'Ändra en roll eller stäng av någon: personen loggas ut överallt.',
-			'Glömt lösenord: ge ett nytt tillfälligt.'
-		],
 		everybody: 'Alla',
 		role: 'Roll',
 		access: 'Åtkomst',
@@ -134,14 +128,8 @@ export const account: Text['account'] = {
 		atFirst: 'Det måste bytas vid första inloggningen.'
 	},
 	keys: {
-		about: 'Med en nyckel läser ett annat system stationen genom dess gränssnitt, eller lägger order. Om stationen arbetar på dem avgör människor.',
 		noneYet: 'Ingen nyckel gäller',
 		howYet: 'Gör en nedan för varje system som läser stationen eller ger order.',
-		how: [
-			'Gör en nyckel för varje system, med inte fler rättigheter än det behöver.',
-			'Spara hemligheten genast: den visas en gång.',
-			'Ge nyckeln en ny hemlighet innan den går ut; den gamla fungerar så länge du väljer.'
-		],
 		working: 'Giltiga nycklar',
 		overTitle: 'Återkallade och utgångna nycklar',
 		revoked: (name) => `Nyckeln ${name} är återkallad.`,
@@ -184,15 +172,8 @@ export const account: Text['account'] = {
 		most: (most) => `1 till ${most}`
 	},
 	watches: {
-		about: 'En bärbar enhet, som en klocka, visar en resurs uppgifter och säger till när de är klara, utan att någon är inloggad på den.',
 		noneYet: 'Ingen enhet är hopparad',
 		howYet: 'Hämta en kod ovan och skriv in den på enheten. Sedan står den här.',
-		how: [
-			'Välj vems uppgifter den visar och hämta en kod. Koden fungerar en gång, i två minuter.',
-			'Öppna operatörsvyn på enheten och skriv in koden.',
-			'Se på enheten och bekräfta sedan här att det är rätt.',
-			'Återkalla en enhet som är borta: inom två sekunder visar den inget.'
-		],
 		paired: 'Hopparade enheter',
 		overTitle: 'Enheter som inte längre är hopparade',
 		none: 'Ingen enhet kan paras ihop nu: styrningen hörs inte, eller ingen resurs har uppgifter för människor.',

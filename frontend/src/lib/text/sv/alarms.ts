@@ -2,7 +2,6 @@ import type { Text } from '../text.svelte.ts';
 
 export const alarms: Text['alarms'] = {
 	title: 'Larm',
-	about: 'Det som kräver en människas uppmärksamhet: vad som är fel, vad det leder till och vad man gör åt det.',
 	priority: { high: 'Hög', medium: 'Medel', low: 'Låg' },
 	priorityOf: { high: 'Hög prioritet', medium: 'Medelhög prioritet', low: 'Låg prioritet' },
 	state: {

@@ -1,13 +1,6 @@
 import type { Text } from '../text.svelte.ts';
 
 export const backups: Text['backups'] = {
-	about: 'En säkerhetskopia har stationens databas, revisioner och modell som de var i ett ögonblick, i en fil på stationens maskin.',
-	how: [
-		'Se om den nyaste säkerhetskopian är färsk och hel.',
-		'Gör en innan du ändrar något stort; kontrollera en för att veta att den kan läsas.',
-		'Kopiera filerna till en annan maskin: går disken sönder är kopiorna på den också borta.',
-		'En kopia återställs på kommandoraden; sidan säger hur.'
-	],
 	standing: 'Läget',
 	none: 'Det finns ingen säkerhetskopia. Går disken sönder är allt som är känt om stationen förlorat.',
 	noneWhole: 'Det finns ingen säkerhetskopia som är hel.',

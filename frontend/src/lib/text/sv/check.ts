@@ -2,13 +2,6 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const check: Text['check'] = {
-	about: 'Vad som har hittats i utkastet till modellen: vad som gör att det inte kan användas, vad som är misstänkt och vad övervakaren lägger till. Det granskas så snart det ändras.',
-	how: [
-		'Inget behöver startas: utkastet kontrolleras så fort det ändras.',
-		'Fel gör att det inte kan användas. Välj ett för att komma till stället i modellen.',
-		'Spela upp det som leder till ett fynd, steg för steg.',
-		'Utan fel går du vidare till Driftsättning.'
-	],
 	asking: 'Utkastet läses.',
 	notLive: 'Inte direkt: utkastet kan vara ett annat nu.',
 	running: 'Också det som stationen kör har granskats: se Övervakare på Drift.',

@@ -2,13 +2,6 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const deploy: Text['deploy'] = {
-	about: 'Revisioner av modellen: de sparas under ett namn, jämförs i text och beteende, och driftsätts när de är granskade. För att gå tillbaka tar man en äldre revision åter till utkastet och driftsätter den.',
-	how: [
-		'Spara utkastet som en revision, med namn och varför.',
-		'Jämför det med det som körs: texter, beteende och plan.',
-		'Driftsätt det. Vad som måste gälla först står där.',
-		'För att gå tillbaka: ta en äldre revision till utkastet och driftsätt den.'
-	],
 	lookOn: (role) => `Som ${role} kan du se på och jämföra. Ingenjörer sparar, tar tillbaka och driftsätter.`,
 	notRead: 'Revisionerna läses.',
 	notLive: 'Inte direkt: vänta tills utkastet hörs igen.',

@@ -87,18 +87,6 @@ export const frame: Text['frame'] = {
 		production: 'inget startas innan produktionen är startad'
 	},
 	release: 'Släpp',
-	keys: {
-		title: 'Tangenter',
-		all: [
-			['Ctrl K', 'Sök eller agera'],
-			['?', 'De här tangenterna'],
-			['Tab, Skift Tab', 'Till sidans nästa del, eller den förra'],
-			['Piltangenter', 'Inom en lista, ett träd, tidslinjen, planen eller bilden av stationen'],
-			['Escape', 'Lägger undan en dialog eller en meny; det som skrivits i ett fält är kvar'],
-			['Ctrl Mellanslag', 'I ett villkor: vad som kan stå där'],
-			['F12, Skift F12', 'I ett villkor: dit ett namn deklareras, och var det används']
-		]
-	},
 	round: {
 		offer: 'Ny här? Fem korta steg visar dig runt.',
 		show: 'Visa mig runt',
@@ -117,7 +105,7 @@ export const frame: Text['frame'] = {
 		]
 	},
 	notices: 'Meddelanden',
-	about: (page) => `Vad är sidan ”${page}” till för?`,
+	help: (page) => `Hjälp: ${page}`,
 	search: 'Sök eller agera',
 	arrived: {
 		paused: 'Paus har nått stationen. Det som visas är fortfarande gammalt.',

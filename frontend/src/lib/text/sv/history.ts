@@ -2,7 +2,6 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const history: Text['history'] = {
-	about: 'Vad som hänt på stationen och vad människor gjort. Varje ögonblick kan ses på nytt; inget av det kan ändras.',
 	toJournal: 'Allt som människor gjort, även med konton, nycklar och klockor, finns i Journalen.',
 	notThere: { title: 'Där finns inget än', detail: 'Ingen post är så gammal. Välj ett annat ögonblick, eller öppna länken igen om en stund.' },
 	reading: 'Läser',
@@ -223,12 +222,6 @@ export const history: Text['history'] = {
 		different: 'Annorlunda än vid den valda posten'
 	},
 	journal: {
-		about: 'Allt som gjordes eller nekades. Det kan läsas här och ändras av ingen.',
-		how: [
-			'Varje post säger vem som gjorde vad, när, med vad och varifrån. Den nyaste är överst.',
-			'Välj en handling eller en person ovanför listan för att se färre.',
-			'Öppna en post för detaljerna, och därifrån stationen som den var då.'
-		],
 		toHistory: 'Hur stationen var då',
 		title: 'Vad som gjordes',
 		caption: 'Journal, det nyaste först',

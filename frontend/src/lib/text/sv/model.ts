@@ -4,7 +4,6 @@ import type { Text } from '../text.svelte.ts';
 
 export const model: Text['model'] = {
 	title: 'Modell',
-	about: 'Utkastet till stationens modell, som alla ingenjörer delar. Stationen som är i drift påverkas inte.',
 	loading: 'Modellen läses in.',
 	notLive: 'Utkastet hörs inte längre: det som visas kan vara gammalt. Det du skriver behålls här tills det kan skickas.',
 	readOnly: (role) => `Du kan titta på modellen. För att ändra den krävs rollen ${role}.`,

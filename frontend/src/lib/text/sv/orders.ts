@@ -2,8 +2,6 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const orders: Text['orders'] = {
-	about:
-		'Det som ska tillverkas, från vänster till höger: det som inte får börja än, det som väntar på sin tur, det som är i arbete och det som är tillverkat. Tryck på en orders namn för allt om den. På order utförs operationer i arbetsmallar bara för en order; fritt blir de aktiva när de kan, och order väntar.',
 	summary: (made, left, last) => {
 		const open = left === 0 ? 'inget ska tillverkas' : `${left} ska tillverkas`;
 		return `${made} tillverkade i dag, ${open}${last === null ? '' : `; den sista väntas vara klar ${last}`}`;

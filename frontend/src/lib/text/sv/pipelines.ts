@@ -5,12 +5,6 @@ const antal = (n: number, en: string, flera: string): string => `${n} ${n === 1 
 
 export const pipelines: Text['pipelines'] = {
 	title: 'Pipelines',
-	about: 'Från meddelanden till variabler och tillbaka, så som modellens utkast har det, med det som passerar i stationen som kör.',
-	how: [
-		'Välj en pipeline i listan för att se den från meddelande till variabel.',
-		'Välj en ruta eller en linje för att ändra den. Ändringar hamnar i utkastet; det som körs rörs inte.',
-		'Prova med ett meddelande, och spara det som ett exempel som måste stämma.'
-	],
 	loading: 'Pipelines läses.',
 	unread: (files) => `Kan inte läsas nu och visas som förut: ${files}.`,
 	list: 'Pipelines per resurs',

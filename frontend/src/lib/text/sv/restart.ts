@@ -2,7 +2,6 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const restart: Text['restart'] = {
-	about: 'Fyra steg leder en station som har stannat tillbaka till produktion. Varje knapp säger allt som den gör, och varje åtgärd loggas.',
 
 	notice: {
 		wanted: 'Behöver dig',

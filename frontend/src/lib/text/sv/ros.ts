@@ -2,12 +2,6 @@ import type { Text } from '../text.svelte.ts';
 
 export const ros: Text['ros'] = {
 	title: 'ROS-nätverk',
-	about: 'Vem och vad som finns på ROS-nätet, och hur stationen förhåller sig till det: för den som letar efter en topic som är tyst.',
-	how: [
-		'Överst står vad som är fel och vad du kan göra.',
-		'Välj en topic för avsändare, mottagare, inställningar och senaste meddelande.',
-		'Visa färre med ord, resurs eller tillstånd.'
-	],
 	noGraph: 'Nätet har inte lästs än.',
 	read: (age) => `Nätet lästes ${age}.`,
 	readOld: (age) => `Inte direkt. Det som visas är gammalt: läst ${age}.`,

@@ -3,7 +3,6 @@ import type { Text } from '../text.svelte.ts';
 const antal = (n: number, en: string, flera: string): string => `${n} ${n === 1 ? en : flera}`;
 
 export const state: Text['state'] = {
-	about: 'Stationens alla variabler, som de är nu. Det som är uppskattat kan rättas.',
 	variables: 'Variabler',
 	none: 'Ingen variabel är sådan.',
 	shown: (n, all) => (n === all ? antal(all, 'variabel', 'variabler') : `${n} av ${antal(all, 'variabel', 'variabler')}`),

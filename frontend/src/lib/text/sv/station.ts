@@ -3,7 +3,6 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const station: Text['station'] = {
-	about: 'Utkastet till modellen som helhet: fyra lager, och vad som hänger ihop med vad. Välj något för att se vad det vilar på och vad som vilar på det.',
 	loading: 'Modellen gås igenom.',
 	old: 'Utkastet har ändrats; det som visas gås igenom igen.',
 	unread: (n) => `${count(n, 'text eller fil', 'texter eller filer')} kan inte läsas: samband där saknas här.`,

@@ -1,12 +1,6 @@
 import type { Text } from '../text.svelte.ts';
 
 export const storage: Text['storage'] = {
-	about: 'Vad som hänt, och avslutade order, flyttas efter en tid från databasen till arkivet. Historik och återspelning läser båda.',
-	how: [
-		'Se hur stora posterna är, hur fort de växer och när disken blir full.',
-		'Arkivera nu, om du inte vill vänta.',
-		'Hur länge poster sparas väljs vid starten; sidan nämner hur.'
-	],
 	standing: 'Läget',
 	fine: 'Gamla poster lämnar databasen av sig själva.',
 	troubled: 'Gamla poster kan inte arkiveras. Inget tas bort och inget går förlorat, men databasen växer.',

@@ -1,12 +1,6 @@
 import type { Text } from '../text.svelte.ts';
 
 export const webhooks: Text['webhooks'] = {
-	about: 'En webhook berättar för ett annat system om varje händelse med order och med stationen: minst en gång, signerat och bara dit listan nedan tillåter.',
-	how: [
-		'Gör en med adressen dit händelser skickas. Den måste vara tillåten enligt listan på sidan.',
-		'Spara hemligheten genast: med den vet det andra systemet att ett meddelande kommer härifrån.',
-		'Det som gavs upp kan skickas igen.'
-	],
 	table: 'Vilka som får veta',
 	none: 'Ingen får veta något.',
 	howYet: 'Gör en nedan: det andra systemet får sedan veta varje händelse.',

@@ -3,12 +3,6 @@ import { count } from '../count.ts';
 /** Tänk om: simulering av modellens utkast. */
 export const whatIf = {
 	title: 'Tänk om',
-	about: 'Hur stationen skulle fortsätta med modellen som den redigeras: simulerat, med emulerade enheter och personer som gör det de ombeds. Stationen påverkas inte.',
-	how: [
-		'Välj var det börjar: nu, eller vid en post i historiken.',
-		'Välj antal sekunder och simulera.',
-		'Läs vad som skulle starta och sluta, och vad som till slut skulle vara annorlunda.'
-	],
 	role: 'Bara ingenjörer simulerar. Fråga en av dem.',
 	from: 'Var det börjar',
 	present: 'Stationen som den är nu',
