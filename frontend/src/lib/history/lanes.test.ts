@@ -56,7 +56,7 @@ test('each thing has its lane', () => {
 	expect(lane('of robot')?.bars.map((bar) => bar.number)).toEqual([13]);
 	expect(lane('of tool')?.bars).toEqual([]);
 	expect(lane('people')?.spots.map(({ label, alarm }) => [label, alarm])).toEqual([
-		['Moved by hand, or by nothing the model knows: bolts: empty → placed', undefined],
+		['Moved by hand, or by nothing the model knows: Bolts: empty → placed', undefined],
 		['Alarm came: The robot is silent', 'high']
 	]);
 	expect(lane('operations')?.bars.map(({ label, from, to, open }) => [label, from, to, open])).toEqual([

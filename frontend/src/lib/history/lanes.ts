@@ -86,13 +86,13 @@ export function lanesOf(
 		{ id: 'operations', title: words.operations, bars: operations.map((bar) => ({ ...bar, label: names.operation(bar.label) })), spots: [] },
 		...[...byResource].map(([id, bars]) => ({ id: `of ${id}`, title: names.resource(id), resource: id, bars, spots: [] })),
 		{ id: 'plan', title: words.plan, bars: [], spots: [...plans, ...spots(new Set(['begun']))] },
-		{ id: 'people', title: words.people, bars: [], spots: [...acts.map(actSpot), ...spots(NOTICED), ...alarmsOf(line, names)] }
+		{ id: 'people', title: words.people, bars: [], spots: [...acts.map((act) => actSpot(act, names)), ...spots(NOTICED), ...alarmsOf(line, names)] }
 	];
 }
 
-function actSpot(act: Act): Spot {
+function actSpot(act: Act, names: Names): Spot {
 	const { entry, time } = act.record;
-	const on = subjectText(act.record);
+	const on = subjectText(act.record, names);
 	const refused = ['refused', 'failed'].includes((act.end ?? act.record).entry.outcome);
 	const label = `${actorText(entry.actor)}: ${actText(entry.action)}${on === '' ? '' : `, ${on}`}`;
 	return { time, label, number: null, act, refused, by: initialsOf(entry.actor.name) };

@@ -20,7 +20,7 @@ test('a tick says what it did, else what it heard', () => {
 	]);
 	expect(said('ticked', { measured: { 'robot.pose': 'at_home', ready: null } })).toEqual([
 		'Heard',
-		'robot.pose = at home, ready = unknown',
+		'Robot.pose: at home, Ready: unknown',
 		'',
 		'',
 		''
@@ -32,7 +32,7 @@ test('what a person did says who and why', () => {
 	expect(said('mode-changed', { what: { mode: 'hold', by: 'Eva' } })).toEqual(['Mode changed', 'Hold', 'Eva', '', '']);
 	expect(said('corrected', { what: { values: { bolts: 'empty' }, by: 'Eva', why: 'seen' } })).toEqual([
 		'Corrected',
-		'bolts = empty',
+		'Bolts: empty',
 		'Eva',
 		'seen',
 		''

@@ -2,7 +2,7 @@
 import type { Alarm, Message } from '#lib/contract.ts';
 import { told as said, wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
-import { plain, valueText } from '#lib/wording/values.ts';
+import { plain } from '#lib/wording/values.ts';
 import type { Names } from './names.ts';
 
 export interface Told {
@@ -120,7 +120,7 @@ function byHand(what: Content, names: Names): Partial<Told> & { what: string } {
 	if (changed === null) return { what: words.movedOn, on: names.resource(textOf(what['resource'])), outcome };
 	const on = Object.entries(changed).map(([name, values]) => {
 		const [before, after] = Array.isArray(values) ? values : [null, values];
-		return `${names.variable(name)}: ${anyValue(before)} → ${anyValue(after)}`;
+		return `${names.variable(name)}: ${names.value(name, before)} → ${names.value(name, after)}`;
 	});
 	return { what: words.moved, on: list(on), outcome };
 }
@@ -181,20 +181,13 @@ function served(of: string, name: string, names: Names): string {
 	return of === 'operation' ? names.operation(name) : names.ability(name);
 }
 
-/** `robot: pose = home`, of what has another value. */
+/** `Pose: home`, of what has another value. */
 function setting(name: string, value: unknown, names: Names): string {
-	return `${names.variable(name)} = ${anyValue(value)}`;
+	return `${names.variable(name)}: ${names.value(name, value)}`;
 }
 
 function settings(values: Content, names: Names): string {
 	return list(Object.entries(values).map(([name, value]) => setting(name, value, names)));
-}
-
-/** A value for a person to read; null is one that is not known. */
-export function anyValue(value: unknown): string {
-	if (value === null || value === undefined) return say().common.unknown;
-	if (typeof value === 'boolean') return value ? say().common.yes : say().common.no;
-	return typeof value === 'number' || typeof value === 'string' ? valueText(value) : JSON.stringify(value);
 }
 
 export function modeText(mode: unknown): string {

@@ -1,8 +1,11 @@
 import { describe, expect, test } from 'vitest';
 import type { Actor, AuditRecord } from '#lib/contract.ts';
+import { namesOf } from '#lib/history/names.ts';
 import { actText, actorText, becauseText, detailText, subjectText } from './wording.ts';
 
 const EVA: Actor = { kind: 'person', id: 'p1', name: 'Eva' };
+
+const names = namesOf(null);
 
 function record(action: string, subject: string, details: AuditRecord['entry']['details'] = {}): AuditRecord {
 	return { number: 1, time: 0, hash: '', entry: { actor: EVA, action, subject, details, outcome: 'done' } };
@@ -26,19 +29,19 @@ describe('who acts', () => {
 });
 
 test('on what it was done is said by its title, and with what was changed', () => {
-	expect(subjectText(record('acknowledge-task', 'task 4-1', { title: 'Place bolts' }))).toBe('Place bolts (task 4-1)');
-	expect(subjectText(record('acknowledge-task', 'task 4-1'))).toBe('task 4-1');
-	expect(subjectText(record('set-mode', '', { mode: 'paused' }))).toBe('paused');
-	expect(subjectText(record('person-created', 'person Eva'))).toBe('person Eva');
+	expect(subjectText(record('acknowledge-task', 'task 4-1', { title: 'Place bolts' }), names)).toBe('Place bolts (task 4-1)');
+	expect(subjectText(record('acknowledge-task', 'task 4-1'), names)).toBe('task 4-1');
+	expect(subjectText(record('set-mode', '', { mode: 'paused' }), names)).toBe('Paused');
+	expect(subjectText(record('person-created', 'person Eva'), names)).toBe('person Eva');
 	const changed = { role: ['operator', 'engineer'], disabled: [false, true], sessions_ended: 2 };
-	expect(subjectText(record('person-changed', 'person Eva', changed))).toBe(
+	expect(subjectText(record('person-changed', 'person Eva', changed), names)).toBe(
 		'person Eva, role: operator → engineer, disabled: no → yes'
 	);
-	expect(subjectText(record('set-override', 'override ur10.speed', { fields: { speed: 0.25 } }))).toBe(
+	expect(subjectText(record('set-override', 'override ur10.speed', { fields: { speed: 0.25 } }), names)).toBe(
 		'override ur10.speed, speed = 0.25'
 	);
 	const corrected = record('correct-estimates', 'bolts[bolt_pair_1]', { values: { 'bolts[bolt_pair_1]': 'empty' } });
-	expect(subjectText(corrected)).toBe('bolts[bolt_pair_1] = empty');
+	expect(subjectText(corrected, names)).toBe('Bolts · bolt pair 1: empty');
 });
 
 test('why it was refused, and every detail, can be read', () => {

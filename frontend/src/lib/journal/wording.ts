@@ -1,5 +1,7 @@
 /** How what was done is said: acts, who does them, and how they ended. */
 import type { Actor, AuditRecord, Outcome } from '#lib/contract.ts';
+import type { Names } from '#lib/history/names.ts';
+import { modeText } from '#lib/history/told.ts';
 import { say } from '#lib/text/text.svelte.ts';
 
 type Details = NonNullable<AuditRecord['entry']['details']>;
@@ -45,23 +47,23 @@ export function detailText(value: unknown): string {
 }
 
 /** On what it was done, and to what it was changed where that is short. A task is called by its title. */
-export function subjectText(record: AuditRecord): string {
+export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' | 'value'>): string {
 	const { action, subject } = record.entry;
 	const details = record.entry.details ?? {};
 	const detail = (name: string): string => (typeof details[name] === 'string' ? details[name] : '');
 	switch (action) {
 		case 'set-mode':
-			return detail('mode');
+			return modeText(detail('mode'));
 		case 'acknowledge-task':
 			return detail('title') === '' ? subject : `${detail('title')} (${subject})`;
 		case 'person-changed':
 			return [subject, ...changes(details)].join(', ');
 		case 'set-override':
-			return [subject, ...settings(details['fields'])].join(', ');
+			return [subject, ...settings(details['fields'], detailOf)].join(', ');
 		case 'correct-estimates':
 		case 'confirm-estimates':
 		case 'decide-outputs':
-			return settings(details['values']).join(', ') || subject;
+			return settings(details['values'], (name, value) => `${names.variable(name)}: ${names.value(name, value)}`).join(', ') || subject;
 		default:
 			return subject;
 	}
@@ -74,8 +76,11 @@ function changes(details: Details): string[] {
 	);
 }
 
-/** `speed = 0.25`, of what was set. */
-function settings(fields: unknown): string[] {
+/** `speed = 0.25`: a field of a device, by its name there. */
+const detailOf = (name: string, value: unknown): string => `${name} = ${detailText(value)}`;
+
+/** What was set, each as `told`. */
+function settings(fields: unknown, told: (name: string, value: unknown) => string): string[] {
 	if (typeof fields !== 'object' || fields === null) return [];
-	return Object.entries(fields).map(([name, value]) => `${name} = ${detailText(value)}`);
+	return Object.entries(fields).map(([name, value]) => told(name, value));
 }

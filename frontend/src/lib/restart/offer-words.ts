@@ -2,7 +2,7 @@
 import type { StationView, WayOffer } from '#lib/contract.ts';
 import { told } from '#lib/text/message.ts';
 import { say, type Text } from '#lib/text/text.svelte.ts';
-import { valueText, variableName } from '#lib/wording/values.ts';
+import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import { asksForHands, canBeTaken, onlySays } from './offer.ts';
 import { operationTitles, resourceTitle } from './titles.ts';
 
@@ -31,7 +31,7 @@ export function titleOf(offer: WayOffer): string {
 
 /** That a variable has the value it would get: `pair 4 is placed`. */
 export function soOf({ so, name, then }: WayOffer['corrections'][number]): string {
-	return told(so, say().restart.ways.is(variableName(name, null), valueText(then)));
+	return told(so, say().restart.ways.is(inSentence(nameOf(name, null)), valueOf(name, then)));
 }
 
 /** What it says of the product. */

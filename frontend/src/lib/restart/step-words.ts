@@ -68,7 +68,7 @@ function state(view: StationView, now: number): string {
 	if (questions > 0) return texts.questions(questions);
 	if (view.unconfirmed) return texts.confirm;
 	const said = view.last_correction;
-	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(said)) : say().restart.believed.agree;
+	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(view, said)) : say().restart.believed.agree;
 }
 
 function ways(view: StationView, advice: AdviceAnswer | null, now: number): string {

@@ -1,7 +1,7 @@
 /** What is said of who can do what: of operations that are active, and of those that come later. */
 import type { WhoCan } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
-import { valueText, variableName } from '#lib/wording/values.ts';
+import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import type { Row } from './who-can-rows.svelte';
 
 export interface Rows {
@@ -27,7 +27,7 @@ export const whoCanText = {
 	others: ({ others }: WhoCan): Rows =>
 		split(others, ({ by, once }) => {
 			const texts = say().operate.whoCan;
-			const first = Object.entries(once).map(([name, value]) => `${variableName(name, null)} = ${valueText(value)}`);
+			const first = Object.entries(once).map(([name, value]) => `${inSentence(nameOf(name, null))}: ${valueOf(name, value)}`);
 			const whom = by.length > 0 ? texts.by(by.join(', ')) : first.length > 0 ? '' : texts.goesOn;
 			return [whom, first.length > 0 ? texts.once(first.join(', ')) : ''].filter((each) => each !== '').join(', ');
 		})
