@@ -54,10 +54,10 @@ function frameOf(page: Page, { selector, text = '', isThere = true }: Sought): P
 	);
 }
 
-/** Milliseconds from the call of an address to the frame after the one that shows something. */
-export async function opened(page: Page, address: string, sought: Sought): Promise<number> {
+/** Milliseconds from the call of an address to the frame after the one that shows all of this. */
+export async function opened(page: Page, address: string, ...sought: Sought[]): Promise<number> {
 	await page.goto(address, { waitUntil: 'commit' });
-	return frameOf(page, sought);
+	return Math.max(...(await Promise.all(sought.map((each) => frameOf(page, each)))));
 }
 
 /** Milliseconds from the last key or click of `act` to the frame after the one that shows something. */

@@ -1,12 +1,13 @@
-"""A station that is unkind to pages: nothing in it has a title, names are of 80 characters, and there is much of everything.
+"""A station that is unkind to pages: nothing has a title, names are of 80 characters, and there is much of everything.
 
-`unkind.py FOLDER` writes its model, `unkind.py FOLDER --hostile` with a picture as well that binds what is not there, and with
-drawings that would run, load or never end, were they drawn as they are written.
+`unkind.py FOLDER` writes its model, `unkind.py FOLDER --hostile` with a picture as well that binds what is not there,
+and with drawings that would run, load or never end, were they drawn as they are written.
 """
 
 from __future__ import annotations
 
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 RESOURCES, OPERATIONS, ALARMS, LENGTH = 40, 60, 12, 80
@@ -19,16 +20,19 @@ ONE_WORD = "donaudampfschiffahrtselektrizitaetenhauptbetriebswerkbauunterbeamten
 # Each would call `globalThis.ran`, or ask a server, in one way that a browser knows.
 DRAWINGS = {
     "script": '<script>globalThis.ran = "script"</script><script href="http://127.0.0.1:9/script.js"/>',
-    "handler": '<rect width="50" height="40" onload="globalThis.ran = 1" onclick="globalThis.ran = 1" fill="url(http://127.0.0.1:9/f)"/>',
-    "link": '<a href="javascript:globalThis.ran = 1"><rect width="100" height="60"/></a><g href="javascript:globalThis.ran = 1"/>',
-    "foreign": '<foreignObject width="100" height="60"><img xmlns="http://www.w3.org/1999/xhtml" src="x" onerror="globalThis.ran = 1"/>'
+    "handler": '<rect width="50" height="40" onload="globalThis.ran = 1" onclick="globalThis.ran = 1" '
+    'fill="url(http://127.0.0.1:9/f)"/>',
+    "link": '<a href="javascript:globalThis.ran = 1"><rect width="100" height="60"/></a>'
+    '<g href="javascript:globalThis.ran = 1"/>',
+    "foreign": '<foreignObject width="100" height="60">'
+    '<img xmlns="http://www.w3.org/1999/xhtml" src="x" onerror="globalThis.ran = 1"/>'
     '<iframe xmlns="http://www.w3.org/1999/xhtml" src="javascript:parent.ran = 1"/></foreignObject>',
     "style": '<style>@import "http://127.0.0.1:9/s.css"; rect { fill: url(http://127.0.0.1:9/p.svg#p) }</style>'
     '<rect width="100" height="60" style="fill: url(http://127.0.0.1:9/q.svg#q); background: url(http://127.0.0.1:9/b.png)"/>',
     "use": '<use href="http://127.0.0.1:9/u.svg#u"/><use href="data:image/svg+xml;base64,PHN2Zy8+#u"/>'
     '<image href="http://127.0.0.1:9/i.png" width="100" height="60"/>',
-    "animate": '<a><animate attributeName="href" values="javascript:globalThis.ran = 1"/><set attributeName="onclick" to="ran = 1"/>'
-    '<rect width="100" height="60"/></a>',
+    "animate": '<a><animate attributeName="href" values="javascript:globalThis.ran = 1"/>'
+    '<set attributeName="onclick" to="ran = 1"/><rect width="100" height="60"/></a>',
     "itself": '<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g>',
 }
 BOMB = (
@@ -48,7 +52,8 @@ def resource(number: int) -> str:
     """What works on its parts, each with an ability: a device with its own command and answer, or by thought alone."""
     if number >= DEVICES:
         return "abilities:\n" + "".join(
-            f"  {name('work', part)}:\n    parameters: {{level: lower}}\n    enabled: {name('part', part)} == level and is_there\n"
+            f"  {name('work', part)}:\n    parameters: {{level: lower}}\n"
+            f"    enabled: {name('part', part)} == level and is_there\n"
             f"    start: {{do: ['{name('part', part)} := higher[level]']}}\n"
             for part in range(number, OPERATIONS, RESOURCES)
         )
@@ -128,6 +133,7 @@ def write(folder: Path, *, is_hostile: bool) -> None:
     (messages / "Task.msg").write_text("bool asked\n")
     levels = [name("level", number) for number in range(LEVELS)]
     parts = "".join(f"  {name('part', number)}: {{type: level}}\n" for number in range(OPERATIONS))
+    higher = ", ".join(f"{level}: {next_one}" for level, next_one in pairwise(levels))
     alarms = "".join(
         f"  {name('alarm', number)}: {{when: not is_there, priority: {('high', 'medium', 'low')[number % 3]}}}\n"
         for number in range(ALARMS)
@@ -139,7 +145,7 @@ enumerations:
 sets:
   lower: {{of: level, except: [{levels[-1]}]}}
 maps:
-  higher: {{from: lower, to: level, values: {{{", ".join(f"{a}: {b}" for a, b in zip(levels, levels[1:], strict=False))}}}}}
+  higher: {{from: lower, to: level, values: {{{higher}}}}}
 estimated:
   is_there: {{type: bool}}
 {parts}alarms:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
+from pathlib import PurePath
 from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton
@@ -57,11 +58,18 @@ def drawn(
 
 
 def as_shown(findings: Findings) -> list[MimicFinding]:
-    """The findings as they are shown."""
+    """The findings as they are shown: files by their names in the station's folder, wherever that is."""
     return [
-        MimicFinding(file=each.place.file, line=each.place.line, column=each.place.column, message=each.message)
+        MimicFinding(
+            file=_within(each.place.file), line=each.place.line, column=each.place.column, message=each.message
+        )
         for each in sorted(set(findings.all))
     ]
+
+
+def _within(file: str) -> str:
+    path = PurePath(file)
+    return f"drawings/{path.name}" if path.parent.name == "drawings" else path.name
 
 
 class _Drawing:
