@@ -94,6 +94,7 @@ for (const locale of ['en-GB', 'sv-SE'])
 		listen(page);
 		for (const path of [...PAGES, WATCH]) {
 			await go(page, path);
+			if (path === '/') await expect(page.locator('[data-step]').nth(100)).toBeAttached({ timeout: 120_000 }); // the plan
 			const screens = path === WATCH ? [...SCREENS, [192, 192] as const] : SCREENS;
 			for (const spaced of [false, true]) {
 				if (spaced) await spaceOut(page);

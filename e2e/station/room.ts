@@ -44,7 +44,8 @@ export async function crowded(page: Page): Promise<string[]> {
 			for (const rect of range.getClientRects()) {
 				let { left, top, right, bottom } = rect;
 				for (let around: Element | null = of; around && around !== document.body; around = around.parentElement) {
-					const { overflowX, overflowY } = getComputedStyle(around);
+					const { overflowX, overflowY, clipPath } = getComputedStyle(around);
+					if (clipPath.startsWith('inset')) right = left; // it is there for screen readers alone
 					if (overflowX === 'visible' && overflowY === 'visible') continue;
 					const edge = around.getBoundingClientRect();
 					[left, top, right, bottom] = [Math.max(left, edge.left), Math.max(top, edge.top), Math.min(right, edge.right), Math.min(bottom, edge.bottom)];
