@@ -13,6 +13,7 @@ from sequence_planner.controller.views.station import (
     ApprovalView,
     BeliefView,
     ForceView,
+    InstructionView,
     JobStepState,
     JobStepView,
     JobView,
@@ -236,6 +237,14 @@ def example_view(**changes: object) -> StationView:
                 text="Place it on the cover plate",
                 created=995.0,
                 next_moves=["Robot moves above the engine"],
+                instruction=InstructionView(
+                    text={
+                        "en": "Put both bolts into the marked holes.",
+                        "sv": "Sätt båda skruvarna i de markerade hålen.",
+                    },
+                    image="instructions/place_bolts.svg#bolt_pair_1",
+                    video=None,
+                ),
                 problem=None,
             )
         },

@@ -42,6 +42,7 @@ export type Trial = Schemas['TrialView'];
 export type TriedReaction = Schemas['TriedReactionView'];
 export type StepStatus = Schemas['StepStatus'];
 export type Task = Schemas['TaskView'];
+export type Instruction = Schemas['InstructionView'];
 export type Topic = Schemas['TopicView'];
 export type Alarm = Schemas['AlarmView'];
 export type Message = Schemas['Message'];

@@ -19,6 +19,7 @@ from sequence_planner.language.shorthand.misuse import decided_by_number
 from sequence_planner.language.shorthand.vocabulary import Vocabulary
 from sequence_planner.language.syntax import Assignment, Expression, ExpressionError, Quantified, children
 from sequence_planner.language.types import Place
+from sequence_planner.mimic.instructions import unshown_of
 from sequence_planner.mimic.picture import undrawn_of
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
@@ -26,7 +27,7 @@ from sequence_planner.pipelines.graph import StationPipelines
 
 # The sections that declare names for something longer, each with what one of it is.
 _SECTIONS = {"sets": "set", "relations": "relation", "maps": "map", "predicates": "predicate"}
-_FOR_PEOPLE = frozenset({"title", "description", "consequence", "action", "task"})
+_FOR_PEOPLE = frozenset({"title", "description", "consequence", "action", "task", "instruction"})
 _PACKAGES = "packages"
 _NAMES = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*")
 _COUNTING = re.compile(r"\bat\s+(?:least|most)\b")
@@ -44,6 +45,8 @@ def suspicious_in(station: Station | None, automaton: Automaton, pipelines: Stat
         yield from (each for each in check_folded(station) if each.place not in places)
         for finding in undrawn_of(automaton, station):
             yield ModelWarning(finding.place, "not-drawn", finding.message)
+        for finding in unshown_of(automaton, station):
+            yield ModelWarning(finding.place, "not-shown", finding.message)
     yield from check_never_given(automaton, pipelines)
 
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.core.immutable import Immutable, uncompared
-from sequence_planner.language.shorthand.titles import NO_TITLES, Titles
+from sequence_planner.language.shorthand.titles import NO_TITLES, Titles, Words
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.syntax import (
     FALSE,
@@ -70,6 +70,16 @@ class HumanTask(Immutable):
     acknowledgement: str
 
 
+class Instruction(Immutable):
+    """How a person does something: a sentence by language, and the paths of a picture and a video in the station's
+    folder.
+    """
+
+    text: Words
+    image: str | None = None
+    video: str | None = None
+
+
 class Timeouts(Immutable):
     """Seconds after a start by which an ability must have reacted, and have finished, before an alarm is raised.
 
@@ -105,6 +115,7 @@ class Ability(Immutable):
     timeouts: Timeouts = Timeouts()
     duration: tuple[float, float] | None = None
     cancel_actions: tuple[Assignment, ...] = ()
+    instruction: Instruction | None = uncompared(default=None)
 
     def flag(self, which: str) -> str:
         """The full name of its flag `enabled`, `executing` or `finished`."""

@@ -74,13 +74,22 @@ def without_arguments(name: str) -> str:
     return re.sub(r"[\[(][^\])]*[\])]", "", name) if "(" in name or "[" in name else name
 
 
-def readable(title: SourceText | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
-    """A title, or the name in plain words, with what each `{parameter}` is called in its place.
+def with_values(text: str, binding: Binding) -> str:
+    """A text with the value of each `{parameter}` in its place."""
+    for parameter, (value, _) in binding.items():
+        text = text.replace(f"{{{parameter}}}", value)
+    return str(text)
+
+
+def readable(
+    title: SourceText | None, name: str, binding: Binding, titles: Titles = NO_TITLES, language: str = "en"
+) -> str:
+    """A title, or the name in plain words, with what each `{parameter}` is called in a `language` in its place.
 
     The digest of a model, by which its journals know it, has these: what has no title keeps the letters of its name.
     """
     text = str(title) if title is not None else name.replace("_", " ")
     for parameter, (value, type_) in binding.items():
-        called = in_language(titles.of_value(type_, value), "en") or value.replace("_", " ")
+        called = in_language(titles.of_value(type_, value), language) or value.replace("_", " ")
         text = text.replace(f"{{{parameter}}}", called)
     return text

@@ -16,6 +16,7 @@ from sequence_planner.automaton.automaton import (
     Effect,
     Flag,
     HumanTask,
+    Instruction,
     Kind,
     Operation,
     Specification,
@@ -34,6 +35,7 @@ from sequence_planner.automaton.findings import (
     instance_name,
     readable,
     told_where_removed,
+    with_values,
     without_arguments,
 )
 from sequence_planner.automaton.sequences.expansion import StationSequences, Steps
@@ -69,9 +71,11 @@ from sequence_planner.language.types import BOOLEAN, BooleanType, Place
 from sequence_planner.model.documents import (
     AbilityDocument,
     EffectDocument,
+    InstructionDocument,
     OperationDocument,
     SpecificationDocument,
     TimeoutsDocument,
+    by_language,
     words_of,
 )
 from sequence_planner.model.fields import Predicate
@@ -341,6 +345,7 @@ def _ability(
         timeouts=_timeouts(document.timeouts),
         duration=document.duration,
         cancel_actions=meaning.actions(cancelled, scope, TRUE, CANCEL),
+        instruction=_instruction(meaning, document.instruction, binding),
     )
 
 
@@ -375,6 +380,20 @@ def _human(meaning: Meaning, resource: str, document: AbilityDocument, binding: 
     text = document.human.acknowledgement
     check_acknowledgement(meaning, resource, text)
     return HumanTask(readable(document.human.task, "", binding, meaning.declarations.titles), f"{resource}.{text}")
+
+
+def _instruction(meaning: Meaning, document: InstructionDocument | None, binding: Binding) -> Instruction | None:
+    if document is None:
+        return None
+    titles = meaning.declarations.titles
+    return Instruction(
+        {
+            language: readable(said, "", binding, titles, language or "en")
+            for language, said in by_language(document.text).items()
+        },
+        document.image and with_values(document.image, binding),
+        document.video and with_values(document.video, binding),
+    )
 
 
 def check_acknowledgement(meaning: Meaning, resource: str, text: SourceText) -> None:

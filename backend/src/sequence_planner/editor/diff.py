@@ -22,7 +22,7 @@ from sequence_planner.editor.schemas.diff import (
 from sequence_planner.language.evaluator import holds
 from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.language.syntax import TRUE, Assignment, Expression, Not, conjunction, variables
-from sequence_planner.model.files import Files
+from sequence_planner.model.files import Files, is_binary
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Goal, Plan, PlanRequest, goal_of
 from sequence_planner.station import ReadyStation
@@ -70,10 +70,16 @@ class Meant:
 def text_differences(old: Files, new: Files) -> dict[str, str]:
     """The differences of the files as `diff -u` shows them, by path."""
     return {
-        path: _unified(path, old.get(path, ""), new.get(path, ""))
+        path: _binary(path, old, new) if is_binary(path) else _unified(path, old.get(path, ""), new.get(path, ""))
         for path in sorted(old.keys() | new.keys())
         if old.get(path) != new.get(path)
     }
+
+
+def _binary(path: str, old: Files, new: Files) -> str:
+    """Say as `diff` does that such a file is another one."""
+    before, after = f"a/{path}" if path in old else "/dev/null", f"b/{path}" if path in new else "/dev/null"
+    return f"Binary files {before} and {after} differ\n"
 
 
 def _unified(path: str, old: str, new: str) -> str:

@@ -20,7 +20,7 @@ from dulwich.repo import Repo
 
 from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.editor.revision import Revision
-from sequence_planner.model.files import Files
+from sequence_planner.model.files import Files, content_of, text_of
 from sequence_planner.model.paths import EditError
 
 BRANCH = Ref(b"refs/heads/main")
@@ -75,7 +75,8 @@ class Revisions:
         with self._repository() as repository:
             commit = parse_commit(repository, id.encode())
             entries = repository.object_store.iter_tree_contents(commit.tree)
-            return {entry.path.decode(): repository[entry.sha].as_raw_string().decode() for entry in entries}
+            contents = ((entry.path.decode(), repository[entry.sha].as_raw_string()) for entry in entries)
+            return {path: text for path, content in contents if (text := text_of(path, content)) is not None}
 
     def _repository(self) -> Repo:
         if (self._folder / "HEAD").exists():
@@ -92,7 +93,7 @@ def tree_of(files: Files) -> str:
 def _tree(store: BaseObjectStore, files: Files) -> ObjectID:
     blobs: list[tuple[bytes, ObjectID, int]] = []
     for path, text in sorted(files.items()):
-        blob = Blob.from_string(text.encode())
+        blob = Blob.from_string(content_of(path, text))
         store.add_object(blob)
         blobs.append((path.encode(), blob.id, stat.S_IFREG | 0o644))
     return commit_tree(store, blobs)

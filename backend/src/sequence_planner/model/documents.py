@@ -267,6 +267,23 @@ class HumanDocument(DocumentPart):
     """A measured `bool` of the resource."""
 
 
+class InstructionDocument(DocumentPart):
+    """How a person does it: a sentence, and a picture or a video in the folder `instructions` of the station."""
+
+    text: Given[Words] = None
+    """A sentence; `{parameter}` is replaced by what its value is called."""
+    image: Given[SourceText] = None
+    """A picture, `instructions/<name>.svg` (or png, jpg, webp); `{parameter}` is replaced by the value."""
+    video: Given[SourceText] = None
+    """A video, `instructions/<name>.mp4` (or webm); `{parameter}` is replaced by the value."""
+
+    @model_validator(mode="after")
+    def _tells_something(self) -> InstructionDocument:
+        if not self.model_fields_set:
+            raise ValueError("write a `text`, an `image` or a `video`")
+        return self
+
+
 class CancelDocument(DocumentPart):
     """Actions taken when a running ability is called off."""
 
@@ -306,6 +323,8 @@ class AbilityDocument(DocumentPart):
     """Only for getting back to work after trouble."""
     human: Given[HumanDocument] = None
     """A person does it."""
+    instruction: Given[InstructionDocument] = None
+    """How it is done, for the person who does it."""
     timeouts: TimeoutsDocument = TimeoutsDocument()
     """By when it must have reacted and finished, and what is done when it has not."""
     duration: Given[Duration] = None

@@ -1,10 +1,13 @@
 """The files of a model as texts: what an engineer may write in a browser, and how it is read from a folder and written.
 
-Python stages are none of them: these come only from files on the server.
+Pictures and videos of instructions stand among them in base 64. Python stages are none of them: these come only from
+files on the server.
 """
 
 from __future__ import annotations
 
+import base64
+import binascii
 import contextlib
 import os
 import re
@@ -17,7 +20,16 @@ from operator import itemgetter
 from pathlib import Path
 from typing import NamedTuple
 
-from sequence_planner.model.paths import DEFINITIONS, DRAWING, DRAWINGS, FILES, EditError
+from sequence_planner.model.paths import (
+    DEFINITIONS,
+    DRAWING,
+    DRAWINGS,
+    FILES,
+    INSTRUCTION,
+    INSTRUCTIONS,
+    PICTURES,
+    EditError,
+)
 from sequence_planner.model.yaml.saving import BYTE_ORDER_MARK
 
 # Texts by their paths below the model's folder, such as `resources/robot.yaml`.
@@ -35,11 +47,13 @@ class FileContent(NamedTuple):
 Contents = Mapping[str, FileContent]
 
 LONGEST_FILE = 1_000_000  # characters
+LARGEST_PICTURE = 1_000_000  # bytes
+LARGEST_VIDEO = 5_000_000  # bytes
 MOST_FILES = 2_000
-MOST_CHARACTERS = 10_000_000  # of all files together
+MOST_CHARACTERS = 20_000_000  # of all files together
 STAGES = "stages"
 _UNFINISHED = ".unfinished"
-SEARCHED_FOLDERS = ("resources", "types", "messages", DRAWINGS, "packages")  # where files are looked for
+SEARCHED_FOLDERS = ("resources", "types", "messages", DRAWINGS, INSTRUCTIONS, "packages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -47,7 +61,7 @@ _NO_TEXT = re.compile("[\0\ud800-\udfff]")
 _OF_PACKAGE = rf"package\.yaml|types/{_NAME}\.yaml|{_DEFINITIONS}"
 _PATH = re.compile(
     rf"{'|'.join(map(re.escape, FILES))}|packages\.lock|(?:resources|types)/{_NAME}\.yaml|{_DEFINITIONS}"
-    rf"|{DRAWINGS}/{DRAWING.pattern}"
+    rf"|{DRAWINGS}/{DRAWING.pattern}|{INSTRUCTIONS}/{INSTRUCTION.pattern}"
     rf"|packages/{_NAME}/(?:{_OF_PACKAGE})"
 )
 
@@ -63,12 +77,47 @@ def check_path(path: str) -> None:
         raise EditError(
             f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, "
             "types/<name>.yaml, messages/<package>/msg/<Name>.msg (or srv, or action), drawings/<name>.svg, "
-            "packages.lock, and those of a package in packages/<name>"
+            "instructions/<name>.svg (or png, jpg, webp, mp4, webm), packages.lock, and those of a package in "
+            "packages/<name>"
         )
+
+
+def is_binary(path: str) -> bool:
+    """Return whether one of a model's files is no text: a picture or a video of an instruction."""
+    return path.startswith(f"{INSTRUCTIONS}/") and not path.endswith(".svg")
+
+
+def largest(path: str) -> int:
+    """The bytes that such a file may have at most."""
+    return LARGEST_PICTURE if path.endswith(PICTURES) else LARGEST_VIDEO
+
+
+def content_of(path: str, text: str) -> bytes:
+    """The bytes of a file that is known by this text. Raises `EditError` for a text that is none of such a file."""
+    if not is_binary(path):
+        return text.encode("utf-8")
+    try:
+        return base64.b64decode(text, validate=True)
+    except (binascii.Error, ValueError):
+        raise EditError(f"{path} is no text: it is written in base 64") from None
+
+
+def text_of(path: str, content: bytes) -> str | None:
+    """The text by which the bytes of a file are known; None where they are none, or more than a model may have."""
+    if is_binary(path):
+        return base64.b64encode(content).decode("ascii") if len(content) <= largest(path) else None
+    try:
+        return content.decode("utf-8").removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n")
+    except UnicodeDecodeError:
+        return None
 
 
 def check_text(path: str, text: str) -> None:
     """Raises `EditError` for a text that is too long, or that no file could hold."""
+    if is_binary(path):
+        if (size := len(content_of(path, text))) > largest(path):
+            raise EditError(f"{path} has {size} bytes, and may have at most {largest(path)}")
+        return
     if len(text) > LONGEST_FILE:
         raise EditError(f"{path} has {len(text)} characters, and a file of a model has at most {LONGEST_FILE}")
     if (wrong := _NO_TEXT.search(text)) is not None:
@@ -84,7 +133,9 @@ def check_size(files: Files) -> None:
 
 
 def read_files(folder: Path) -> dict[str, str]:
-    """The files of the model in `folder`; those that are no UTF-8 text are left out. Raises `OSError`."""
+    """The files of the model in `folder`; those that are no UTF-8 text, or too large a picture, are left out. Raises
+    `OSError`.
+    """
     return FolderReader(folder).read()
 
 
@@ -104,7 +155,7 @@ class FolderReader:
                 break
             now, stamp = time.time_ns(), _stamp(entry.stat())
             before = known.get(name)
-            text = before[1] if before is not None and before[0] == stamp else _text(Path(entry.path))
+            text = before[1] if before is not None and before[0] == stamp else _text(name, Path(entry.path))
             # A file that was written just before it was read may be written once more without another stamp.
             if now - stamp[0] > _RACY:
                 self._known[name] = stamp, text
@@ -153,16 +204,15 @@ def package_files(folder: Path) -> dict[str, str]:
     for path in sorted(each for below in ("*.yaml", "types/*", "messages/*/*/*") for each in folder.glob(below)):
         name = path.relative_to(folder).as_posix()
         is_file = is_of_package(name) and path.resolve() == whole / name and path.is_file()
-        if is_file and (text := _text(path)) is not None:
+        if is_file and (text := _text(name, path)) is not None:
             files[name] = text
     return files
 
 
-def _text(path: Path) -> str | None:
-    try:
-        return path.read_bytes().decode("utf-8").removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n")
-    except UnicodeDecodeError:
+def _text(name: str, path: Path) -> str | None:
+    if is_binary(name) and path.stat().st_size > largest(name):
         return None
+    return text_of(name, path.read_bytes())
 
 
 def write_files(files: Files, folder: Path, stages: Path | None = None) -> None:
@@ -170,7 +220,7 @@ def write_files(files: Files, folder: Path, stages: Path | None = None) -> None:
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8", newline="")
+        path.write_bytes(content_of(name, text))
     if stages is not None and (stages / STAGES).is_dir():
         shutil.copytree(stages / STAGES, folder / STAGES, dirs_exist_ok=True)
 
@@ -182,7 +232,7 @@ def put_in_place(files: Files, folder: Path) -> None:
     before = read_files(folder)
     for name, text in files.items():
         if before.get(name) != text:
-            _put(folder / name, text.encode("utf-8"))
+            _put(folder / name, content_of(name, text))
     for name in before.keys() - files.keys():
         (folder / name).unlink(missing_ok=True)
 

@@ -13,11 +13,16 @@ if TYPE_CHECKING:
 # What lies in a station's folder.
 
 DRAWINGS = "drawings"
-FOLDERS = ("resources", "types", "messages", DRAWINGS, "stages", "packages")
+INSTRUCTIONS = "instructions"
+FOLDERS = ("resources", "types", "messages", DRAWINGS, INSTRUCTIONS, "stages", "packages")
 # What files below `messages` define, by what their names end with.
 DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
 # The name of a file below `drawings`.
 DRAWING = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}\.svg")
+# The name of a file below `instructions`, by what it holds. All but an SVG are no texts.
+PICTURES = ("svg", "png", "jpg", "webp")
+VIDEOS = ("mp4", "webm")
+INSTRUCTION = re.compile(rf"[A-Za-z_][A-Za-z0-9_]{{0,99}}\.(?:{'|'.join((*PICTURES, *VIDEOS))})")
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml", "mimic.yaml")
 

@@ -71,6 +71,7 @@ PARTS = (
     session.session_router,
     session.provider_router,
     station.router,
+    station.instructions_router,
     declared.router,
     model.attachments_router,
     station.ros_router,

@@ -184,6 +184,11 @@ FRONT: Final[dict[str, str]] = {
     "refused.too-many-offers.most": "There are {most} offers already: withdraw one, or wait until they expire.",
     "refused.no-offer": "No such offer",
     "refused.no-offer.used": "There is no such offer: its code was used, withdrawn, or has expired.",
+    "refused.no-such-instruction": "There is no such picture or video",
+    "refused.no-such-instruction.name": (
+        "The folder `instructions` of the station has no file {name} that can be shown. GET /tasks names those of "
+        "tasks."
+    ),
     "refused.no-such-resource": "A watch cannot serve this resource",
     "refused.no-such-resource.choose": (
         '"{resource}" has no tasks for people. Choose one of the resources that GET /wearables lists.'

@@ -5,8 +5,9 @@ import { nextSteps } from '#lib/plan/status.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { inLanguage } from '#lib/text/words.ts';
 import { plain, valueText, variableName } from '#lib/wording/values.ts';
-import { holds, inLanguage, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
+import { holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 
 export interface Now {
 	readonly text: string;

@@ -1,7 +1,8 @@
 import { expect, it } from 'vitest';
 import type { MimicText, MimicTrack, StationView, Variable } from '#lib/contract.ts';
 import { alarm, estimate } from '#lib/testing/view.ts';
-import { alarmsOf, holds, inLanguage, levelOf, lookOf, saidOf, sentTo, whereabouts, worst } from './live.ts';
+import { inLanguage } from '#lib/text/words.ts';
+import { alarmsOf, holds, levelOf, lookOf, saidOf, sentTo, whereabouts, worst } from './live.ts';
 
 const variables = (values: Record<string, Variable['value']>): StationView['variables'] =>
 	Object.fromEntries(Object.entries(values).map(([name, value]) => [name, estimate({ value })]));

@@ -1,6 +1,7 @@
 /** What the picture shows of the station as it is: pure functions of the two. */
 import type { Alarm, MimicPart, MimicSymbol, MimicTest, MimicText, MimicTrack, Priority, StationView, Value } from '#lib/contract.ts';
 import { NUMBER, isOver, isTold, type Keyed } from '#lib/alarm/priority.ts';
+import { inLanguage } from '#lib/text/words.ts';
 import { valueText } from '#lib/wording/values.ts';
 
 export type Variables = StationView['variables'];
@@ -20,11 +21,6 @@ export function holds(tests: readonly MimicTest[], variables: Variables): boolea
 		else if (!values.includes(value)) return false;
 	}
 	return open ? null : true;
-}
-
-/** A text in a language: that one, else English, else what there is. */
-export function inLanguage(text: Readonly<Record<string, string>>, language: string): string {
-	return text[language] ?? text['en'] ?? text[''] ?? Object.values(text)[0] ?? '';
 }
 
 /** The first text that is to be said, with its values; empty where none is. */

@@ -1,6 +1,7 @@
 /** Drawings of a station's own: what of a drawing is painted, and how an element looks by what it follows. */
 import type { MimicBound, MimicDrawing } from '#lib/contract.ts';
-import { holds, withValues, inLanguage, type Variables } from './live.ts';
+import { inLanguage } from '#lib/text/words.ts';
+import { holds, withValues, type Variables } from './live.ts';
 
 export interface Painted {
 	/** Whether the inside is painted, and whether the outline is. */

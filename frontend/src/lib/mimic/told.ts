@@ -2,9 +2,10 @@
 import type { Mimic, MimicSymbol, Priority, StationView } from '#lib/contract.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { inLanguage } from '#lib/text/words.ts';
 import { variableName } from '#lib/wording/values.ts';
 import { nameOf, nowOf, partValue, type Now } from './describe.ts';
-import { alarmsOf, holds, inLanguage, levelOf, valueOf, worst } from './live.ts';
+import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
 
 export interface Told {
 	readonly symbol: MimicSymbol;

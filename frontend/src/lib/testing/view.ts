@@ -65,7 +65,7 @@ export function operation(rest: Partial<Operation> = {}): Operation {
 
 export function task(created: number): Task {
 	const place = { ability: 'operator.place', resource: 'operator', title: 'Place', text: 'Place it' };
-	return { revision: 1, ...place, created, next_moves: [], problem: null };
+	return { revision: 1, ...place, created, next_moves: [], problem: null, instruction: null };
 }
 
 export function alarm(rest: Partial<Alarm> = {}): Alarm {

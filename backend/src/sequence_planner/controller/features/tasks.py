@@ -11,7 +11,7 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable, Collection, Iterable, Iterator
 
-from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.automaton.automaton import Automaton, Instruction, State
 from sequence_planner.controller.alarms.kinds import PROBLEM, Cause
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
@@ -22,7 +22,7 @@ from sequence_planner.controller.commands.tasks import (
     TaskProblem,
     WaitingTask,
 )
-from sequence_planner.controller.views.station import TaskProblemView, TaskView
+from sequence_planner.controller.views.station import InstructionView, TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
@@ -133,6 +133,7 @@ class OpenTasks:
                 created=task.created,
                 next_moves=moves[:_NEXT_MOVES],
                 problem=_problem(self._tasks.problems.get(id_)),
+                instruction=_instruction(abilities[task.ability].instruction),
             )
             for id_, task in self._tasks.open.items()
         }
@@ -155,6 +156,12 @@ class OpenTasks:
                 },
                 resources=[ability.resource],
             )
+
+
+def _instruction(instruction: Instruction | None) -> InstructionView | None:
+    if instruction is None:
+        return None
+    return InstructionView(text=dict(instruction.text), image=instruction.image, video=instruction.video)
 
 
 def _problem(problem: TaskProblem | None) -> TaskProblemView | None:

@@ -631,6 +631,14 @@ class TaskProblemView(View):
     why: str
 
 
+class InstructionView(View):
+    """How a person does something: a sentence by language, a picture and a video by their paths below `/api/v1/`."""
+
+    text: dict[str, str]
+    image: str | None
+    video: str | None
+
+
 class TaskView(View):
     """A task that waits for a person. An acknowledgement must carry its id and revision."""
 
@@ -642,6 +650,7 @@ class TaskView(View):
     created: float
     next_moves: list[str]  # titles of what moves once it is acknowledged; nothing while production stands
     problem: TaskProblemView | None
+    instruction: InstructionView | None  # as the model has it, where it has one
 
 
 class TopicView(View):

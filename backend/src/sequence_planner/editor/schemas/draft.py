@@ -15,6 +15,7 @@ from sequence_planner.editor.draft import ChangeKind, Draft, DraftChange, Edit, 
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView
 from sequence_planner.mimic.views import MimicView
+from sequence_planner.model.files import is_binary
 from sequence_planner.model.source import ModelError
 from sequence_planner.model.yaml.editor import plain
 from sequence_planner.model.yaml.reader import read_text
@@ -283,7 +284,8 @@ class FileReader:
         known = self._read.get(key)
         if known is None:
             content, wrong = _content(path, text)
-            view = FileView(path=path, digest=key[1], text=text, content=content, wrong=wrong)
+            shown = "" if is_binary(path) else text  # nobody reads those as a text
+            view = FileView(path=path, digest=key[1], text=shown, content=content, wrong=wrong)
             known = self._read[key] = view.model_dump_json()
             self._characters += len(known)
         self._read.move_to_end(key)

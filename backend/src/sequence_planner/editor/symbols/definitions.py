@@ -324,6 +324,9 @@ class _Walk:
         self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
         self._title(entry(document, "title"), at.to("title"))
         self._title(entry(document, "human", "task"), at.to("human", "task"))
+        self._words(entry(document, "instruction", "text"), at.to("instruction", "text"))
+        for key in ("image", "video"):
+            self._title(entry(document, "instruction", key), at.to("instruction", key))
         if (acknowledgement := text_at(document, "human", "acknowledgement")) is not None:
             self._add(variable_of(resource, str(acknowledgement)), at.to("human", "acknowledgement"), acknowledgement)
         for path in _CONDITIONS:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import Query, Request, WebSocket
+from fastapi import Header, Path, Query, Request, Response, WebSocket
 
 from sequence_planner.analysis.report import AnalysisDocument
 from sequence_planner.auth.roles import Role, Scope
@@ -42,14 +42,18 @@ from sequence_planner.controller.views.station import (
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import AnswerModel, Controller, Identity, LiveView
-from sequence_planner.server.errors import ProblemFound
+from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
 from sequence_planner.server.services.figures import FiguresAnswer, figures_of
+from sequence_planner.server.services.instructions import INSTRUCTION_ANSWERS, instruction_answer, names_of
 from sequence_planner.server.stream.broadcast import FlowsFeed, NetworkFeed
-from sequence_planner.server.stream.endpoints import serve
+from sequence_planner.server.stream.endpoints import own_tasks, serve
 from sequence_planner.texts.message import message
 
 router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+
+
+instructions_router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ, watch=True)])
 
 
 class Answer(AnswerModel):
@@ -193,6 +197,22 @@ async def plan(view: LiveView) -> PlanAnswer:
 async def tasks(view: LiveView) -> TasksAnswer:
     """The tasks that wait for a person, by id."""
     return TasksAnswer(tick=view.tick, time=view.time, tasks=view.tasks)
+
+
+@instructions_router.get("/instructions/{name}", response_class=Response, responses=INSTRUCTION_ANSWERS | refused(404))
+async def read_instruction(
+    request: Request,
+    client: Controller,
+    name: Annotated[str, Path(max_length=200)],
+    if_none_match: Annotated[str | None, Header()] = None,
+) -> Response:
+    """A picture or a video of an instruction, by the name of its file; a watch reads those of its own tasks."""
+    watch = getattr(request.state, "watch", None)
+    if watch is not None and (
+        client.view is None or name not in names_of(own_tasks(client.view, watch.resource).values())
+    ):
+        raise ProblemFound(404, "no-such-instruction", message("refused.no-such-instruction.name", name=name))
+    return await instruction_answer(request.app.state.settings, name, if_none_match)
 
 
 @router.get("/topics")

@@ -420,7 +420,7 @@ class SecurityHeaders:
                 for name, value in self.headers.items():
                     headers[name] = value
                 if scope["path"].startswith(LIVE):
-                    headers["Cache-Control"] = "no-store"
+                    headers.setdefault("Cache-Control", "no-store")
             await send(message)
 
         await self.app(scope, receive, with_headers)

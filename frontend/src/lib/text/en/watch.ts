@@ -8,6 +8,8 @@ export const watch = {
 	done: 'Done',
 	/** In its place where nothing comes of it. */
 	record: 'Record as done',
+	/** What a picture shows, for who does not see it. */
+	shown: (title: string): string => `How it is done: ${title}`,
 	sent: 'Sent',
 	gone: 'This task is gone.',
 	movesNext: 'Moves next:',

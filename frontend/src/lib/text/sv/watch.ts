@@ -8,6 +8,7 @@ export const watch: Text['watch'] = {
 	operatorSays: 'En operatör säger till när det är klart.',
 	done: 'Klart',
 	record: 'Notera som klart',
+	shown: (title) => `Så görs det: ${title}`,
 	sent: 'Skickat',
 	gone: 'Uppgiften finns inte längre.',
 	movesNext: 'Rör sig sedan:',

@@ -1,0 +1,79 @@
+"""Pictures and videos of instructions, as they lie in the folder of the station."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Final
+
+from fastapi.concurrency import run_in_threadpool
+from starlette.responses import FileResponse, Response
+
+from sequence_planner.controller.views.station import TaskView
+from sequence_planner.model.files import LONGEST_FILE, is_binary, largest
+from sequence_planner.model.paths import INSTRUCTION, INSTRUCTIONS
+from sequence_planner.server.errors import ProblemFound
+from sequence_planner.server.settings import Settings
+from sequence_planner.texts.message import message
+
+_TYPES: Final = {
+    "svg": "image/svg+xml",
+    "png": "image/png",
+    "jpg": "image/jpeg",
+    "webp": "image/webp",
+    "mp4": "video/mp4",
+    "webm": "video/webm",
+}
+# Whoever opens one by itself sees it, and it runs nothing and loads nothing.
+_SANDBOX: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox; frame-ancestors 'none'"
+INSTRUCTION_ANSWERS: Final[dict[int | str, dict[str, Any]]] = {
+    200: {
+        "description": "The file, as its name says.",
+        "content": {each: {"schema": {"type": "string", "format": "binary"}} for each in _TYPES.values()},
+        "headers": {"ETag": {"description": "What it is now; see `If-None-Match`.", "schema": {"type": "string"}}},
+    },
+    206: {"description": "The part of it that was asked for."},
+}
+
+
+def names_of(tasks: Iterable[TaskView]) -> set[str]:
+    """The names of the files that the instructions of tasks show."""
+    paths = [path for task in tasks if (each := task.instruction) for path in (each.image, each.video) if path]
+    return {path.partition("#")[0].removeprefix(f"{INSTRUCTIONS}/") for path in paths}
+
+
+async def instruction_answer(settings: Settings, name: str, known: str | None) -> Response:
+    """Answer with the file of that name; with its tag alone where that is among those that are `known`.
+
+    Raises `ProblemFound` where there is none.
+    """
+    found = None if settings.model is None else await run_in_threadpool(_find, settings.model, name)
+    if found is None:
+        raise ProblemFound(404, "no-such-instruction", message("refused.no-such-instruction.name", name=name))
+    path, status = found
+    tag = f'"{status.st_mtime_ns:x}-{status.st_size:x}"'
+    headers = {
+        "ETag": tag,
+        "Cache-Control": "private, no-cache",
+        "Content-Security-Policy": _SANDBOX,
+        # What is compressed already, or is asked for in parts, is not compressed on its way.
+        **({"Content-Encoding": "identity"} if is_binary(f"{INSTRUCTIONS}/{name}") else {}),
+    }
+    if known is not None and tag in (each.strip().removeprefix("W/") for each in known.split(",")):
+        return Response(status_code=304, headers=headers)
+    return FileResponse(path, media_type=_TYPES[path.suffix[1:]], headers=headers, stat_result=status)
+
+
+def _find(model: Path, name: str) -> tuple[Path, os.stat_result] | None:
+    """The file of that name, of a size that is shown; None where there is none."""
+    if not INSTRUCTION.fullmatch(name):
+        return None
+    path = model / INSTRUCTIONS / name
+    most = largest(name) if is_binary(f"{INSTRUCTIONS}/{name}") else LONGEST_FILE
+    try:
+        status = path.stat()
+        return (path, status) if stat.S_ISREG(status.st_mode) and status.st_size <= most else None
+    except OSError:
+        return None
