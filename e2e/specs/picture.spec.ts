@@ -88,11 +88,38 @@ test.describe('the picture of a draft', () => {
 		// A stop of the robot by itself.
 		await thing(page, 'robot').focus();
 		await page.keyboard.press('Enter');
+		await expect(page.locator('[data-piece="stop:home"]')).toBeVisible();
 		await page.keyboard.press('PageDown');
 		await expect(page.locator('[data-piece="stop:home"]')).toBeFocused();
 		await page.keyboard.press('ArrowUp');
 		await expect.poll(text).toContain('home: {at: [146, 83], title: {en: Home, sv: Hemma}}');
 		await expect(thing(page, 'robot')).toHaveAccessibleName('Robot UR10: at 396, 12');
+		expect(complaints).toEqual([]);
+	});
+
+	test('is moved with a finger, once it is chosen', async ({ browse, drafting, complaints }) => {
+		const before = (await drafting.files()).get(FILE) ?? '';
+		const page = await browse(INA, at(FILE), { viewport: { width: 1024, height: 768 }, hasTouch: true });
+		await drawn(page, 'file');
+		const scene = thing(page, 'planning_scene');
+		const touch = await page.context().newCDPSession(page);
+		const swipe = async (dy: number): Promise<void> => {
+			await scene.scrollIntoViewIfNeeded();
+			const box = await scene.boundingBox();
+			const [x, y] = [(box?.x ?? 0) + (box?.width ?? 0) / 2, (box?.y ?? 0) + (box?.height ?? 0) / 2];
+			await touch.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y }] });
+			for (const part of [0.3, 0.6, 1]) await touch.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x, y: y + dy * part }] });
+			await touch.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+		};
+		// Who goes down the page with a finger moves nothing, and chooses nothing.
+		await swipe(-30);
+		await expect(scene).toHaveAttribute('aria-pressed', 'false');
+		await scene.tap();
+		await expect(scene).toHaveAttribute('aria-pressed', 'true');
+		expect((await drafting.files()).get(FILE)).toBe(before);
+		await swipe(-30);
+		await expect.poll(async () => (await drafting.files()).get(FILE)).not.toBe(before);
+		expect(others(before, (await drafting.files()).get(FILE) ?? '')[0]).toEqual(['at: [40, 242]']);
 		expect(complaints).toEqual([]);
 	});
 

@@ -34,7 +34,7 @@ def _symbol(symbol: MimicSymbol) -> Iterator[str]:
         "size": _numbers(box.width, box.height),
         "title": dict(symbol.title) or None,
         "resource": symbol.resource,
-        "level": symbol.level and symbol.level.variable,
+        "level": None if symbol.level is None else symbol.level.variable,
     }
     yield from (f"  {key}: {in_brackets(value)}" for key, value in values.items() if value is not None)
     if symbol.track is not None:
