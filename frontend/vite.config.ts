@@ -55,8 +55,9 @@ export default defineConfig({
 									priority: 1,
 									entriesAware: true
 								},
-								// The watch reads the stream, and asks the server who is there, as other pages do, and would have what these read with it.
-								{ name: 'stream', test: /lib\/(stream\/|account\/asking)/, priority: 1, entriesAware: true },
+								// The watch reads the stream, asks the server who is there, and knows where it is framed, as other pages do, and would
+								// have what these read with it.
+								{ name: 'stream', test: /lib\/(stream\/|account\/asking|wall\/framed)/, priority: 1, entriesAware: true },
 								// So is what the names of variables stand on, which all but the watch's pages read.
 								{ name: 'names', test: /lib\/wording\/(names|values)/, priority: 1, entriesAware: true },
 								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 1_000 }
