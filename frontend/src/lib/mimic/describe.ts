@@ -4,8 +4,7 @@ import type { Doing } from '#lib/resource/doing.ts';
 import { nextSteps } from '#lib/plan/status.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told } from '#lib/text/message.ts';
-import { say } from '#lib/text/text.svelte.ts';
-import { inLanguage } from '#lib/text/words.ts';
+import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { plain, valueText, variableName } from '#lib/wording/values.ts';
 import { holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 

@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest';
 import type { MimicText, MimicTrack, StationView, Variable } from '#lib/contract.ts';
 import { alarm, estimate } from '#lib/testing/view.ts';
-import { inLanguage } from '#lib/text/words.ts';
+import { inLanguage } from '#lib/text/text.svelte.ts';
 import { alarmsOf, holds, levelOf, lookOf, saidOf, sentTo, whereabouts, worst } from './live.ts';
 
 const variables = (values: Record<string, Variable['value']>): StationView['variables'] =>

@@ -1,7 +1,7 @@
 /** What the picture shows of the station as it is: pure functions of the two. */
 import type { Alarm, MimicPart, MimicSymbol, MimicTest, MimicText, MimicTrack, Priority, StationView, Value } from '#lib/contract.ts';
 import { NUMBER, isOver, isTold, type Keyed } from '#lib/alarm/priority.ts';
-import { inLanguage } from '#lib/text/words.ts';
+import { inLanguage } from '#lib/text/text.svelte.ts';
 import { valueText } from '#lib/wording/values.ts';
 
 export type Variables = StationView['variables'];

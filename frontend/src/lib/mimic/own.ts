@@ -1,6 +1,6 @@
 /** Drawings of a station's own: what of a drawing is painted, and how an element looks by what it follows. */
 import type { MimicBound, MimicDrawing } from '#lib/contract.ts';
-import { inLanguage } from '#lib/text/words.ts';
+import { inLanguage } from '#lib/text/text.svelte.ts';
 import { holds, withValues, type Variables } from './live.ts';
 
 export interface Painted {

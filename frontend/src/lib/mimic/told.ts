@@ -1,8 +1,7 @@
 /** All that the picture tells of its things, once for the drawing, the rows and the table. */
 import type { Mimic, MimicSymbol, Priority, StationView } from '#lib/contract.ts';
 import { doingOf } from '#lib/resource/doing.ts';
-import { say } from '#lib/text/text.svelte.ts';
-import { inLanguage } from '#lib/text/words.ts';
+import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { variableName } from '#lib/wording/values.ts';
 import { nameOf, nowOf, partValue, type Now } from './describe.ts';
 import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';

@@ -43,6 +43,11 @@ export function language(): Language {
 	return chosen;
 }
 
+/** A text of the model in a language: that one, else English, else what there is. */
+export function inLanguage(text: Readonly<Record<string, string>>, language: string): string {
+	return text[language] ?? text['en'] ?? text[''] ?? Object.values(text)[0] ?? '';
+}
+
 /** Shows the pages in `wanted`, which is read from the server where it is not English. */
 async function show(wanted: Language): Promise<void> {
 	const number = ++asked;
