@@ -64,7 +64,7 @@ test('the picture is one stop of the Tab key, and shows a thing with Enter @them
 	await operate.keyboard.press('Enter');
 	const dialog = operate.getByRole('dialog', { name: 'Robot UR10' });
 	await expect(dialog.getByRole('link', { name: 'Move to home' })).toBeVisible();
-	await expect(dialog).toContainText('target pose');
+	await expect(dialog).toContainText('Target of the robot');
 	expect(await findings(operate)).toEqual([]);
 	await operate.keyboard.press('Escape');
 	await expect(dialog).toBeHidden();

@@ -175,10 +175,10 @@ class LivePlan:
         if plan.answer is None or plan.reason not in (why_none(plan.answer, blind) for blind in (False, True)):
             return message("no-plan.other", reason=reason_text(plan.reason))
         if plan.reason == why_none(plan.answer, blind=True):
-            return message("no-plan.unknown", reason=reason_text(plan.reason))
+            return message("no-plan.unknown")
         if plan.answer.verdict is Verdict.NONE_AT_ALL:
-            return message("no-plan.none", reason=reason_text(plan.reason))
-        return message("no-plan.found", reason=reason_text(plan.reason))
+            return message("no-plan.none")
+        return message("no-plan.found")
 
     def _needed(self) -> Message:
         """Say what to do where there is no plan: what is out of service may be all that is missing."""
