@@ -20,7 +20,7 @@ test('a device falls silent: its alarm is acknowledged, shelved, taken back and 
 
 	await station.fault('robot silent');
 	await stands('unacknowledged');
-	await expect(alarm(other)).toContainText('Nothing is heard on 2 topics');
+	await expect(alarm(other)).toContainText('Nothing heard from Robot UR10');
 	await expect(alarm(other)).toContainText(/” waits?\b|without it/);
 	await choose(other);
 	await expect(detail(other)).toContainText('Check that the node of Robot UR10 runs');

@@ -287,7 +287,7 @@ const FAULTS: readonly Fault[] = [
 			await turnsSlowly(at);
 			await at.station.fault('nutrunner offline');
 		},
-		alarm: /No message any more on \/smart_nutrunner\/state/,
+		alarm: /Nothing heard from Smart nutrunner/,
 		hands: clear,
 		asks: []
 	},
@@ -321,7 +321,7 @@ const FAULTS: readonly Fault[] = [
 			await at.station.fault('robot restarted for 15 s');
 			await at.station.fault('clear nutrunner'); // the bolt is tight before the robot is there again
 		},
-		alarm: /Nothing is heard on 2 topics/,
+		alarm: /Nothing heard from Robot UR10/,
 		hands: () => ({ mend: () => Promise.resolve(), truth: 'tightened' }), // it comes back by itself
 		asks: []
 	}

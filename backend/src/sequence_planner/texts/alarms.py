@@ -18,11 +18,13 @@ ALARMS: Final[dict[str, str]] = {
     # Devices.
     **_kind(
         "silent",
-        "{silence}: the values of {resource} are unknown",
+        "{silence}",
         "{silence_past}",
         "{consequence}",
         "Check that the node of {resource} runs and is reachable.",
     ),
+    "silent.nothing": "Nothing heard from {resource}",
+    "silent.nothing-past": "For some time nothing was heard from {resource}",
     "silent.many": "Nothing is heard on {count} topics of {resource}",
     "silent.many-past": "Nothing was heard on {count} topics of {resource}",
     "silent.no-message-yet": "No message yet on {topic}{why}",

@@ -37,20 +37,20 @@ class AlarmKind:
         about: frozenset[str] = frozenset(),
         waits: bool = False,
     ) -> Cause:
-        """A cause of such an alarm. Several `parts` are told one by one; a single one is what the text says."""
-        several, past = tuple(parts), tuple(past_parts)
+        """A cause of such an alarm. `parts` are told one by one; a single one that the text tells is not."""
+        text, past = self._said("text", arguments), self._said("past", arguments)
         return Cause(
             self.key(subject),
             self,
             subject,
             self.priority,
-            self._said("text", arguments),
+            text,
             self._said("consequence", arguments),
             self._said("action", arguments),
-            self._said("past", arguments),
+            past,
             follows=follows,
-            parts=several if len(several) > 1 else (),
-            past_parts=past if len(past) > 1 else (),
+            parts=_untold(text, parts),
+            past_parts=_untold(past, past_parts),
             resources=tuple(resources),
             topics=tuple(topics),
             of=of,
@@ -92,6 +92,12 @@ class Cause:
 
 
 KINDS: Final[dict[str, AlarmKind]] = {}
+
+
+def _untold(text: Message, parts: Iterable[Message]) -> tuple[Message, ...]:
+    """The parts of what a text says, but for a single one that it tells already."""
+    every = tuple(parts)
+    return () if len(every) == 1 and str(every[0]) in str(text) else every
 
 
 def _kind(name: str, priority: Priority, group: AlarmGroup, subjects: int = 0) -> AlarmKind:

@@ -173,12 +173,21 @@ class DeviceLinks:
         past = [_silence_of(name, feed, name in self._feeds.topics, over=True) for name, feed in feeds.items()]
         texts = [_silence_of(name, feed, name in self._feeds.topics) for name, feed in feeds.items()]
         explained = [NETWORK.key(resource)] if feeds.keys() <= self._network.troubles.keys() else []
-        title, one = self._execution.automaton.resources[resource], len(texts) == 1
+        title = self._execution.automaton.resources[resource]
+        expected = {name for name in self._feeds.expected if self._feeds.resource_of(name) == resource}
+        if feeds.keys() >= expected:
+            silence = message("silent.nothing", resource=title)
+            silence_past = message("silent.nothing-past", resource=title)
+        elif len(texts) == 1:
+            silence, silence_past = texts[0], past[0]
+        else:
+            silence = message("silent.many", count=len(feeds), resource=title)
+            silence_past = message("silent.many-past", count=len(feeds), resource=title)
         return SILENT.cause(
             resource,
             {
-                "silence": texts[0] if one else message("silent.many", count=len(feeds), resource=title),
-                "silence_past": past[0] if one else message("silent.many-past", count=len(feeds), resource=title),
+                "silence": silence,
+                "silence_past": silence_past,
                 "resource": title,
                 "consequence": consequence,
             },
