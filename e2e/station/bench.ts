@@ -8,7 +8,7 @@
 import { Station, type Options } from './station.ts';
 
 /** How many are kept. */
-const MOST = 2;
+const MOST = 3;
 
 export class Bench {
 	readonly #kept = new Map<string, Station>();
