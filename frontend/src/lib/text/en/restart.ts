@@ -34,7 +34,7 @@ export const restart = {
 		answer: 'Look at the station, and say what is so.',
 		enter: 'Enter restart mode.',
 		start: 'Start production.',
-		physical: 'Do what the first way back asks of a person.',
+		physical: 'Do what the first way back asks of you.',
 		take: 'Take a way back.',
 		check: 'Check the product: what is left to propose only says what is true of it.',
 		leave: 'Ready to go on: leave restart mode.',

@@ -32,7 +32,7 @@ export const restart: Text['restart'] = {
 		answer: 'Titta på stationen och säg vad som gäller.',
 		enter: 'Gå till omstartsläge.',
 		start: 'Starta produktionen.',
-		physical: 'Gör det som den första vägen begär av en människa.',
+		physical: 'Gör det som den första vägen begär av dig.',
 		take: 'Välj en väg tillbaka.',
 		check: 'Kontrollera produkten: det som återstår att föreslå säger bara vad som gäller för den.',
 		leave: 'Lämna omstartsläget: stationen kan fortsätta som den är.',
