@@ -110,6 +110,12 @@ export function told(record: Tellable, names: Names): Told {
 	}
 }
 
+/** What happened and to what. Of several things at once each is named before what it was done to. */
+export function titleOf({ what, on }: Told): string {
+	if (on === '') return what;
+	return on.startsWith(`${what.split(', ')[0]}: `) ? on : `${what}: ${on}`;
+}
+
 /** What changed that nothing commanded, or by which ability the station then went on. */
 function byHand(what: Content, names: Names): Partial<Told> & { what: string } {
 	const words = say().history.words;

@@ -44,6 +44,12 @@ describe('an alarm', () => {
 		expect(wordsOf(told, SV).text).toBe('It is hot');
 	});
 
+	test('of another version of the program, which says other things of it, is told as it was written', () => {
+		const other = { id: 'silent.action', arguments: { device: 'Robot' } };
+		const told = alarm({ text: 'It is hot', messages: { text: other, consequence: null, action: null, parts: [] } });
+		expect(wordsOf(told, SV).text).toBe('It is hot');
+	});
+
 	test('of a record of before, which has but its texts, reads as it did', () => {
 		const { messages: _, ...before } = alarm({ text: 'It is hot', parts: ['one'] });
 		expect(wordsOf(before, SV)).toMatchObject({ text: 'It is hot', parts: ['one'] });

@@ -44,13 +44,18 @@ export function wordsOf(alarm: Pick<Alarm, 'text' | 'consequence' | 'action' | '
 	};
 }
 
-/** A message in words; null where the catalogue lacks one of its texts. */
+/** A message in words; null where the catalogue lacks one of its texts, or has one of another version. */
 export function tell({ id, arguments: given }: Message, catalogue: Catalogue): string | null {
 	const text = catalogue.texts[id];
 	if (text === undefined) return null;
 	let whole = true;
 	const said = text.replace(PLACE, (_, name: string, one?: string, several?: string) => {
-		const argument = given?.[name] ?? '';
+		const argument = given?.[name];
+		// A text of another version: the page knows its places and not what stands in them.
+		if (argument === undefined) {
+			whole = false;
+			return '';
+		}
 		if (one !== undefined && several !== undefined) return isOne(argument) ? one : several;
 		const word = worded(argument, catalogue);
 		whole &&= word !== null;

@@ -19,8 +19,8 @@ export const alarms = {
 	until: (when: string): string => `until ${when}`,
 	causeOver: 'its cause is over',
 	parts: (n: number): string => `+${n} from this cause`,
-	none: 'None',
-	noneWhenHeard: 'None when last heard',
+	none: 'No alarms',
+	noneWhenHeard: 'No alarms when last heard',
 	noneOfThese: 'None of these',
 	aside: (n: number): string => `${n} shelved or out of service`,
 	means: 'What it means',
@@ -35,7 +35,7 @@ export const alarms = {
 		task: (title: string): string => `For you: ${title}`
 	},
 	which: 'Which alarms',
-	emptyAbout: 'An alarm would stand here as soon as something is not as it should be, with what to do about it.',
+	emptyAbout: 'As soon as something is wrong, it stands here, with what to do about it.',
 	sections: { fresh: 'Not acknowledged', seen: 'Acknowledged', over: 'Over, today' },
 	detail: {
 		label: 'The alarm that is chosen',
@@ -104,7 +104,7 @@ export const alarms = {
 		floodBegins: 'A flood begins at 10 in 10 min.',
 		atLeast: (n: number): string => `at least ${n}`,
 		flood: 'More than 10 in 10 minutes is a flood: more than one person can follow.',
-		frequent: 'Most frequent in the last hour',
+		frequent: 'Most frequent',
 		times: (n: number): string => (n === 1 ? 'once' : `${n} times`),
 		notKnown: 'not known'
 	},

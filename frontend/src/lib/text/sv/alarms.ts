@@ -20,8 +20,8 @@ export const alarms: Text['alarms'] = {
 	until: (when) => `till ${when}`,
 	causeOver: 'orsaken är över',
 	parts: (n) => `${n} till av samma orsak`,
-	none: 'Inga',
-	noneWhenHeard: 'Inga när stationen senast hördes',
+	none: 'Inga larm',
+	noneWhenHeard: 'Inga larm när stationen senast hördes',
 	noneOfThese: 'Inga av dessa',
 	aside: (n) => `${n} åt sidan eller ur drift`,
 	means: 'Vad det innebär',
@@ -36,7 +36,7 @@ export const alarms: Text['alarms'] = {
 		task: (title) => `Till dig: ${title}`
 	},
 	which: 'Vilka larm',
-	emptyAbout: 'Ett larm skulle stå här så snart något inte är som det ska, med vad som ska göras åt det.',
+	emptyAbout: 'Så snart något är fel står det här, med vad som ska göras åt det.',
 	sections: { fresh: 'Inte kvitterade', seen: 'Kvitterade', over: 'Över, i dag' },
 	detail: {
 		label: 'Det larm som är valt',
@@ -104,7 +104,7 @@ export const alarms: Text['alarms'] = {
 		floodBegins: 'En larmskur börjar vid 10 på 10 min.',
 		atLeast: (n) => `minst ${n}`,
 		flood: 'Fler än 10 på 10 minuter är en larmflod: fler än en människa hinner följa.',
-		frequent: 'Vanligast den senaste timmen',
+		frequent: 'Vanligast',
 		times: (n) => (n === 1 ? 'en gång' : `${n} gånger`),
 		notKnown: 'inte känt'
 	},
