@@ -50,6 +50,7 @@ export const operate = {
 		ends: (seconds: number): string => `expected to be done in about ${seconds} s`,
 		answered: (time: string): string => `answered in ${time}`,
 		answeredBy: (time: string, engine: string): string => `answered in ${time} by ${engine}`,
+		whyNone: 'Why there is no plan',
 		noneWhile: (several: boolean): string =>
 			`No plan as long as ${several ? 'all of these stay as they are' : 'this stays as it is'}:`,
 		perhapsNeedless: 'Some of it may be needless: there was no time to find out.',

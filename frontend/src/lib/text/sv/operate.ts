@@ -51,6 +51,7 @@ export const operate: Text['operate'] = {
 		ends: (seconds) => `väntas vara klar om cirka ${seconds} s`,
 		answered: (time) => `svar på ${time}`,
 		answeredBy: (time, engine) => `svar på ${time} av ${engine}`,
+		whyNone: 'Varför det inte finns någon plan',
 		noneWhile: (several) => `Ingen plan så länge ${several ? 'allt detta förblir' : 'detta förblir'} som det är:`,
 		perhapsNeedless: 'En del av det kan vara onödigt: det fanns inte tid att ta reda på det.',
 		thereWouldBe: (several) => `Det skulle finnas en plan igen med ${several ? 'något av detta' : 'detta'}:`
