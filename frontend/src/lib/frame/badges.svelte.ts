@@ -1,5 +1,6 @@
 /** What is said beside the name of a page: how many alarms stand, and that a restart needs somebody. */
 import { byUrgency, isOver } from '#lib/alarm/priority.ts';
+import type { Priority } from '#lib/contract.ts';
 import type { Page } from '#lib/account/pages.ts';
 import { wantedFor } from '#lib/restart/shown.ts';
 import { useStation, type Station } from '#lib/stream/station.svelte.ts';
@@ -9,7 +10,8 @@ export interface Badge {
 	readonly text: string;
 	/** In words. */
 	readonly means: string;
-	readonly high: boolean;
+	/** Of the most urgent alarm; null where none stands. */
+	readonly priority: Priority | null;
 }
 
 class Badges {
@@ -24,11 +26,11 @@ class Badges {
 	/** What is said beside the name of `page`; null for nothing, and while nothing is heard. */
 	of(page: Page['title']): Badge | null {
 		if (!this.#station.live) return null;
+		const priority = this.#alarms[0]?.[1].priority ?? null;
 		if (page === 'alarms' && this.#alarms.length > 0) {
-			const high = this.#alarms[0]?.[1].priority === 'high';
-			return { text: String(this.#alarms.length), means: say().frame.alarms(this.#alarms.length), high };
+			return { text: String(this.#alarms.length), means: say().frame.alarms(this.#alarms.length), priority };
 		}
-		return page === 'restart' && this.#wanted ? { text: '!', means: say().restart.notice.wanted, high: false } : null;
+		return page === 'restart' && this.#wanted ? { text: '!', means: say().restart.notice.wanted, priority } : null;
 	}
 }
 
