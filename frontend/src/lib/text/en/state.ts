@@ -47,7 +47,7 @@ export const state = {
 	before: (span: string): string => `${span} before`,
 	never: 'never',
 	writers: {
-		'the model': 'the model, as it began',
+		'the model': 'the model, at the start',
 		'the journal': 'not known any more',
 		job: (id: string): string => `job ${id}`
 	},
