@@ -3,8 +3,8 @@ import { count } from '../count.ts';
 /** Orders: what is asked of the station, where that stands, and what was made. */
 export const orders = {
 	summary: (made: string, left: number, last: string | null): string => {
-		const open = left === 0 ? 'nothing is to be made' : `${left} to be made`;
-		return `${made} made today, ${open}${last === null ? '' : `; the last is expected at ${last}`}`;
+		const open = left === 0 ? 'no order is open' : `${left} to be made`;
+		return `${made} made by order today, ${open}${last === null ? '' : `; the last is expected at ${last}`}`;
 	},
 	work: 'How the station works',
 	ways: {

@@ -3,8 +3,8 @@ import type { Text } from '../text.svelte.ts';
 
 export const orders: Text['orders'] = {
 	summary: (made, left, last) => {
-		const open = left === 0 ? 'inget ska tillverkas' : `${left} ska tillverkas`;
-		return `${made} tillverkade i dag, ${open}${last === null ? '' : `; den sista väntas vara klar ${last}`}`;
+		const open = left === 0 ? 'ingen order är öppen' : `${left} ska tillverkas`;
+		return `${made} tillverkade på order i dag, ${open}${last === null ? '' : `; den sista väntas vara klar ${last}`}`;
 	},
 	work: 'Hur stationen arbetar',
 	ways: {
