@@ -19,7 +19,7 @@ export type Wanted =
 	| 'paused';
 
 /** Whether nothing is planned although something is to be done. */
-export function lacksPlan(view: StationView): boolean {
+export function lacksPlan(view: Pick<StationView, 'plan' | 'operations'>): boolean {
 	return view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active);
 }
 
