@@ -89,6 +89,41 @@ test('a problem told on the watch is an alarm until it is solved, and the next t
 	await expect.poll(heard).toEqual([1, 2]);
 });
 
+test('a rectangular watch uses its corners, and who wears it can say which screen it has', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	const page = watch.locator('html');
+	await expect(page).toHaveAttribute('data-face', 'round');
+	await watch.getByRole('button', { name: 'For a square screen' }).tap();
+	await expect(page).toHaveAttribute('data-face', 'square');
+	await watch.reload();
+	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
+	await expect(page).toHaveAttribute('data-face', 'square');
+	for (const height of [192, 228]) {
+		await watch.setViewportSize({ width: 192, height });
+		await watch.evaluate(() => scrollTo(0, 0));
+		// What is pressed goes from edge to edge: above from the top, below to where the screen ends.
+		const [above, below] = [await watch.locator('button[data-problem]').boundingBox(), await done(watch).boundingBox()];
+		expect(above).toMatchObject({ x: 0, y: 0, width: 192 });
+		expect(below).toMatchObject({ x: 0, width: 192 });
+		expect((below?.y ?? 0) + (below?.height ?? 0)).toBeCloseTo(height, 0);
+		expect(await overflow(watch)).toBe(0);
+		expect(await smallTargets(watch)).toEqual([]);
+		expect(await findings(watch)).toEqual([]);
+		await picture(watch, `watch-square-${height}`);
+	}
+	await watch.getByRole('button', { name: 'For a round screen' }).tap();
+	await watch.setViewportSize({ width: 192, height: 192 });
+	await expect(page).toHaveAttribute('data-face', 'round');
+	await watch.evaluate(() => scrollTo(0, 0));
+	expect(await outsideCircle(watch)).toEqual([]);
+	// One that is longer one way than the other is no round one: nobody has to say so.
+	await watch.evaluate(() => localStorage.removeItem('watch-shape'));
+	await watch.reload();
+	await expect(page).toHaveAttribute('data-face', 'round');
+	await watch.setViewportSize({ width: 192, height: 228 });
+	await expect(page).toHaveAttribute('data-face', 'square');
+});
+
 test('the watch can be installed, opens without the server, and what it sends late completes no other task', async ({
 	browse,
 	operate

@@ -53,6 +53,8 @@ export const watch = {
 	},
 	soundOn: 'Sound on',
 	soundOff: 'Sound off',
+	/** Which screen this watch has, for who wears it to say. */
+	shapes: { round: 'For a round screen', square: 'For a square screen' },
 	signIn: 'Sign in',
 	pairing: {
 		title: 'Pair this watch',

@@ -46,6 +46,7 @@ export const watch: Text['watch'] = {
 	},
 	soundOn: 'Ljud på',
 	soundOff: 'Ljud av',
+	shapes: { round: 'För rund skärm', square: 'För fyrkantig skärm' },
 	signIn: 'Logga in',
 	pairing: {
 		title: 'Para ihop klockan',
