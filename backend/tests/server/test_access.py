@@ -169,6 +169,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/capabilities": ("viewer", "orders-read"),
     "GET /api/v1/schedule": ("viewer", "orders-read"),
     "GET /api/v1/figures": ("viewer", "read"),
+    "GET /api/v1/instructions/{name}": ("viewer", "read"),
     "GET /api/v1/wall": ("viewer", "read"),
     "GET /api/v1/webhooks": ("administrator", "webhooks"),
     "POST /api/v1/webhooks": ("administrator", "webhooks"),
@@ -197,6 +198,7 @@ FOR_WATCHES = {
     "POST /api/v1/tasks/{task}/problem/solved",
     "WS /api/v1/wearables/stream",
     "GET /api/v1/wearables/self",
+    "GET /api/v1/instructions/{name}",
 }
 FOR_WAITING_WATCHES = {"GET /api/v1/wearables/self"}
 UNREADY = {"DELETE /api/v1/session", "PUT /api/v1/session/password"}
