@@ -53,8 +53,6 @@ def test_a_watch_is_offered_paired_confirmed_and_shown_its_tasks(client: httpx.C
         "standing": "working",
         "silent": [],
         "failing": [],
-        "alarm": None,
-        "next": None,
         "tasks": {OWN: station().tasks[OWN].model_dump(mode="json")},
     }
 

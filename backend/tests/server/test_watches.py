@@ -11,18 +11,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
-from sequence_planner.controller.views.station import (
-    AlarmGroup,
-    AlarmMessages,
-    AlarmState,
-    PlanStepView,
-    Priority,
-    StationStanding,
-    StepStatus,
-)
 from sequence_planner.core.actor import ActorKind
-from sequence_planner.texts.message import as_it_was
-from support.example_view import step
 from support.server import Controller, Server
 from support.waiting import patience
 
@@ -167,73 +156,6 @@ def test_a_watch_reads_nothing_but_its_own_tasks(client: httpx.Client, device: D
     foreign = station().tasks[FOREIGN]
     for hidden in (FOREIGN, foreign.title, foreign.text, "inspector", "Inspector", "robot.pose", "/robot/state"):
         assert not any(hidden == text or (len(hidden) > 3 and hidden in text) for text in told), hidden
-
-
-def test_a_watch_names_the_most_urgent_alarm_while_help_is_needed_and_no_problem_of_somebody_else(
-    client: httpx.Client, device: Device, controller: Controller
-) -> None:
-    active(client, device)
-    slow = station().alarms["slow"]
-    change = {
-        "text": "The robot stands still",
-        "messages": AlarmMessages(as_it_was("The robot stands still", ""), None, None, ()),
-    }
-    silent = slow.model_copy(update=change | {"priority": Priority.MEDIUM})
-    foreign = slow.model_copy(
-        update={"text": "Bo has a problem", "priority": Priority.HIGH, "group": AlarmGroup.PEOPLE}
-    )
-    topic = foreign.model_copy(update={"text": "Nothing on /robot/state", "group": AlarmGroup.COMMUNICATION})
-    over = slow.model_copy(update={"priority": Priority.HIGH, "state": AlarmState.RETURNED, "ended": 999.0})
-    shelved = silent.model_copy(update={"state": AlarmState.SHELVED, "since": 999.0})
-    every = {
-        "problem:8": foreign,
-        "topic": topic,
-        "over": over,
-        "slow": slow,
-        "shelved": shelved,
-        "still:robot": silent,
-    }
-    with device.listen() as stream:
-
-        def named(**changes: object) -> object:
-            controller.show(station(time=next(times), **changes))
-            while (message := hear(stream))["time"] != controller.view.time:
-                pass
-            return message["alarm"]
-
-        times = itertools.count(2000.0)
-        said = {"text": "The robot stands still", "message": as_it_was("The robot stands still", "").sent()}
-        assert named(alarms=every) is None, "nobody is needed"
-        assert named(alarms=every, silent=["Robot"]) is None, "which device it is says enough"
-        assert named(alarms=every, failing=["Robot"]) == said
-        assert named(alarms=every, standing=StationStanding.STOPPED) == said
-        assert named(alarms={"problem:8": foreign, "over": over, "slow": slow}, failing=["Robot"]) is None
-
-
-def test_a_watch_is_told_what_its_own_person_does_next_while_the_station_goes_on(
-    client: httpx.Client, device: Device, controller: Controller
-) -> None:
-    active(client, device)
-    plan = station().plan
-    steps = [
-        *plan.steps,
-        step("look", "inspector", StepStatus.NEXT, 3),
-        step("place", "operator", StepStatus.PLANNED, 4).model_copy(update={"expected_start": 1008.0}),
-        step("place", "operator", StepStatus.PLANNED, 6),
-    ]
-    with device.listen() as stream:
-
-        def told(standing: StationStanding, steps: list[PlanStepView]) -> object:
-            controller.show(station(time=next(times), standing=standing, plan=plan.model_copy(update={"steps": steps})))
-            while (message := hear(stream))["time"] != controller.view.time:
-                pass
-            return message["next"]
-
-        times = itertools.count(2000.0)
-        assert told(StationStanding.WORKING, steps) == {"title": "place", "at": 1008.0}
-        assert told(StationStanding.WORKING, steps[:3]) is None, "what somebody else does"
-        for standing in (StationStanding.HELD, StationStanding.PAUSED, StationStanding.STOPPED):
-            assert told(standing, steps) is None
 
 
 def test_the_tasks_are_told_when_they_change_and_the_time_twice_a_second(

@@ -33,7 +33,7 @@ from sequence_planner.server.http.credentials import keep_watch
 from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
 from sequence_planner.server.stream.messages import Silence, StreamError, StreamPart
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import message
 
 # What is said of watches over REST, and on the WebSocket `/api/v1/wearables/stream`.
 #
@@ -120,26 +120,11 @@ class WatchSelfAnswer(AnswerModel):
     state: WatchState
 
 
-class WatchAlarm(AnswerModel):
-    """What is wrong, where help is needed: in English, and as a message for other languages."""
-
-    text: str
-    message: Message
-
-
-class WatchNext(AnswerModel):
-    """What the plan has for the watch's own resource next, and `at` about which time, where that is known."""
-
-    title: str
-    at: float | None
-
-
 class WatchSnapshot(StreamPart):
     """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
 
     `standing` says whether anything starts by itself, `silent` which devices are not heard, `failing` which of
-    the others do not do what they should. Where any of these means that help is needed, `alarm` is the most urgent one.
-    `next` is null where nothing is planned, or nothing starts by itself.
+    the others do not do what they should.
     """
 
     kind: Literal["watch"]
@@ -149,8 +134,6 @@ class WatchSnapshot(StreamPart):
     standing: StationStanding
     silent: list[str]
     failing: list[str]
-    alarm: WatchAlarm | None
-    next: WatchNext | None
     tasks: dict[str, TaskView]
 
 

@@ -18,19 +18,11 @@ from starlette.types import Message
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.auth.watches import Watch
 from sequence_planner.controller.ipc import ControllerClient
-from sequence_planner.controller.views.station import (
-    AlarmGroup,
-    AlarmState,
-    Priority,
-    StationStanding,
-    StationView,
-    StepStatus,
-    TaskView,
-)
+from sequence_planner.controller.views.station import StationView, TaskView
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.data_models import complained
 from sequence_planner.core.storage_error import StorageError
-from sequence_planner.server.api.watches import WatchAlarm, WatchNext, WatchSnapshot
+from sequence_planner.server.api.watches import WatchSnapshot
 from sequence_planner.server.auth import Access, allowed, watch_only
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
@@ -182,41 +174,6 @@ def own_tasks(view: StationView, resource: str) -> dict[str, TaskView]:
     return {name: task for name, task in view.tasks.items() if task.resource == resource}
 
 
-_TOLD = (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED)  # those that are not over, nor set aside
-_URGENT = (Priority.HIGH, Priority.MEDIUM)
-_NOT_TOLD = (AlarmGroup.PEOPLE, AlarmGroup.COMMUNICATION)
-_TO_COME = (StepStatus.NEXT, StepStatus.PLANNED)
-
-
-def named_alarm(view: StationView) -> WatchAlarm | None:
-    """The alarm that every watch names while help is needed: the most urgent one, as the pages order them.
-
-    What people have a problem with is between them and the operators; of what is not heard the watch is told which
-    devices that are, and no topics.
-    """
-    if not (view.failing or view.standing is StationStanding.STOPPED):
-        return None
-    told = [
-        alarm
-        for alarm in view.alarms.values()
-        if alarm.state in _TOLD and alarm.priority in _URGENT and alarm.group not in _NOT_TOLD
-    ]
-    if not told:
-        return None
-    first = min(told, key=lambda each: (_URGENT.index(each.priority), _TOLD.index(each.state), -each.since))
-    return WatchAlarm(text=first.text, message=first.messages.text)
-
-
-def next_task(view: StationView, resource: str) -> WatchNext | None:
-    """What the plan asks next of a person at `resource`, and about when."""
-    if view.standing not in (StationStanding.WORKING, StationStanding.SILENT):
-        return None
-    for step in view.plan.steps:
-        if step.resource == resource and step.status in _TO_COME and view.abilities[step.ability].human:
-            return WatchNext(title=step.title, at=step.expected_start)
-    return None
-
-
 class WatchShow:
     """The tasks of each resource, told when they change and each second, and when the controller falls silent."""
 
@@ -254,8 +211,6 @@ class WatchShow:
                 view.silent,
                 view.failing,
                 view.station.title,
-                named_alarm(view),
-                None if (to_come := next_task(view, resource)) is None else to_come.title,
                 own_tasks(view, resource),
             )
             told, due = self._told.get(resource, (None, now))
@@ -275,8 +230,6 @@ class WatchShow:
             standing=view.standing,
             silent=view.silent,
             failing=view.failing,
-            alarm=named_alarm(view),
-            next=next_task(view, resource),
             tasks=own_tasks(view, resource),
         ).model_dump_json()
 

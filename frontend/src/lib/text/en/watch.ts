@@ -22,9 +22,6 @@ export const watch = {
 	recorded: 'Done is recorded.',
 	/** With nothing to do. */
 	comes: 'Your next task comes here.',
-	/** What the plan has for somebody next, and in how many seconds. */
-	next: (title: string, seconds: number | null): string =>
-		seconds === null ? `Next: ${title}` : seconds < 1 ? `${title} soon` : `${title} in about ${seconds < 60 ? `${seconds} s` : `${Math.round(seconds / 60)} min`}`,
 	/** Beside what is wrong. */
 	goThere: 'Help is needed at the station.',
 	/** Why nothing starts by itself. */

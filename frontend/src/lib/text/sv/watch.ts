@@ -18,8 +18,6 @@ export const watch: Text['watch'] = {
 	still: 'Inget rör sig än.',
 	recorded: 'Klart antecknas.',
 	comes: 'Din nästa uppgift kommer hit.',
-	next: (title, seconds) =>
-		seconds === null ? `Sedan: ${title}` : seconds < 1 ? `${title} strax` : `${title} om ungefär ${seconds < 60 ? `${seconds} s` : `${Math.round(seconds / 60)} min`}`,
 	goThere: 'Hjälp behövs vid stationen.',
 	standing: {
 		preparing: 'Förbereder',
