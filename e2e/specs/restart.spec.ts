@@ -232,7 +232,7 @@ const FAULTS: readonly Fault[] = [
 	{
 		name: 'a device is gone',
 		strike: ({ station }) => station.fault('robot offline'),
-		alarm: /Nothing is heard/,
+		alarm: /Nothing heard from/,
 		hands: clear,
 		asks: ['physical']
 	},
