@@ -75,7 +75,7 @@ test('no drawing runs or loads anything; what can be drawn of it is, and what ca
 	expect(strayed).toEqual([]);
 });
 
-test('names of 80 characters and twelve alarms have room on the pages of an operator @theme @long', async ({ page }) => {
+test('names of 80 characters and twelve alarms have room on the pages of an operator @theme', async ({ page }) => {
 	for (const path of ['/', '/alarms', WATCH]) {
 		await go(page, path);
 		for (const [width, height] of [SCREENS[1], SCREENS[4]]) {

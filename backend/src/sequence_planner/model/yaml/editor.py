@@ -676,9 +676,8 @@ def same(one: object, other: object) -> bool:
         return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, str) and isinstance(other, str):
         return str(one) == str(other)
-    if all(isinstance(each, int | float) and not isinstance(each, bool) for each in (one, other)):
-        return one == other or (one != one and other != other)  # noqa: PLR0124
-    return type(one) is type(other) and (one == other or (one != one and other != other))  # noqa: PLR0124
+    numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in (one, other))
+    return (numbers or type(one) is type(other)) and (one == other or (one != one and other != other))  # noqa: PLR0124
 
 
 def _content(text: str) -> Content:
