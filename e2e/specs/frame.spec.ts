@@ -82,9 +82,10 @@ test('every page has its help: a picture whose numbers are those of the lines @t
 	// The wall, which has no rail, comes last.
 	const wall = titles.indexOf('Wall view');
 	expect(wall).toBeGreaterThan(0);
+	// The first is open already: to go there once more would close what is opened meanwhile.
 	for (const title of [...titles.toSpliced(wall, 1), 'Account', 'Wall view']) {
 		if (title === 'Account') await page.goto(new URL('/account', page.url()).href);
-		else await rail.getByRole('link', { name: new RegExp(`^${title}\\b`) }).click();
+		else if (title !== titles[0]) await rail.getByRole('link', { name: new RegExp(`^${title}\\b`) }).click();
 		const button = page.getByRole('main').getByRole('button', { name: `Help: ${title}`, exact: true });
 		await button.press('Enter');
 		await expect(help.getByRole('heading', { name: `${title}: what you do here` })).toBeFocused();
