@@ -12,7 +12,7 @@ from sequence_planner.automaton.automaton import Automaton, Instruction
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Place
-from sequence_planner.model.files import LONGEST_FILE, largest
+from sequence_planner.model.files import largest
 from sequence_planner.model.loader import Station
 from sequence_planner.model.paths import INSTRUCTION, INSTRUCTIONS, PICTURES, VIDEOS
 from sequence_planner.model.source import Finding, SourceText
@@ -99,11 +99,10 @@ class _Media:
 
     def _looked_at(self, name: str) -> str | None:
         path, kind = self._there[name], Path(name).suffix[1:]
-        most = LONGEST_FILE if kind == "svg" else largest(name)
         try:
             size = path.stat().st_size
-            if size > most:
-                return f"this has {size} bytes, and may have at most {most}: make it smaller"
+            if size > largest(name):
+                return f"this has {size} bytes, and may have at most {largest(name)}: make it smaller"
             if kind == "svg":
                 self._ids[name] = _ids_of(path.read_bytes())
             else:

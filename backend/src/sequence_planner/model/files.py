@@ -88,7 +88,7 @@ def is_binary(path: str) -> bool:
 
 
 def largest(path: str) -> int:
-    """The bytes that such a file may have at most."""
+    """The bytes that a picture or a video may have at most."""
     return LARGEST_PICTURE if path.endswith(PICTURES) else LARGEST_VIDEO
 
 

@@ -12,7 +12,7 @@ from fastapi.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from sequence_planner.controller.views.station import TaskView
-from sequence_planner.model.files import LONGEST_FILE, is_binary, largest
+from sequence_planner.model.files import is_binary, largest
 from sequence_planner.model.paths import INSTRUCTION, INSTRUCTIONS
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.settings import Settings
@@ -71,9 +71,8 @@ def _find(model: Path, name: str) -> tuple[Path, os.stat_result] | None:
     if not INSTRUCTION.fullmatch(name):
         return None
     path = model / INSTRUCTIONS / name
-    most = largest(name) if is_binary(f"{INSTRUCTIONS}/{name}") else LONGEST_FILE
     try:
         status = path.stat()
-        return (path, status) if stat.S_ISREG(status.st_mode) and status.st_size <= most else None
+        return (path, status) if stat.S_ISREG(status.st_mode) and status.st_size <= largest(name) else None
     except OSError:
         return None
