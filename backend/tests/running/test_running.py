@@ -125,7 +125,7 @@ def test_devices_that_were_killed_leave_unknown_values_and_come_back_to_work(
     assert at_work.get("variables", "state")["robot.pose"]["awaits"] == "/ur10/state"
     assert at_work.get("resources")["robot"]["awaited_topics"] == ["/ur10/state", "/ur10/planning_scene/state"]
     assert at_work.get("resources")["operator"]["online"]
-    until(lambda: "Nothing heard from Smart nutrunner" in str(at_work.get("alarms")))
+    until(lambda: "No message any more on /smart_nutrunner/state" in str(at_work.get("alarms")))
     before = done_so_far(at_work)
     time.sleep(1)
     assert done_so_far(at_work) == before
