@@ -8,7 +8,7 @@
 import { Station, type Options } from './station.ts';
 
 /** How many are kept. */
-const MOST = 3;
+const MOST = 2;
 
 export class Bench {
 	readonly #kept = new Map<string, Station>();
