@@ -25,6 +25,13 @@ test('walls stand side by side, and one that is gone says so until it is back', 
 		await expect(wall(here).locator('[data-glance="mode"]')).toBeVisible();
 		await expect(wall(here).getByRole('button', { name: /Hold|Pause|control/ })).toHaveCount(0); // the page around it has these
 		await expect(page.getByRole('button', { name: 'Hold', exact: true })).toBeInViewport({ ratio: 1 });
+		const drawn = wall(here).getByRole('button', { name: /^Cover plate/ });
+		for (const [width, height] of [[1920, 1080], [1440, 900]] as const) {
+			await page.setViewportSize({ width, height });
+			const figure = await wall(here).locator('dt').first().boundingBox();
+			const picture = await drawn.boundingBox();
+			expect((picture?.y ?? NaN) + (picture?.height ?? NaN), `above the figures on ${width}`).toBeLessThanOrEqual(figure?.y ?? NaN);
+		}
 
 		// Each lets in whom it knows.
 		const name = wall(there).getByLabel('Name');
