@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -677,7 +678,11 @@ def same(one: object, other: object) -> bool:
     if isinstance(one, str) and isinstance(other, str):
         return str(one) == str(other)
     numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in (one, other))
-    return (numbers or type(one) is type(other)) and (one == other or (one != one and other != other))  # noqa: PLR0124
+    return (numbers or type(one) is type(other)) and (one == other or (_is_nan(one) and _is_nan(other)))
+
+
+def _is_nan(value: object) -> bool:
+    return isinstance(value, float) and math.isnan(value)
 
 
 def _content(text: str) -> Content:
