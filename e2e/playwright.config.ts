@@ -2,7 +2,8 @@
  * End-to-end tests: a real Chromium, the real server, and emulated devices that speak real DDS.
  *
  * Each station has a free port and a DDS domain of its own (`station/station.ts`); tests that do not disturb one another
- * share one (`station/bench.ts`). What a theme can change is tagged `@theme` and runs in both in campaigns, where `@long` runs too.
+ * share one (`station/bench.ts`), and lie in one folder, so that they come one after the other. What a theme can change
+ * is tagged `@theme` and runs in both in campaigns, where `@long` runs too.
  */
 import { defineConfig } from '@playwright/test';
 import { chromium } from './station/chromium.ts';

@@ -8,6 +8,7 @@ import adapter from '@sveltejs/adapter-static';
 import { sveltekit } from '@sveltejs/kit/vite';
 import { defineConfig } from 'vitest/config';
 import { noCycles } from './scripts/no-cycles.ts';
+import { shares } from './scripts/shares.ts';
 import manifest from './package.json' with { type: 'json' };
 
 /** Where `npm run dev` finds a running station. */
@@ -18,6 +19,7 @@ export default defineConfig({
 		sveltekit({
 			// The server sends what is compressed here to whoever takes it.
 			adapter: adapter({ fallback: '404.html', precompress: true }),
+			inlineStyleThreshold: 40_000,
 			// The watch alone has a worker, and registers it.
 			serviceWorker: { register: false },
 			csp: {
@@ -41,28 +43,14 @@ export default defineConfig({
 	environments: {
 		client: {
 			build: {
+				modulePreload: {
+					// What all pages begin with would name the scripts of each, which is more than the rest of it: a page that is opened
+					// by its address links to its own, and one that is gone to asks for them as it reads them.
+					resolveDependencies: (_, scripts, { hostId }) => (hostId.includes('/entry/') ? [] : scripts)
+				},
 				rolldownOptions: {
 					output: {
-						// What pages share comes in few files: each one more takes longer to ask for than to bring. What all of it
-						// stands on is apart, or it would be merged with what stands on it, and files import one another in a circle.
-						codeSplitting: {
-							groups: [
-								{ name: 'svelte', test: /node_modules\/svelte\//, priority: 1, entriesAware: true },
-								// The watch tells no messages of a station, and would have these with what it shares with other pages.
-								{
-									name: 'messages',
-									test: /lib\/(text\/message|plan\/next-step|wording\/breakable|alarm\/(priority|alarm-mark))/,
-									priority: 1,
-									entriesAware: true
-								},
-								// The watch reads the stream, asks the server who is there, and knows where it is framed, as other pages do, and would
-								// have what these read with it.
-								{ name: 'stream', test: /lib\/(stream\/|account\/asking|wall\/framed)/, priority: 1, entriesAware: true },
-								// So is what the names of variables stand on, which all but the watch's pages read.
-								{ name: 'names', test: /lib\/wording\/(names|values)/, priority: 1, entriesAware: true },
-								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 1_000 }
-							]
-						},
+						codeSplitting: { groups: shares() },
 						// Those are called after all pages that share them, which are no folders.
 						sanitizeFileName: (name) => name.replace(/^shared~.*/, 'shared').replace(/[^\w./-]/g, '_')
 					}

@@ -93,6 +93,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: not _is_in(item.path, LONGEST))
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave what is not to run unread where the one kind is asked for: reading all takes each worker half a minute."""
+    asked = {"heavy": True, "not heavy": False}.get(config.getoption("markexpr"))
+    if asked is None or not collection_path.match("test_*.py"):
+        return None
+    return is_heavy(collection_path) != asked or None
+
+
 @cache
 def is_heavy(path: Path) -> bool:
     """Whether the tests of a file are heavy."""

@@ -51,6 +51,8 @@ export class Back {
 
 	/** Does what comes next; false where there is nothing to do but wait. */
 	async #do(next: string): Promise<boolean> {
+		// While ways are looked for, the step that is next opens by itself as soon as it is known.
+		if (next === 'looking') return false;
 		// Whoever has looked at another step comes back to the one that is next.
 		const shut = this.restart.locator('[data-restart-step][aria-current="step"][aria-expanded="false"]');
 		if ((await shut.count()) > 0) await shut.click({ timeout: PRESS }).catch(() => undefined);
@@ -124,12 +126,14 @@ export class Back {
 		return this.#send('Confirm');
 	}
 
-	/** Once it was seen what follows, with a reason and once more. */
+	/** Once it was seen what follows, with a reason; once more where it breaks what was specified. */
 	async #correct(): Promise<boolean> {
 		await expect(this.#dialog.getByTestId('follows')).toBeVisible();
 		await this.#dialog.getByLabel('Reason').fill(REASON);
-		await this.#dialog.getByRole('button', { name: 'Correct…', exact: true }).click();
-		await this.#dialog.getByRole('button', { name: 'Yes, correct it' }).click();
+		await this.#dialog.getByRole('button', { name: `Correct to ${this.hands.truth ?? ''}`, exact: true }).click();
+		const sure = this.#dialog.getByRole('button', { name: 'Yes, correct it' });
+		await expect(this.#dialog.filter({ hasNot: sure })).toHaveCount(0);
+		if (await sure.isVisible()) await sure.click();
 		await expect(this.#dialog).toHaveCount(0);
 		return true;
 	}

@@ -12,9 +12,13 @@ const MOST = 2;
 
 export class Bench {
 	readonly #kept = new Map<string, Station>();
+	readonly #given = new Map<string, string>();
 
-	/** The station of that name, started with `options` unless it runs already. */
+	/** The station of that name, started with `options` unless it runs already; an error when it is asked for with others. */
 	async kept(name: string, options: Options): Promise<Station> {
+		const given = JSON.stringify({ ...options, logs: null });
+		if ((this.#given.get(name) ?? given) !== given) throw new Error(`the station “${name}” is shared by tests that want different ones`);
+		this.#given.set(name, given);
 		const before = this.#kept.get(name);
 		this.#kept.delete(name);
 		if (!before?.server.running) await before?.stop();

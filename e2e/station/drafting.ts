@@ -60,7 +60,7 @@ export class Drafting {
 			if (!text.includes(what)) throw new Error(`${file} has no ${what}`);
 			texts.set(file, text.replace(what, by));
 		}
-		const edits = [...texts].map(([file, text]) => ({ kind: 'text', file, was: files.get(file), text }));
+		const edits = [...texts].map(([file, text]) => ({ kind: 'text', file, was: files.get(file) ?? null, text }));
 		await this.#write(title, edits);
 	}
 

@@ -69,7 +69,7 @@ export async function deploy(builder: Builder): Promise<void> {
 	await hand.press(button('Deploy'));
 	await expect(page.getByTestId('deployment')).toHaveAttribute('data-phase', 'runs', { timeout: 60_000 });
 	await expect(page.locator(`[data-revision="${REVISION}"]`)).toHaveAttribute('data-running', 'true');
-	await expect(page.getByTestId('draft')).toContainText('It is what runs.');
+	await expect(page.getByTestId('draft')).toContainText('The station runs this draft.');
 	await looked(page, 'deployed');
 }
 

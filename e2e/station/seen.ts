@@ -46,6 +46,9 @@ export async function acknowledge(watch: Page): Promise<string> {
 /** Takes control on this page, from whoever has it. */
 export async function takeControl(page: Page): Promise<void> {
 	const control = page.getByTestId('control');
+	await expect(page.getByTestId('mode')).toBeVisible();
+	// On a small screen it is behind the mark of who is signed in.
+	if (!(await control.isVisible())) await page.getByTestId('who').click();
 	const held = (await control.getAttribute('data-holder')) !== 'nobody';
 	await page.getByRole('button', { name: 'Take control' }).click();
 	if (held) await page.getByRole('dialog').getByRole('button', { name: 'Take over' }).click();

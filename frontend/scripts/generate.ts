@@ -18,6 +18,7 @@ interface Schema {
 	readonly required?: readonly string[];
 	readonly additionalProperties?: Schema | boolean;
 	readonly anyOf?: readonly Schema[];
+	readonly oneOf?: readonly Schema[];
 	readonly items?: Schema;
 	readonly prefixItems?: readonly Schema[];
 	readonly enum?: readonly (string | number)[];
@@ -67,6 +68,10 @@ const isCouples = (schema: Schema): boolean =>
 /** What a definition is called that is written in a way of its own. */
 const refersTo = (schema: Schema | undefined, name: string): boolean => schema?.$ref?.endsWith(`/${name}Document`) ?? false;
 
+/** A text for people; where it is written by language, it is a mapping, which a form has as it is written. */
+const isTold = (schema: Schema): boolean =>
+	schema.oneOf?.length === 2 && isText(schema.oneOf[0]) && refersTo(schema.oneOf[1], 'Words');
+
 function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	const within = typeof schema.additionalProperties === 'object' ? schema.additionalProperties : undefined;
 	if (refersTo(within, 'Bounds')) return { kind: 'bounds' };
@@ -79,7 +84,7 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	if (schema.$ref !== undefined) return { kind: 'part', part: partName(schema.$ref) };
 	if (schema.enum !== undefined) return { kind: 'choice', choices: schema.enum };
 	if (isPredicate(schema)) return { kind: 'predicate' };
-	if (schema.type === 'string') return { kind: 'text' };
+	if (schema.type === 'string' || isTold(schema)) return { kind: 'text' };
 	if (schema.type === 'boolean') return { kind: 'flag' };
 	if (schema.type === 'number' || schema.type === 'integer') return { kind: 'number' };
 	if (schema.type === 'array' && isText(schema.items)) return { kind: 'texts' };

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -43,6 +45,25 @@ def test_what_is_kept_is_found_however_the_model_was_read(
     assert kept is not None
     assert kept == first
     assert key(kept) == key(first)
+
+
+def test_what_one_process_keeps_is_found_by_all_others() -> None:
+    """Each process has its own order of a set's members, by its seed of hashes."""
+    asked = (
+        "import sys; from pathlib import Path; from sequence_planner.analysis.store import key; "
+        "from sequence_planner.cli.loading import load_model; print(key(load_model(Path(sys.argv[1])).automaton))"
+    )
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", asked, str(MODELS / "truck_engine_station")],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2", "3")
+    }
+    assert len(found) == 1
 
 
 def test_each_change_of_a_file_is_seen(model: Path) -> None:

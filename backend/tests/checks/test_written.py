@@ -62,6 +62,11 @@ def test_a_name_of_the_station_that_nothing_uses(press: Path, section: str, decl
     assert said(press) == [f"{place}: warning: {NOTHING.format(what, 'spare')}"]
 
 
+def test_a_set_with_a_title_is_used_by_sentences(press: Path) -> None:
+    changed(press, "station.yaml", ("sets:\n", "sets:\n  spare: {of: part, values: [p1], title: a spare}\n"))
+    assert said(press) == []
+
+
 def test_a_predicate_of_a_resource_that_nothing_uses(press: Path) -> None:
     """One of the station that has its name is another one."""
     changed(

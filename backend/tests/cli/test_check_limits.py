@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from shutil import copytree
 
@@ -12,7 +13,7 @@ import pytest
 
 from checks.large import write_large_station
 from sequence_planner.analysis.worker import telling
-from sequence_planner.cli.analysing import Limits, checked
+from sequence_planner.cli.analysing import DeadlinePassed, Limits, checked, within
 from sequence_planner.cli.loading import load_model
 from sequence_planner.process.memory_limit import MemoryLimitError, memory_limit
 from sequence_planner.process.task import WorkerError
@@ -58,6 +59,13 @@ def test_a_model_that_cannot_be_read_in_time_is_one_of_which_nothing_was_found_o
     late = f"{station}: it could not be read within 0.1 s: allow more with --deadline\n"
     goal = ["ladder_frame == on_engine"] if of == "plan" else []
     assert command(of, station, *goal, "--deadline", "0.1") == (1, "", late)
+
+
+def test_the_deadline_is_no_error_of_the_file_that_is_read_when_it_passes() -> None:
+    with pytest.raises(DeadlinePassed), within(0.02):
+        while True:
+            with suppress(Exception):  # as a reader does, which names the file
+                time.sleep(0.001)
 
 
 def test_a_question_that_is_too_hard_ends_with_the_deadline(tmp_path: Path) -> None:

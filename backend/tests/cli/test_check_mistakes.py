@@ -32,12 +32,16 @@ def test_operations_that_were_emptied(model: Path) -> None:
 
 
 def test_a_resource_on_wrong_indentation(model: Path) -> None:
-    change(model / "resources" / "nutrunner.yaml", "topics:\n", "  topics:\n")
+    file = model / "resources" / "nutrunner.yaml"
+    change(file, "topics:\n", "  topics:\n")
     code, _, err = command("check", model)
     assert code == 2
-    assert err.startswith(
-        f"{model}/resources/nutrunner.yaml:4:9: this is not YAML: a `name:` stands here where none may"
-    )
+    assert err.startswith(f"{file}:4:3: this is not YAML: this does not belong to what is above it")
+    assert "look at the indentation" in err
+    change(file, "title: {en: Smart nutrunner, sv: Smart mutterdragare}\n", "title: Smart nutrunner\n")
+    code, _, err = command("check", model)
+    assert code == 2
+    assert err.startswith(f"{file}:4:9: this is not YAML: a `name:` stands here where none may")
     assert "look at the indentation" in err
 
 

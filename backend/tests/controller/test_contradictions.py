@@ -82,8 +82,7 @@ def test_a_bolt_that_is_asked_for_is_not_there_yet() -> None:
     wrong = {**state, "operator.requested_pair": "bolt_pair_2", "bolts[bolt_pair_2]": "placed"}
     said = contradictions(automaton, found, wrong)
     assert said.because == (
-        "bolts[bolt_pair_2] == placed is believed, which never goes together with "
-        "operator.requested_pair == bolt_pair_2",
+        "Never true together: “bolts[bolt_pair_2] == placed” and “operator.requested_pair == bolt_pair_2”",
     )
     [question] = questions(automaton, said, wrong)
     assert (question.variable, question.believed, question.possible) == ("bolts[bolt_pair_2]", "placed", ["empty"])
@@ -116,3 +115,22 @@ def test_the_question_that_separates_most_comes_first() -> None:
     asked = questions(automaton, said, wrong)
     assert {question.variable for question in asked} == {f"bolts[bolt_pair_{n}]" for n in (1, 2, 3)}
     assert all(question.possible == ["empty", "placed"] for question in asked)
+
+
+def test_what_is_wrong_whatever_else_is_so_comes_first() -> None:
+    automaton, state = bolt_station()
+    found = known(automaton)
+    assert found is not None
+    # The tool turns, at the bolts of which one pair, which has just been asked for, is believed to be there.
+    wrong = {
+        **state,
+        "operator.requested_pair": "bolt_pair_2",
+        "bolts[bolt_pair_2]": "placed",
+        "nutrunner.tool_is_idle": False,
+        "nutrunner.set_tool_idle": False,
+        "nutrunner.run_tool_forward": True,
+        "nutrunner.tool_is_running_forward": True,
+    }
+    first, *others = questions(automaton, contradictions(automaton, found, wrong), wrong)
+    assert (first.variable, first.possible) == ("bolts[bolt_pair_2]", ["empty"])
+    assert {question.variable for question in others} == {"bolts[bolt_pair_1]", "bolts[bolt_pair_3]"}

@@ -97,7 +97,7 @@ def test_a_contradiction_comes_and_goes_with_a_correction() -> None:
     station.execution.state = station.execution.corrected(request)
     shown = preview(station)
     [text] = shown.contradictions_new
-    assert text.startswith(f"{BOLT} == placed is believed")
+    assert f"“{BOLT} == placed”" in text
     assert not shown.contradictions_gone
     station.execution.state = station.execution.corrected({BOLT: "placed"})
     shown = preview(station, then="empty")

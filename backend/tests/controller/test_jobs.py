@@ -148,7 +148,7 @@ def test_a_run_that_decides_on_what_is_brought_belongs_to_the_product_before(on:
     on.tell("a", "abort")
     on.take("b", "bottle")
     on.ticks()
-    assert on.jobs["b"].waits_for == ["the end of fill (fill), which decides on content"]
+    assert on.jobs["b"].waits_for == ["the end of fill"]
     on.tick(level=True)
     on.tick(flows=False, level=False)
     assert on.jobs["b"].state == "running"

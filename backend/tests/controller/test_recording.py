@@ -29,6 +29,7 @@ TASK = TaskView(
     text="",
     created=0.0,
     next_moves=[],
+    movers=[],
     instruction=None,
     problem=None,
 )

@@ -66,7 +66,7 @@ def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     tick(execution, "between", 1.0)
     assert not [cause for cause in alarms.causes(Timestamp(1005.0, 5.0)) if cause.key.startswith("still:")]
     (told,) = [cause for cause in alarms.causes(Timestamp(1006.1, 6.1)) if cause.key.startswith("still:")]
-    assert "is stalled: it still reports at == between" in str(told.text)
+    assert "has stalled. It still reports: at == between" in str(told.text)
 
 
 def test_what_is_not_heard_or_was_told_nothing_yet_is_not_waited_for() -> None:
@@ -165,3 +165,37 @@ def test_a_device_that_takes_much_longer_than_it_ever_does_is_noticed_before_its
         assert still.late(0.9 + told) == {}
         assert still.late(1.1 + told) == {"arrives": frozenset()}
         assert still.devices(1.1 + told) == {"cart": {"at"}}
+
+
+def test_the_device_is_to_blame_that_does_not_say_what_another_one_has_brought_about() -> None:
+    """The cart has arrived, by which the gripper that it carries is to feel something."""
+    execution, _ = shared()
+    effects = (replace(each, resource="cart") if each.name == "feels" else each for each in execution.automaton.effects)
+    carrying = replace(execution.automaton, effects=tuple(effects))
+    execution = Executor(carrying, synthesise(carrying))
+    still, station = StallDetector(execution), prepare_station(BOLT_TIGHTENING)
+    alarms = Abilities(execution, Inputs(station.pipelines, station.registry), still, Consequences(execution))
+    execution.start_production()
+    execution.state = {**execution.state, "target": "work"}
+    shared_tick(execution, "work", False, 0.0)
+    assert still.devices(9.9) == {}
+    assert still.devices(10.1) == {"gripper": {"felt"}}
+    (told,) = alarms.causes(Timestamp(1010.1, 10.1))
+    assert told.text == "Gripper has stalled. It still reports: not felt"
+    assert (told.key, told.action, told.resources) == ("still:gripper", "Check Gripper.", ("gripper",))
+
+
+def test_all_are_to_blame_who_do_not_say_what_has_come_about() -> None:
+    execution, _ = shared()
+    by_name = {each.name: each for each in execution.automaton.effects}
+    arrives = replace(by_name["arrives"], actions=(*by_name["arrives"].actions, *by_name["feels"].actions))
+    effects = (arrives, *(each for name, each in by_name.items() if name == "shuts"))
+    together = replace(execution.automaton, effects=effects)
+    execution = Executor(together, synthesise(together))
+    still = StallDetector(execution)
+    execution.start_production()
+    execution.state = {**execution.state, "target": "work"}
+    shared_tick(execution, "between", False, 0.0)
+    assert still.devices(10.1) == {"cart": {"at"}, "gripper": {"felt"}}
+    shared_tick(execution, "between", True, 10.2)
+    assert still.devices(20.3) == {"cart": {"at"}}

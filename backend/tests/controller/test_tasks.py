@@ -13,9 +13,11 @@ from sequence_planner.controller.commands.tasks import (
     TaskProblem,
     WaitingTask,
 )
-from sequence_planner.controller.features.tasks import TaskHandler
+from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
+from sequence_planner.controller.views.station import NextMovesView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode
+from sequence_planner.texts.message import message
 from support.people import EVA
 from support.simulated import PAIRS, Rig, never, truck_engine
 
@@ -109,6 +111,27 @@ def test_a_watch_that_speaks_on_a_topic_is_heard_beside_the_page() -> None:
     assert tasks.measured() == {}
     acknowledge(tasks, only(tasks).id, 1)
     assert tasks.measured() == {ACKNOWLEDGED: True}
+
+
+def test_a_task_says_who_moves_next() -> None:
+    rig, abilities = Rig(), truck_engine()[0].automaton.abilities
+
+    def moving() -> list[str]:
+        return [name for name in rig.execution.plan.order.names if abilities[name].human is None]
+
+    def shown(*, goes_on: bool) -> list[NextMovesView]:
+        tasks = OpenTasks(rig.execution, rig.desk, lambda: goes_on, lambda resource: message("still.nothing"))
+        views = tasks.view_part(Timestamp(rig.now, rig.now))["tasks"]
+        assert isinstance(views, dict)
+        (view,) = views.values()
+        assert isinstance(view, TaskView)
+        return view.movers
+
+    rig.start_production()
+    assert rig.run(20, until=lambda: bool(rig.desk.open) and len(moving()) > 2)
+    titles = [abilities[name].title for name in moving()[:2]]
+    assert shown(goes_on=True) == [NextMovesView(name="robot", title="Robot UR10", moves=titles)]
+    assert shown(goes_on=False) == []
 
 
 def told(

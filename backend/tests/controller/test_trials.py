@@ -192,7 +192,7 @@ def test_the_supervisor_is_asked_as_ever(press: Press) -> None:
     press.attempt("open")
     press.tick()
     detail = press.refused("not-startable")
-    assert detail == "press waits for not door, for the sake of: shut."
+    assert detail == "press waits for not door, because of: shut."
     assert press.definition().allowed is False
     assert press.definition("open").allowed is True
 

@@ -35,6 +35,36 @@ def test_names_are_the_titles_of_the_model_in_each_language() -> None:
     assert names.variables["robot.moving"].values is None, "yes and no are words of the page"
 
 
+def test_parts_are_called_by_their_titles_in_each_language() -> None:
+    names = names_of("bolt_tightening")
+    assert names.station == {"en": "Bolt tightening station", "sv": "Station för skruvdragning"}
+    assert names.resources["operator"] == {"en": "Operator with watch", "sv": "Operatör med klocka"}
+    assert "robot" not in names.resources, "it is called the same in all languages"
+    assert names.operations["tighten_bolt_pair(bolt_pair_1)"] == {
+        "en": "Tighten bolt pair 1",
+        "sv": "Dra åt skruvpar 1",
+    }
+    assert names.work_masters["truck_engine"]["sv"] == "Lastbilsmotor"
+    task = names.tasks["operator.place_bolt_pair(bolt_pair_2)"]
+    assert task == {"en": "Place bolt pair 2 on the cover plate.", "sv": "Sätt i skruvpar 2 i täcklocket."}
+    assert all(each["sv"].startswith("Verktyget ska rotera") for each in names.specifications.values())
+
+
+@pytest.mark.parametrize("path", STATIONS, ids=lambda path: path.name)
+def test_the_english_of_a_title_is_what_the_station_sends(path: Path) -> None:
+    """By it and by the name a page knows what to tell in another language."""
+    automaton, names = prepare_station(path).automaton, names_of(path.name)
+    sent = {
+        "resources": dict(automaton.resources),
+        "abilities": {name: each.title for name, each in automaton.abilities.items()},
+        "operations": {name: each.title for name, each in automaton.operations.items()},
+        "specifications": {name: each.title for name, each in automaton.specifications.items()},
+        "work_masters": {name: each.title for name, each in automaton.work_masters.items()},
+    }
+    for kind, titles in sent.items():
+        assert all(words["en"] == titles[name] for name, words in getattr(names, kind).items())
+
+
 @pytest.mark.parametrize("path", STATIONS, ids=lambda path: path.name)
 def test_no_two_values_of_a_variable_have_the_same_words(path: Path) -> None:
     station = prepare_station(path)

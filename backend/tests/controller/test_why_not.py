@@ -96,6 +96,7 @@ def test_an_ability_says_all_that_is_in_its_way_and_who_could_change_it() -> Non
             (at,) = place.involved
             assert (at.name, at.value, at.wanted, at.since, at.topic) == ("at", "home", ["work"], 7.0, "/cart/state")
             assert who(place, "at") == [("effect", "go"), ("device", "station")]
+            assert at.changers[1].title == "somebody at station"
             assert who(loaded, "loaded") == [("start", "load"), ("correction", "loaded")]
             execution.start_production()
             execution.set_service(ServiceKind.ABILITY, "unload", False, "Eva", "a test", desk.now)
@@ -148,13 +149,31 @@ def test_what_the_supervisor_adds_is_told_with_its_specification() -> None:
     execution.correct({"first": True}, "Eva", "seen", Timestamp(0.0, 0.0))
     ability, guard = both.abilities["other"], shown_guards(supervision)["other"]
     (added,) = of_ability(execution, ability, {}, guard)
-    assert (added.kind, added.text) == (HindranceKind.SUPERVISOR, "not first, for the sake of: both")
+    assert (added.kind, added.text) == (HindranceKind.SUPERVISOR, "not first, because of: both")
     assert added.expression == predicate_of(both, "not first")
     (long,) = of_ability(execution, ability, {}, replace(guard, expression=None))
-    assert long.text == "not first (the nearest state in which it may start), for the sake of: both"
+    assert long.text == "not first (the nearest state in which it may start), because of: both"
     assert long.expression == predicate_of(both, "not first")
     (unworded,) = of_ability(execution, ability, {}, None)
     assert unworded.text == "a safe start: both (both)"
+
+
+def test_specifications_of_one_title_are_named_once() -> None:
+    """Those that one of the model was written out to: one for each pair of bolts, for instance."""
+    both = automaton(
+        {"one": Does(("first := true",), "not first"), "other": Does(("second := true",), "not second")},
+        estimated={"first": (BOOLEAN, False), "second": (BOOLEAN, False)},
+        forbidden={"pair_1": "first and second", "pair_2": "first and second", "rest": "first and second"},
+    )
+    titles = {"pair_1": "One at a time", "pair_2": "One at a time", "rest": "Rest"}
+    alike = {name: replace(each, title=titles[name]) for name, each in both.specifications.items()}
+    both = replace(both, specifications=alike)
+    supervision = supervised(both)
+    execution = Executor(both, supervisor(supervision))
+    execution.correct({"first": True}, "Eva", "seen", Timestamp(0.0, 0.0))
+    guard = replace(shown_guards(supervision)["other"], specifications=tuple(titles))
+    (added,) = of_ability(execution, both.abilities["other"], {}, guard)
+    assert added.text == "not first, because of: One at a time and Rest"
 
 
 def test_an_operation_says_why_it_is_not_active_or_how_far_it_is() -> None:
@@ -179,10 +198,13 @@ def test_an_operation_says_why_it_is_not_active_or_how_far_it_is() -> None:
             assert "restart mode" in (await asked.operation()).summary
             desk.correct(loaded=False, delivered=True)
             desk.tick()
-            assert found(await asked.operation()) == [
+            view = await asked.operation()
+            assert found(view) == [
                 ("written", "not delivered: its goal holds"),
                 ("written", "loaded"),
             ]
+            assert view.summary == "Its goal holds now."
+            assert view.conditions[0].sentence is None, "it does not wait until it comes undone"
 
     asyncio.run(scenario())
 

@@ -26,7 +26,7 @@ from sequence_planner.language.syntax import (
 )
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 from support.automata import Does, automaton
-from support.examples import examples
+from support.examples import examples, rounds
 
 from .choices import made_by
 from .random_ticks import compare, compare_by_seed
@@ -57,7 +57,7 @@ def test_it_is_the_reference_on_random_automata(_: object) -> None:
 @pytest.mark.parametrize("part", range(4))
 def test_it_is_the_reference_on_thousands_of_random_automata(part: int) -> None:
     seen = Counter[str]()
-    for number in range(500):
+    for number in range(rounds(500, 300)):
         seen += compare_by_seed(f"{part}.{number}", ticks=6)
     # What was never met would not have been compared.
     assert all(seen[what] > 10 for what in ALL_THAT_HAPPENS), seen

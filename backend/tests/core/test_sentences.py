@@ -28,6 +28,7 @@ from .random_stations import automaton as random_automaton
 
 PAIR = EnumerationType(tuple(f"AtPair{n}TCPPose" for n in range(1, 7)))
 POSE = EnumerationType(("UNKNOWN", "home", "left", "right", *PAIR.values))
+TOOL = EnumerationType(("none", "hook", "magnet", "vacuum"))
 STATE = EnumerationType(("empty", "placed", "tightened"))
 VARIABLES: dict[str, Type] = {
     **{f"bolts[{pair}]": STATE for pair in PAIR.values},
@@ -37,6 +38,7 @@ VARIABLES: dict[str, Type] = {
     "robot.ready": BOOLEAN,
     "robot.tool_is_idle": BOOLEAN,
     "arm.pose": POSE,
+    "arm.tool": TOOL,
     "engine_in_place": BOOLEAN,
     "parts": IntegerRange(0, 5),
 }
@@ -47,14 +49,24 @@ TITLES = Titles(
             {"en": "Pose of the robot", "sv": "Robotens läge"}, {"en": "the robot is at {value}"}
         ),
         "robot.ready": VariableTitles({"en": "The robot", "sv": "Roboten"}, {}, {True: {"en": "ready", "sv": "redo"}}),
+        "arm.tool": VariableTitles(
+            {"en": "The tool of the arm"}, {"en": "{value} is at the arm", "sv": "{value} är på armen"}
+        ),
         "engine_in_place": VariableTitles({"en": "The engine is in place", "sv": "Motorn är på plats"}),
         "parts": VariableTitles({"en": "Number of parts", "sv": "Antalet delar"}),
     },
     values={
+        TOOL: {
+            "none": {"en": "no tool", "sv": "inget verktyg"},
+            "hook": {"en": "the hook", "sv": "kroken"},
+        },
         PAIR: {f"AtPair{n}TCPPose": {"en": f"pair {n}", "sv": f"par {n}"} for n in range(1, 7)},
         STATE: {"placed": {"en": "placed", "sv": "på plats"}, "tightened": {"en": "tight", "sv": "åtdragna"}},
     },
-    sets={frozenset(("left", "right")): {"en": "a dock", "sv": "en docka"}},
+    sets={
+        frozenset(("left", "right")): {"en": "a dock", "sv": "en docka"},
+        frozenset(("hook", "magnet", "vacuum")): {"en": "a tool", "sv": "ett verktyg"},
+    },
     predicates={
         "all_tight": {"en": "All bolts are tight", "sv": "Alla skruvar är åtdragna"},
         "is_about": {"en": "The robot is about {there}", "sv": "Roboten är vid {there}"},
@@ -130,6 +142,10 @@ def ground(text: str) -> Expression:
         ("robot.tool_is_idle", "tool is idle", "”tool is idle” är sant"),
         ("not robot.tool_is_idle", "tool is not idle", "”tool is idle” är falskt"),
         ("robot.pose in {left, right}", "the robot is at a dock", "the robot is at en docka"),
+        # What all values but one have in common is said rather than that it is not that one.
+        ("arm.tool != none", "a tool is at the arm", "ett verktyg är på armen"),
+        ("arm.tool == none", "no tool is at the arm", "inget verktyg är på armen"),
+        ("arm.tool != hook", "the hook is not at the arm", "kroken är inte på armen"),
         ("arm.pose == home", "pose of arm is home", "pose hos arm är home"),
         ("parts >= 2", "number of parts is at least 2", "antalet delar är minst 2"),
         ("parts < 1", "number of parts is 0", "antalet delar är 0"),

@@ -159,7 +159,7 @@ def test_where_the_way_in_takes_starts_they_are_named(tmp_path: Path) -> None:
 
 
 def test_what_runs_now_must_be_the_same_there(tmp_path: Path) -> None:
-    renamed = bolts(nutrunner=("title: Run the nutrunner", "title: Run it"))
+    renamed = bolts(nutrunner=("en: Run the nutrunner", "en: Run it"))
     other = bolts(nutrunner=("set_tool_idle := true, run_tool_forward := false]", "set_tool_idle := true]"))
     for number, (new, under_way) in enumerate(((bolts(), []), (renamed, []), (other, [RUN_NUT]))):
         folder = tmp_path / str(number)

@@ -284,7 +284,7 @@ ORDERED: Final = frozenset({"by-order-changed", "job-taken", "jobs-sequenced", "
 CORRECTED: Final = frozenset({"corrected", "confirmed"})
 ERRAND: Final = frozenset({"errand-taken", "errand-stopped", "mode-changed"})
 CHANGED: Final = {
-    BOLTS: ("operations.yaml", "title: Tighten {pair}", "title: Tighten {pair} again"),
+    BOLTS: ("operations.yaml", 'en: "Tighten {pair}"', 'en: "Tighten {pair} again"'),
     TRUCK: ("operations.yaml", "priority: 1", "priority: 2"),
 }
 TWO_MASTERS: Final = {  # so that two jobs can be under way at once

@@ -19,7 +19,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("changed") / "station"
     shutil.copytree(BOLT_TIGHTENING, folder)
     file = folder / "station.yaml"
-    file.write_text(file.read_text().replace("title: ", "title: Another ", 1))
+    file.write_text(file.read_text().replace("title: {en: ", "title: {en: Another ", 1))
     return folder
 
 

@@ -17,9 +17,10 @@ from journal.happened import content
 from sequence_planner.db.database import Database
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.hash_chain import START, broken_at
+from support.examples import rounds
 
 SEED = 8
-POINTS = 40
+POINTS = rounds(40, 10)
 
 # One process imports the program, and one after the other of its children writes: it would be slow to begin otherwise.
 WRITE_UNTIL_KILLED = """

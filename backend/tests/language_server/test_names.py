@@ -62,7 +62,7 @@ def test_an_operation_in_a_sequence_leads_to_it(editor: Editor, station: Path) -
 
 def test_where_it_is_used(editor: Editor, station: Path) -> None:
     uri = editor.open(station / "resources" / "robot.yaml")
-    asked = editor.at(uri, "  pose: {", 4)
+    asked = editor.at(uri, "  pose:\n", 4)
     every = editor.ask("textDocument/references", **asked, context={"includeDeclaration": True})
     others = editor.ask("textDocument/references", **asked, context={"includeDeclaration": False})
     assert len(every) == len(others) + 1
@@ -83,7 +83,7 @@ def test_another_name_in_all_files(editor: Editor, station: Path) -> None:
     robot = editor.open(station / "resources" / "robot.yaml")
     other = editor.open(station / "specifications.yaml")
     editor.type(other, "robot.pose == pair", "robot.pose == pair  # seen")
-    asked = editor.at(robot, "  pose: {", 4)
+    asked = editor.at(robot, "  pose:\n", 4)
     prepared = editor.ask("textDocument/prepareRename", **asked)
     assert prepared["placeholder"] == "pose"
     edit = editor.ask("textDocument/rename", **asked, newName="place")
@@ -140,7 +140,7 @@ def test_names_that_are_refused(editor: Editor, station: Path, name: str, why: s
 def test_a_name_that_would_hide_another_is_refused(editor: Editor, station: Path) -> None:
     uri = editor.open(station / "resources" / "robot.yaml")
     with pytest.raises(RefusedError, match=r"`robot\.move_to_position\.position` would hide the variable"):
-        editor.ask("textDocument/rename", **editor.at(uri, "  pose: {", 4), newName="position")
+        editor.ask("textDocument/rename", **editor.at(uri, "  pose:\n", 4), newName="position")
     editor.close(uri)
 
 

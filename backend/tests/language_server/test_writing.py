@@ -83,12 +83,13 @@ def test_unfinished_yaml_keeps_names_known(editor: Editor, station: Path) -> Non
     editor.close(uri)
 
 
+RUN = "    title: {en: Run the nutrunner, sv: Kör mutterdragaren}\n"
 PLACES = [
-    ("resources/nutrunner.yaml", "    title: Run the nutrunner\n", "    restart: |\n", ["true", "false"]),
-    ("resources/nutrunner.yaml", "    title: Run the nutrunner\n", "    tit|\n", ["title"]),
+    ("resources/nutrunner.yaml", RUN, "    restart: |\n", ["true", "false"]),
+    ("resources/nutrunner.yaml", RUN, "    tit|\n", ["title"]),
     (
         "resources/nutrunner.yaml",
-        "    title: Run the nutrunner\n",
+        RUN,
         "    human:\n      |\n",
         ["task", "acknowledgement"],
     ),
@@ -140,8 +141,8 @@ PLACES = [
     ),
     (
         "resources/operator.yaml",
-        "title: Operator with watch\n",
-        "|\ntitle: Operator with watch\n",
+        "title: {en: Operator",
+        "|\ntitle: {en: Operator",
         ["services", "flows"],
     ),
     ("station.yaml", "\nrest: >-\n", "\nrest: robot.po|\nx: >-\n", ["robot.pose"]),
@@ -186,7 +187,7 @@ def test_what_can_stand_there(editor: Editor, station: Path, file: str, old: str
 def test_an_option_takes_the_place_of_what_is_typed(editor: Editor, station: Path) -> None:
     """Also in a text that is folded, behind letters that take two units of UTF-16."""
     uri = editor.open(station / "resources" / "nutrunner.yaml")
-    editor.type(uri, "title: Run the nutrunner", "title: 𝔫𝔲𝔱 ")
+    editor.type(uri, RUN.strip(), "title: 𝔫𝔲𝔱 ")
     editor.type(
         uri,
         "      not tool_is_running_forward and tool_is_idle and",

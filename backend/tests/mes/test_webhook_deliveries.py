@@ -24,6 +24,7 @@ from sequence_planner.mes.webhooks import endpoints as webhooks
 from sequence_planner.mes.webhooks.deliveries import Pace
 from sequence_planner.mes.webhooks.endpoints import MOST_WEBHOOKS, Seal, UnreadableSecretError, Webhook, key_file
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
+from support.databases import with_tables
 from support.examples import examples
 
 PACE = Pace(first=2.0, longest=60.0, longest_hold=8.0, attempts=3)
@@ -185,8 +186,10 @@ def test_a_secret_is_of_no_use_without_the_key_beside_the_database(database: Dat
 @given(st.lists(st.tuples(st.integers(0, 3), st.booleans(), st.floats(0.0, 30.0)), max_size=40))
 def test_every_event_is_delivered_once_or_given_up(steps: list[tuple[int, bool, float]]) -> None:
     taken: Counter[int] = Counter()
-    with tempfile.TemporaryDirectory() as folder, closing(Database.open(f"sqlite:///{folder}/s.sqlite")) as database:
-        database.upgrade()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        closing(Database.open(with_tables(Path(folder) / "s.sqlite"))) as database,
+    ):
         _, webhook = make(database)
         now, happened = 0.0, 0
         for number, fails, seconds in steps:

@@ -20,6 +20,7 @@ ARM, STATION, OPERATIONS, SPECIFICATIONS = (
 )
 NAMES = "names with their definitions"
 STAGE = f"a stage is exactly one of {', '.join(KINDS)}"
+TITLE = "expected a text, or one for each language: `{en: …, sv: …}`"
 NOT_YAML = "this is not YAML:"
 INDENTATION = "this does not belong to what is above it: look at the indentation and the quotes"
 NO_NAME = "a `name:` stands here where none may: look at the indentation, and quote a text that has `: `"
@@ -79,8 +80,8 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
             "`deadline` is for incoming topics; an outgoing one is repeated with `every`",
         ),
         # values of another kind
-        (ARM, "title: Arm", "title: ‹5", "expected a text, found `5`"),
-        (ARM, "title: Arm", "title: ‹{position}", "expected a text, found a mapping"),
+        (ARM, "title: Arm", "title: ‹5", f"{TITLE}, found `5`"),
+        (ARM, "title: Arm", "title: {‹position}", "`position` is not known here"),
         (
             ARM,
             "enabled: goto == pose and pose != position",

@@ -312,7 +312,7 @@ _ENGINE_STEPS = "  operations:\n" + "".join(
 _TIGHTENING = """
 # In the order in which the ladder frame settles evenly.
 tighten_bolts:
-  title: Tighten all bolts
+  title: {en: Tighten all bolts, sv: Dra åt alla skruvar}
   for: {pair: bolt_pair}
   sequence: tighten_bolt_pair(pair)
 """

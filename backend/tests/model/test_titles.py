@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import pytest
+from pydantic import TypeAdapter
 
 from editor.shorthand import SHORTHAND
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.model.loader import load_station
+from sequence_planner.texts.message import Message, Title, message
 
 from .breaking import findings, replace, write
 
@@ -72,6 +75,60 @@ def test_a_value_has_its_title_in_the_titles_of_abilities(press: Path) -> None:
         "spot: {values: [home, left, right, out], titles: {out: the exit}}",
     )
     assert ground(load_station(press)).abilities["arm.move(out)"].title == "Move to the exit"
+
+
+SAID = {"en": "Move to the exit", "sv": "Kör till utgången"}
+
+
+@pytest.fixture
+def spoken(press: Path) -> Path:
+    """A station whose parts have titles in two languages."""
+    values = "titles: {out: {en: the exit, sv: utgången}}"
+    replace(press, STATION, "spot: [home, left, right, out]", f"spot: {{values: [home, left, right, out], {values}}}")
+    replace(press, "resources/arm.yaml", 'title: "Move to {to}"', 'title: {en: "Move to {to}", sv: "Kör till {to}"}')
+    return press
+
+
+def test_a_part_has_its_title_in_each_language_with_what_its_parameters_are_called(spoken: Path) -> None:
+    title = ground(load_station(spoken)).abilities["arm.move(out)"].title
+    assert title == SAID["en"], "all that does not ask for a language has the English one"
+    assert isinstance(title, Title)
+    assert title.words == SAID
+    assert pickle.loads(pickle.dumps(title)).words == SAID
+    flag = sentences_of(ground(load_station(spoken))).tell_value("arm.move(out).executing", True)
+    assert flag.words["sv"].startswith("”Kör till utgången”")
+
+
+def test_a_message_tells_a_title_in_the_language_of_who_reads_it(spoken: Path) -> None:
+    told = message("waits.service", title=ground(load_station(spoken)).abilities["arm.move(out)"].title)
+    assert SAID["en"] in told
+    assert told.sent()["arguments"] == {"title": {"words": SAID}}
+    read = TypeAdapter(Message).validate_python(told.sent())
+    assert (read, read.sent()) == (told, told.sent())
+
+
+def test_a_model_means_the_same_in_any_language(spoken: Path) -> None:
+    automaton = ground(load_station(spoken))
+    replace(spoken, "resources/arm.yaml", 'sv: "Kör till {to}"', 'sv: "Åk till {to}"')
+    other = ground(load_station(spoken))
+    assert automaton == other
+    assert repr(automaton) == repr(other)
+
+
+@pytest.mark.parametrize(
+    ("title", "message"),
+    [
+        ('{en: "Move to {to}", sv: ‹"Kör till {too}"}', "`{too}` stands for no parameter here; did you mean `to`?"),
+        ('‹"Move to {t}"', "`{t}` stands for no parameter here; did you mean `to`?"),
+        ("{en: Move, ‹de: Fahren}", "`de` is not known here; did you mean `en`?"),
+        ("{en: Move, sv: ‹' '}", "write a text: this one is empty"),
+        ("‹[Move]", "expected a text, or one for each language: `{en: …, sv: …}`, found a list"),
+        ("‹{}", "say it in one language at least: `en` or `sv`"),
+    ],
+)
+def test_what_is_wrong_with_the_title_of_a_part_is_told_where_it_is(press: Path, title: str, message: str) -> None:
+    [place] = replace(press, "resources/arm.yaml", 'title: "Move to {to}"', f"title: {title}")
+    assert findings(press) == [f"{place}: {message}"]
 
 
 @pytest.mark.parametrize(

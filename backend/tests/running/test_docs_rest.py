@@ -53,4 +53,4 @@ def test_what_the_page_types_leads_from_the_first_administrator_to_a_stop(tmp_pa
         True,
         "started",
     )
-    assert "\ntitle: Our bolts\n" in (model / "station.yaml").read_text(encoding="utf-8")
+    assert "\ntitle: {en: Our bolts, " in (model / "station.yaml").read_text(encoding="utf-8")

@@ -8,6 +8,7 @@ from sequence_planner.controller.commands.command import CommandRefused, Query
 from sequence_planner.controller.commands.queries import (
     AboutMimic,
     AboutNames,
+    AboutShifts,
     AboutWorkMasters,
     AskAbilityBlockers,
     AskAdvice,
@@ -32,6 +33,7 @@ from sequence_planner.controller.views.details import (
     PredicateView,
     ReactionView,
     ReadValueView,
+    ShiftsView,
     SupervisedView,
     TimeoutsView,
     TrialView,
@@ -114,6 +116,17 @@ OFFER = OfferView(
     obstacle_message=None,
 )
 CLAIM = OFFER.model_copy(update={"kind": "correction", "errand": None, "claims": ["tighten"], "only_if_checked": True})
+NO_NAMES = NamesView(
+    variables={},
+    values=[],
+    station={},
+    resources={},
+    abilities={},
+    tasks={},
+    operations={},
+    specifications={},
+    work_masters={},
+)
 ADVICE = AdviceView(revision=7, offers=[OFFER], if_checked=[CLAIM], reasons=None, complete=True, seconds=0.4)
 POSE = InvolvedView(
     name="robot.pose",
@@ -227,6 +240,9 @@ DEFINITION = AbilityDefinitionView(
 )
 
 
+SHIFTS = ShiftsView(shifts={})
+
+
 def example_figures(*, behind: bool = False) -> FiguresView:
     """Of four ticks, three records and two plans."""
     ticks, latency = Distribution((0.001, 0.1)), Distribution((0.01,))
@@ -254,7 +270,9 @@ def example_answer(ask: Query[Any]) -> DataModel:
         case AboutMimic():
             return MimicView(made_from="model", width=872, height=346, symbols=[], findings=[])
         case AboutNames():
-            return NamesView(variables={}, values=[])
+            return NO_NAMES
+        case AboutShifts():
+            return SHIFTS
         case AskAdvice():
             return ADVICE
         case AskCorrection():

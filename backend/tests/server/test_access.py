@@ -48,6 +48,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/session/provider/answer": ("public", None),
     "POST /api/v1/setup": ("public", None),
     "POST /api/v1/wearables/pairing": ("public", None),
+    "GET /api/v1/wearables/names": ("watch", None),
     "GET /api/v1/wearables/self": ("watch", None),
     "WS /api/v1/wearables/stream": ("watch", None),
     "DELETE /api/v1/session": ("viewer", None),
@@ -197,6 +198,7 @@ FOR_WATCHES = {
     "POST /api/v1/tasks/{task}/problem",
     "POST /api/v1/tasks/{task}/problem/solved",
     "WS /api/v1/wearables/stream",
+    "GET /api/v1/wearables/names",
     "GET /api/v1/wearables/self",
     "GET /api/v1/instructions/{name}",
 }

@@ -13,6 +13,7 @@ from sequence_planner.controller.views.station import OverrideFieldView, Station
 from sequence_planner.execution.vocabulary import Mode, Production
 from sequence_planner.server.stream.broadcast import difference
 from sequence_planner.server.stream.messages import MAPS, Delta
+from sequence_planner.texts.message import Sentence, Title, message
 from support.example_view import example_view
 
 EXAMPLE = example_view()
@@ -112,6 +113,22 @@ def test_true_is_not_one() -> None:
     variables = changed["variables"]
     assert isinstance(variables, dict)
     assert isinstance(variables["robot.pose"], VariableView)
+
+
+def test_a_sentence_is_told_anew_whose_words_alone_are_others() -> None:
+    """What an operation waits for is written as the model has it, whatever of it holds already."""
+    (name, operation), *_ = EXAMPLE.operations.items()
+
+    def waiting(words: str, title: str = "Pair") -> StationView:
+        pair = Title("Pair", {"en": "Pair", "sv": title})
+        until = message("sentence.until", conditions=[Sentence({"en": words}, "all pairs"), pair])
+        return example_view(operations={name: operation.model_copy(update={"sentence": until})})
+
+    before = waiting("pairs 4 to 6 are tight")
+    assert difference(before, waiting("pairs 4 to 6 are tight")) == ({"time": before.time}, {})
+    for after in (waiting("pair 6 is tight"), waiting("pairs 4 to 6 are tight", title="Par")):
+        changed, _ = difference(before, after)
+        assert changed["operations"] == after.operations
 
 
 def test_a_delta_can_say_everything_that_a_view_can() -> None:

@@ -12,15 +12,16 @@ import pytest
 
 from journal.happened import with_writer
 from mes.test_ledger import moment
+from sequence_planner.controller.views.details import ShiftTimesView
 from sequence_planner.controller.views.station import JobView
 from sequence_planner.execution.vocabulary import JobState
 from sequence_planner.journal.writer import RunWriter
-from sequence_planner.mes.figures import end_of_day
+from sequence_planner.mes.figures import end_of_day, start_of_day
 from support.example_view import example_view
 from support.server import Server
 from support.waiting import until
 
-from .example_answers import WORK_MASTERS
+from .example_answers import SHIFTS, WORK_MASTERS
 from .test_job_orders import controller, mes, store
 from .test_looking import Telling
 
@@ -62,6 +63,7 @@ def test_of_a_station_that_has_done_nothing_nothing_is_known(mes: httpx.Client) 
     assert (found["in_work"], found["cycle"], found["availability"]) == ([], None, None)
     assert found["made"] == {"count": 0, "planned": None, "by_now": None}
     assert found["day"] <= found["time"]
+    assert (found["shift"], found["next_shift"]) == (None, None), "it has no shifts"
 
 
 def test_what_was_made_of_what_is_due_and_how_long_the_station_worked(
@@ -100,6 +102,57 @@ def test_what_was_made_of_what_is_due_and_how_long_the_station_worked(
     until(lambda: len(figures(mes)["in_work"]) == 1)
     in_work = figures(mes)["in_work"][0]
     assert (in_work["job"], in_work["title"], in_work["began"]) == ("late", "Engine 4711", now - 5)
+
+
+def test_what_was_made_in_the_shift_that_is_on(
+    mes: httpx.Client, server: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a station that works freely, at noon; it was first heard of in the shift before."""
+    now, monotonic = time.time(), time.monotonic()
+    began = start_of_day(now) + (int(now - start_of_day(now)) // 60 - 10) * 60  # ten minutes ago and a bit
+    minute = round(began - start_of_day(now)) // 60
+    title = {"en": "Early shift", "sv": "Förmiddag"}
+    shifts = {
+        "early": ShiftTimesView(
+            title=title, minutes=(minute, minute + 300), days=[*range(7)], breaks=[(minute, minute + 5)]
+        ),
+        "before": ShiftTimesView(title={}, minutes=(minute - 60, minute), days=[*range(7)], breaks=[]),
+    }
+    monkeypatch.setitem(SHIFTS.shifts, "early", shifts["early"])
+    monkeypatch.setitem(SHIFTS.shifts, "before", shifts["before"])
+    begun = {"values": {}, "senses": {}, "memory": {}, "jobs": {}, "mode": "automatic", "by_order": False}
+
+    def ticked(at: float, **content: object) -> tuple[str, float, dict[str, Any]]:
+        return "ticked", at, {"now": [at, monotonic - now + at], **content}
+
+    def packml(at: float, state: str) -> tuple[str, float, dict[str, Any]]:
+        return "packml", at, {"state": state, "since": at, "monotonic": monotonic - now + at}
+
+    write(
+        server,
+        ("begun", began - 400, begun),
+        packml(began - 300, "execute"),
+        ticked(began - 200, activated=["tighten"]),
+        ticked(began - 100, completed=["tighten"]),
+        ticked(began + 100, activated=["tighten"]),
+        ticked(began + 200, completed=["tighten"]),
+        packml(began + 450, "held"),
+    )
+    until(lambda: figures(mes)["made"]["count"] == 2, seconds=20)
+    found = figures(mes)
+    assert (found["shift"]["name"], found["shift"]["title"], found["shift"]["made"]) == ("early", title, 1)
+    assert (found["shift"]["begins"], found["shift"]["ends"]) == (began, began + 300 * 60)
+    availability = found["shift"]["availability"]
+    assert availability["available"] == pytest.approx(150), "after the break"
+    assert availability["counted"] == pytest.approx(found["time"] - began - 300)
+    assert availability["share"] == availability["available"] / availability["counted"]
+    assert availability["since"] == began
+    assert (found["next_shift"]["name"], found["next_shift"]["begins"]) == ("before", began - 3600 + 86_400)
+
+    monkeypatch.delitem(SHIFTS.shifts, "early")
+    until(lambda: figures(mes)["shift"] is None, seconds=20)
+    assert figures(mes)["next_shift"]["name"] == "before"
+    assert figures(mes)["availability"] is not None, "that of the day"
 
 
 def shown(taken: float) -> JobView:

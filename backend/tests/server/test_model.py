@@ -23,7 +23,13 @@ from support.waiting import PATIENCE, until
 from .test_acting import problem
 
 MODEL = "/api/v1/model"
-TITLE = {"kind": "set", "file": "station.yaml", "path": ["title"], "was": "Bolt tightening station", "value": "Bolts"}
+TITLE = {
+    "kind": "set",
+    "file": "station.yaml",
+    "path": ["title", "en"],
+    "was": "Bolt tightening station",
+    "value": "Bolts",
+}
 
 
 @pytest.fixture
@@ -96,7 +102,7 @@ def test_the_draft_begins_as_the_station_is(eva: httpx.Client, model: Path) -> N
     assert {each["state"] for each in draft["files"].values()} == {"same"}
     assert (draft["undo"], draft["redo"]) == (None, None)
     files = read(eva, "/files", path="station.yaml")["files"]
-    assert files["station.yaml"]["content"]["title"] == "Bolt tightening station"
+    assert files["station.yaml"]["content"]["title"]["en"] == "Bolt tightening station"
     assert files["station.yaml"]["text"] == (model / "station.yaml").read_text(encoding="utf-8")
     assert set(read(eva, "/files")["files"]) == set(draft["files"])
     assert read(eva, "/files", path="resources/none.yaml")["files"] == {"resources/none.yaml": None}
@@ -107,7 +113,7 @@ def test_an_edit_is_seen_by_the_other_and_undone_by_who_made_it(
 ) -> None:
     before = read_files(model)
     changed = made(eva, TITLE, title="another title")
-    assert changed["files"]["station.yaml"]["content"]["title"] == "Bolts"
+    assert changed["files"]["station.yaml"]["content"]["title"]["en"] == "Bolts"
     draft = read(adam)
     assert (draft["number"], draft["undo"]) == (changed["number"], None)
     assert draft["files"]["station.yaml"]["state"] == "changed"
@@ -130,7 +136,7 @@ def test_edits_of_other_parts_go_together(eva: httpx.Client, adam: httpx.Client)
     mine = text.replace("request: [none,", "request: [nothing,")
     made(adam, {"kind": "text", "file": "station.yaml", "was": text, "text": mine})
     content = read(eva, "/files", path="station.yaml")["files"]["station.yaml"]["content"]
-    assert (content["title"], content["enumerations"]["request"][0]) == ("Bolts", "nothing")
+    assert (content["title"]["en"], content["enumerations"]["request"][0]) == ("Bolts", "nothing")
     problem(change(adam, {"kind": "text", "file": "station.yaml", "was": text, "text": ""}), 409, "part-changed")
 
 
@@ -235,7 +241,7 @@ def test_what_happens_to_the_files_of_the_station_is_taken_up(eva: httpx.Client,
     path.write_text(path.read_text(encoding="utf-8").replace("priority: 1", "priority: 3"), encoding="utf-8")
     files = read(eva, "/files")["files"]
     assert files["operations.yaml"]["content"]["tighten_bolt_pair"]["priority"] == 3
-    assert files["station.yaml"]["content"]["title"] == "Bolts"
+    assert files["station.yaml"]["content"]["title"]["en"] == "Bolts"
     states = {path: each["state"] for path, each in read(eva)["files"].items() if each["state"] != "same"}
     assert states == {"station.yaml": "changed"}
 

@@ -13,7 +13,7 @@ from websockets.exceptions import InvalidStatus
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.server.http.credentials import watch_cookie
 from support.server import Controller, Server
-from support.waiting import until
+from support.waiting import patience, until
 
 from .test_acting import problem
 from .test_people import records
@@ -48,11 +48,15 @@ def test_a_watch_is_offered_paired_confirmed_and_shown_its_tasks(client: httpx.C
     assert message == {
         "kind": "watch",
         "time": message["time"],
+        "age": pytest.approx(0.5, abs=patience(0.5)),
         "station": "Bolting",
         "mode": "automatic",
         "standing": "working",
         "silent": [],
         "failing": [],
+        "alarm": None,
+        "next": None,
+        "progress": {"done": 0, "all": 1},
         "tasks": {OWN: station().tasks[OWN].model_dump(mode="json")},
     }
 

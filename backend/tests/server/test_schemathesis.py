@@ -37,6 +37,7 @@ NOT_GUESSED = {
     "GET /api/v1/storage",  # as of backups
     "POST /api/v1/storage/archive",
     "GET /api/v1/wearables/self",
+    "GET /api/v1/wearables/names",
 }
 
 
@@ -59,7 +60,7 @@ def roles(server: Server) -> dict[str, str]:
 
 def edges_of(operations: Collection[str]) -> set[str]:
     """The operations whose edges are asked for: a part of them outside campaigns, always the same one."""
-    return {each for each in operations if SHARE >= 1 or zlib.crc32(each.encode()) % 3 == 0}
+    return {each for each in operations if SHARE >= 1 or zlib.crc32(each.encode()) % 6 == 0}
 
 
 def test_an_administrator_finds_every_answer_as_it_is_described(tmp_path: Path) -> None:

@@ -16,7 +16,8 @@ from support.server import Server
 HASH = "'sha256-pODQO96uX/EpWyr2+2ROQmWa44F+aFLu14EKEhc5T/0='"
 DOCUMENT = (
     f'<!doctype html><meta http-equiv="content-security-policy" content="default-src \'self\'; '
-    f"style-src-attr 'unsafe-hashes' 'sha256-S8=='; frame-ancestors *; connect-src *; script-src 'self' {HASH}\">"
+    f"style-src-attr 'unsafe-hashes' 'sha256-S8=='; frame-ancestors *; connect-src *; style-src 'self' 'sha256-T9=='; "
+    f"script-src 'self' {HASH}\">"
 )
 
 
@@ -44,6 +45,7 @@ def test_a_document_of_the_build_may_run_its_own_scripts_and_no_more(server: Ser
     first = client.get("/")
     policy = rules(first.headers["content-security-policy"])
     assert policy["script-src"] == f"'self' {HASH}"
+    assert policy["style-src"] == "'self' 'sha256-T9=='"
     assert policy["style-src-attr"] == "'unsafe-hashes' 'sha256-S8=='"
     assert (policy["connect-src"], policy["frame-ancestors"]) == ("'self'", "'none'")
     again = client.get("/", headers={"If-None-Match": first.headers["etag"]})

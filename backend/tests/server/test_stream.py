@@ -114,6 +114,31 @@ def test_no_old_view_is_shown_to_who_comes_or_asks_while_the_controller_is_lost(
         assert (hear(late)["controller"], hear(late)["kind"]) == ("heard", "snapshot")
 
 
+def test_a_snapshot_says_how_long_ago_the_controller_was_heard(
+    server: Server, stream: ClientConnection, controller: Controller
+) -> None:
+    hear_kind(stream, "delta")
+    with listen(server) as late:
+        assert 0 <= hear(late)["age"] < patience(1)
+    controller.publishing = False
+    time.sleep(1)
+    with listen(server) as late:
+        assert 1 <= hear(late)["age"] < patience(2)
+
+
+def test_a_controller_whose_time_stands_still_is_no_younger_for_what_it_shows(
+    server: Server, stream: ClientConnection, controller: Controller
+) -> None:
+    """It may show what it knew once more to whoever connects, and hang."""
+    hear_kind(stream, "delta")
+    controller.publishing = False
+    for _ in range(5):
+        time.sleep(0.2)
+        controller.show(controller.view)
+    with listen(server) as late:
+        assert hear_kind(late, "snapshot")["age"] >= 0.9
+
+
 def test_who_comes_before_the_controller_gets_its_first_view(lonely_server: Server, controller: Controller) -> None:
     with listen(lonely_server) as stream:
         assert hear_kind(stream, "snapshot")["view"]["station"]["name"] == "bolting"

@@ -5,16 +5,38 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from sequence_planner.controller.commands.command import Query
+from sequence_planner.controller.commands.queries import AboutNames
 from sequence_planner.controller.commands.tasks import AcknowledgeTask, ReportProblem, SolveProblem
+from sequence_planner.controller.ipc import ControllerLink
+from sequence_planner.controller.views.station import (
+    AlarmMessages,
+    JobStepState,
+    JobStepView,
+    PlanStepView,
+    Priority,
+    StationStanding,
+    StepStatus,
+)
 from sequence_planner.core.actor import ActorKind
-from support.server import Controller, Server
+from sequence_planner.core.data_models import DataModel
+from sequence_planner.execution.vocabulary import JobState
+from sequence_planner.server.api.watches import WatchProgress
+from sequence_planner.server.settings import Settings
+from sequence_planner.server.stream.endpoints import progress_of
+from sequence_planner.texts.message import as_it_was
+from support.example_view import example_job, step
+from support.server import Controller, Loop, Server
 from support.waiting import patience
 
+from .example_answers import NO_NAMES, example_answer
 from .test_acting import problem
 from .test_people import closing_code
 from .test_stream import hear
@@ -114,6 +136,36 @@ def test_two_watches_serve_one_resource_and_a_third_another(
     assert [each["name"] for each in client.get(WATCHES).json()["watches"]] == ["Watch 3", "Watch 2", "Watch 1"]
 
 
+NAMES = NO_NAMES.model_copy(
+    update={
+        "station": {"sv": "Cellen"},
+        "resources": {name: {"sv": name.title()} for name in ("operator", "inspector", "robot")},
+        "abilities": {name: {"sv": "x"} for name in ("operator.place", "inspector.look", "robot.move")},
+        "tasks": {name: {"sv": "x"} for name in ("operator.place", "inspector.look")},
+        "operations": {"inspect": {"sv": "Inspector"}},
+    }
+)
+
+
+class NamingController(Controller):
+    """A controller that is asked what its parts are called."""
+
+    def __init__(self, loop: Loop, path: Path) -> None:
+        super().__init__(loop, path)
+        self.link = ControllerLink(path, self.handle, self.answer)
+
+    async def answer(self, ask: Query[Any]) -> DataModel:
+        return NAMES if isinstance(ask, AboutNames) else example_answer(ask)
+
+
+@pytest.fixture
+def controller(loop: Loop, settings: Settings) -> Iterator[Controller]:
+    controller = NamingController(loop, settings.controller_socket)
+    controller.start()
+    yield controller
+    controller.stop()
+
+
 def texts(document: object) -> Iterator[str]:
     """All that is written in a document."""
     if isinstance(document, dict):
@@ -140,7 +192,10 @@ def test_a_watch_reads_nothing_but_its_own_tasks(client: httpx.Client, device: D
                 readable[path] = answer
             else:
                 problem(answer, 401, "signed-out")
-    assert readable.keys() == {"/healthz", "/api/v1/session", f"{WATCHES}/self"}
+    assert readable.keys() == {"/healthz", "/api/v1/session", f"{WATCHES}/self", f"{WATCHES}/names"}
+    names = readable[f"{WATCHES}/names"].json()
+    assert (names["station"], names["resources"].keys()) == ({"sv": "Cellen"}, {"operator", "robot"})
+    assert (names["abilities"].keys(), names["tasks"].keys()) == ({"operator.place", "robot.move"}, {"operator.place"})
     problem(device.get("/api/v1/openapi.json"), 401, "signed-out")
     for place in ("/api/v1/stream", "/api/v1/ros/stream", "/api/v1/pipelines/stream"):
         with pytest.raises(InvalidStatus) as refused:
@@ -156,6 +211,94 @@ def test_a_watch_reads_nothing_but_its_own_tasks(client: httpx.Client, device: D
     foreign = station().tasks[FOREIGN]
     for hidden in (FOREIGN, foreign.title, foreign.text, "inspector", "Inspector", "robot.pose", "/robot/state"):
         assert not any(hidden == text or (len(hidden) > 3 and hidden in text) for text in told), hidden
+
+
+def test_a_watch_names_an_alarm_while_help_is_needed(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    active(client, device)
+    change = {
+        "text": "The robot stands still",
+        "action": "Look at the robot",
+        "messages": AlarmMessages(
+            as_it_was("The robot stands still", ""), None, as_it_was("Look at the robot", ""), ()
+        ),
+        "priority": Priority.MEDIUM,
+    }
+    slow = station().alarms["slow"]
+    every = {"slow": slow, "still:robot": slow.model_copy(update=change)}
+    with device.listen() as stream:
+
+        def told(name: str | None, **changes: object) -> object:
+            controller.show(station(time=next(times), alarms=every, named_alarm=name, **changes))
+            while (message := hear(stream))["time"] != controller.view.time:
+                pass
+            return message["alarm"]
+
+        times = itertools.count(2000.0)
+        said = {
+            "text": "The robot stands still",
+            "action": "Look at the robot",
+            "message": as_it_was("The robot stands still", "").sent(),
+            "action_message": as_it_was("Look at the robot", "").sent(),
+            "priority": "medium",
+            "state": slow.state.value,
+            "since": slow.since,
+        }
+        assert told("still:robot") is None, "nobody is needed"
+        assert told("still:robot", silent=["Robot"]) is None, "which device it is says enough"
+        assert told("still:robot", failing=["Robot"]) == said
+        assert told("still:robot", standing=StationStanding.STOPPED) == said
+        assert told(None, failing=["Robot"]) is None
+
+
+def test_a_watch_is_told_what_its_own_person_does_next_while_the_station_goes_on(
+    client: httpx.Client, device: Device, controller: Controller
+) -> None:
+    active(client, device)
+    plan = station().plan
+    steps = [
+        *plan.steps,
+        step("look", "inspector", StepStatus.NEXT, 3),
+        step("place", "operator", StepStatus.PLANNED, 4).model_copy(update={"expected_start": 1008.0}),
+        step("place", "operator", StepStatus.PLANNED, 6),
+    ]
+    with device.listen() as stream:
+
+        def told(standing: StationStanding, steps: list[PlanStepView]) -> object:
+            controller.show(station(time=next(times), standing=standing, plan=plan.model_copy(update={"steps": steps})))
+            while (message := hear(stream))["time"] != controller.view.time:
+                pass
+            return message["next"]
+
+        times = itertools.count(2000.0)
+        assert told(StationStanding.WORKING, steps) == {"ability": "operator.place", "title": "place", "at": 1008.0}
+        assert told(StationStanding.WORKING, steps[:3]) is None, "what somebody else does"
+        for standing in (StationStanding.HELD, StationStanding.PAUSED, StationStanding.STOPPED):
+            assert told(standing, steps) is None
+
+
+def test_a_watch_is_told_how_far_the_order_in_work_is_or_else_the_operations_of_the_round() -> None:
+    def steps(*states: JobStepState) -> dict[str, JobStepView]:
+        return {
+            str(place): JobStepView(state=state, waits_for=[], started=None, ended=None)
+            for place, state in enumerate(states)
+        }
+
+    state = JobStepState
+    running = example_job(steps=steps(state.COMPLETED, state.SKIPPED, state.ACTIVE))
+    view = station(jobs={"4710": example_job(state=JobState.ENDED, steps=steps(state.ACTIVE)), "4711": running})
+    assert progress_of(view) == WatchProgress(done=1, all=2)
+
+    first = next(iter(station().operations.values())).model_copy(
+        update={"active": False, "began": 990.0, "ended": 992.0}
+    )
+    before = first.model_copy(update={"began": 980.0, "ended": 985.0})
+    again = first.model_copy(update={"active": True, "active_since": 993.0})
+    freely = station(jobs={}, by_order=False, operations={"first": first, "before": before, "again": again})
+    assert progress_of(freely) == WatchProgress(done=1, all=3)
+    assert progress_of(freely.model_copy(update={"by_order": True})) is None
+    assert progress_of(freely.model_copy(update={"operations": {}})) is None
 
 
 def test_the_tasks_are_told_when_they_change_and_the_time_twice_a_second(

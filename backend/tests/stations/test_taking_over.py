@@ -10,7 +10,9 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.simulation.truck_station.poses import PAIRS
 from stations.simulated import HallRig
+from support.examples import SHARE
 
+IN_CAMPAIGNS = pytest.mark.skipif(SHARE < 1, reason="an engine by hand takes long: `make campaign`")
 HOME = "HomeJOINTPose"
 
 
@@ -54,7 +56,7 @@ def test_with_the_robot_switched_off_the_watch_gets_its_work_and_the_engine_is_r
     assert not rig.hall.world.verdict.wrong
 
 
-@pytest.mark.parametrize("pose", ["UNKNOWN", PAIRS[1]])
+@pytest.mark.parametrize("pose", ["UNKNOWN", pytest.param(PAIRS[1], marks=IN_CAMPAIGNS)])
 def test_a_robot_that_dies_in_the_middle_of_a_bolt_is_worked_around_by_hand(pose: str) -> None:
     """On its way down with the turning tool, or while that turns on the bolts; then the tool is stopped by Hold."""
     rig = HallRig(seed=3)

@@ -17,6 +17,7 @@ from sequence_planner.controller.views.station import (
     JobStepState,
     JobStepView,
     JobView,
+    NextMovesView,
     OperationView,
     OverrideFieldView,
     OverrideView,
@@ -236,7 +237,8 @@ def example_view(**changes: object) -> StationView:
                 title="Place bolt pair 1",
                 text="Place it on the cover plate",
                 created=995.0,
-                next_moves=["Robot moves above the engine"],
+                next_moves=["Move above the engine"],
+                movers=[NextMovesView(name="robot", title="Robot", moves=["Move above the engine"])],
                 instruction=InstructionView(
                     text={
                         "en": "Put both bolts into the marked holes.",
@@ -295,6 +297,7 @@ def example_view(**changes: object) -> StationView:
                 parts=[],
             )
         },
+        named_alarm=None,
         way_back=None,
         analysis=None,
         standby=None,

@@ -14,6 +14,11 @@ TIMED = SHARE >= 1
 ONLY_TIMED = pytest.mark.skipif(not TIMED, reason="how long it takes is for `make campaign`, on a quiet machine")
 
 
+def rounds(number: int, least: int) -> int:
+    """How often something is tried that is tried so often in campaigns, and never less often than the `least`."""
+    return max(min(number, least), round(SHARE * number))
+
+
 def examples(number: int, share: float = SHARE, least: int = 10) -> settings:
     """So many examples where all are tried, always the same ones, and never less than the `least`; how long one takes
     does not matter.

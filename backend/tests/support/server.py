@@ -34,6 +34,7 @@ from sequence_planner.server.http.credentials import session_cookie
 from sequence_planner.server.server import uvicorn_config
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.settings import Settings
+from support.databases import with_tables
 from support.network import free_port
 from support.people import cheap_passwords
 from support.waiting import PATIENCE, patience, until
@@ -201,7 +202,7 @@ def settings_in(folder: Path) -> Settings:
     return Settings(
         controller_socket=folder / "controller.sock",
         page=page,
-        database=f"sqlite:///{folder / 'station.sqlite'}",
+        database=with_tables(folder / "station.sqlite"),
         port=free_port(),
     )
 

@@ -23,6 +23,7 @@ from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.core.late_log import LateLog
+from sequence_planner.language.shorthand.titles import NO_TITLES
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY
 
 LOG = LateLog(__name__)
@@ -121,11 +122,12 @@ def known_supervisor(automaton: Automaton) -> Supervisor | None:
 def key(automaton: Automaton) -> str:
     """Return what a model and the program have in common with others only if the same is found of them.
 
-    Places count, as what is found names them. In which order a job has its operations, what alarms there are and in
-    which words the model is written does not.
+    Places and titles of parts count, as what is found names them. In which order a job has its operations, what alarms
+    there are, in which words the model is written and what it calls variables and values does not.
     """
     masters = {name: replace(master, operations={}) for name, master in automaton.work_masters.items()}
-    ground = replace(automaton, work_masters=masters, alarms={}, vocabulary=NO_VOCABULARY, indices={})
+    wordless = replace(automaton, vocabulary=NO_VOCABULARY, titles=NO_TITLES)
+    ground = replace(wordless, work_masters=masters, alarms={}, indices={})
     content = pickle.dumps((ground, dict(automaton.places)))
     # Equal texts may be one text or several, which a pickle tells; after one of them they are as after all others.
     content = pickle.dumps(pickle.loads(content))

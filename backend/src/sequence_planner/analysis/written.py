@@ -21,6 +21,7 @@ from sequence_planner.language.syntax import Assignment, Expression, ExpressionE
 from sequence_planner.language.types import Place
 from sequence_planner.mimic.instructions import unshown_of
 from sequence_planner.mimic.picture import undrawn_of
+from sequence_planner.model.documents import SetDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
 from sequence_planner.pipelines.graph import StationPipelines
@@ -54,21 +55,25 @@ def suspicious_in(station: Station | None, automaton: Automaton, pipelines: Stat
 
 
 def _unused(station: Station) -> Iterator[ModelWarning]:
-    """Sets, relations, maps and predicates that nothing uses; one of a type where no instance does."""
+    """Sets, relations, maps and predicates that nothing uses; one of a type where no instance does.
+
+    A set with a title is used by sentences: they say what several values are called together.
+    """
     used = _used(station)
     idle: dict[Place, tuple[str, SourceText]] = {}
     for section, what in _SECTIONS.items():
-        for name in getattr(station.station, section):
-            if str(name) not in used:
+        for name, declared in getattr(station.station, section).items():
+            speaks = isinstance(declared, SetDocument) and declared.title is not None
+            if str(name) not in used and not speaks:
                 idle[name.place] = what, name
     predicates: dict[Place, list[tuple[str, SourceText]]] = defaultdict(list)
     for resource, document in station.resources.items():
         for name in document.predicates:
             predicates[name.place._replace(instance="")].append((resource, name))
-    for place, declared in predicates.items():
+    for place, everywhere in predicates.items():
         brought = place.file.startswith(str(station.folder / _PACKAGES))  # for whoever else has the package
-        if not brought and not any(f"{resource}.{name}" in used for resource, name in declared):
-            idle[place] = "predicate", declared[0][1]
+        if not brought and not any(f"{resource}.{name}" in used for resource, name in everywhere):
+            idle[place] = "predicate", everywhere[0][1]
     for place, (what, name) in idle.items():
         yield ModelWarning(place, "never-used", f"nothing uses the {what} `{name}`: leave it out, or use it")
 

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from sequence_planner.language.shorthand.titles import NO_TITLES, Titles, in_language
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import EnumerationType, Place
+from sequence_planner.model.fields import Words, WordsDocument, by_language, main_text
 from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.texts.message import Title
 
 # What each parameter is: its value, and the enumeration it is of.
 Binding = Mapping[str, tuple[str, EnumerationType]]
@@ -79,6 +81,29 @@ def with_values(text: str, binding: Binding) -> str:
     for parameter, (value, _) in binding.items():
         text = text.replace(f"{{{parameter}}}", value)
     return str(text)
+
+
+def title_of(text: Words | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
+    """The title of a part, or its name in plain words; with it what it is in other languages, where those are given."""
+    told = readable(main_text(text), name, binding, titles)
+    if not isinstance(text, WordsDocument):
+        return told
+    said = by_language(text).items()
+    return Title(told, {language: readable(each, name, binding, titles, language) for language, each in said})
+
+
+def own_title(text: Words | None, name: str) -> str:
+    """The title of what is there once, or its name as it is written."""
+    return str(name) if text is None else title_of(text, name, {})
+
+
+def followed_by(title: str, more: str) -> str:
+    """A title with more behind it, if there is any."""
+    if not more:
+        return title
+    if isinstance(title, Title):
+        return Title(f"{title}: {more}", {language: f"{said}: {more}" for language, said in title.words.items()})
+    return f"{title}: {more}"
 
 
 def readable(

@@ -32,8 +32,11 @@ from sequence_planner.automaton.findings import (
     Binding,
     Findings,
     UseOfRemoved,
+    followed_by,
     instance_name,
+    own_title,
     readable,
+    title_of,
     told_where_removed,
     with_values,
     without_arguments,
@@ -75,10 +78,8 @@ from sequence_planner.model.documents import (
     OperationDocument,
     SpecificationDocument,
     TimeoutsDocument,
-    by_language,
-    words_of,
 )
-from sequence_planner.model.fields import Predicate
+from sequence_planner.model.fields import Predicate, by_language, words_of
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
 
@@ -330,7 +331,7 @@ def _ability(
     return Ability(
         name=instance_name(f"{resource}.{name}", binding),
         resource=resource,
-        title=readable(document.title, name, binding, meaning.declarations.titles),
+        title=title_of(document.title, name, binding, meaning.declarations.titles),
         enabled=enabled,
         start_guard=start_guard,
         start_actions=start_actions,
@@ -379,7 +380,7 @@ def _human(meaning: Meaning, resource: str, document: AbilityDocument, binding: 
         return None
     text = document.human.acknowledgement
     check_acknowledgement(meaning, resource, text)
-    return HumanTask(readable(document.human.task, "", binding, meaning.declarations.titles), f"{resource}.{text}")
+    return HumanTask(title_of(document.human.task, "", binding, meaning.declarations.titles), f"{resource}.{text}")
 
 
 def _instruction(meaning: Meaning, document: InstructionDocument | None, binding: Binding) -> Instruction | None:
@@ -498,7 +499,7 @@ def ground_work_masters(
         check_steps(meaning, order.steps, operations, ordered, name)
         masters[str(name)] = WorkMaster(
             str(name),
-            readable(document.title, name, {}),
+            title_of(document.title, name, {}),
             {str(step): frozenset(map(str, before)) for step, before in order.steps.items()},
             brought_by(meaning, document.brings),
             order.alternatives,
@@ -518,7 +519,7 @@ def _operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocume
                 places[f"{OPERATION}.{full}.local"] = _operation_place(document.local, name)
             yield Operation(
                 full,
-                readable(document.title, name, binding, meaning.declarations.titles),
+                title_of(document.title, name, binding, meaning.declarations.titles),
                 meaning.predicate(document.precondition, scope),
                 meaning.predicate(document.goal, scope),
                 document.priority,
@@ -597,10 +598,10 @@ def ground_specifications(
         meaning.declarations.check_parameters(document.parameters, *(f"{name}." for name in document.zone or ()))
         for binding in meaning.declarations.bindings(document.parameters):
             full = instance_name(name, binding)
-            title = readable(document.title, name, binding, meaning.declarations.titles)
+            title = title_of(document.title, name, binding, meaning.declarations.titles)
             for words, forbidden in _parts(meaning, document, binding, known):
                 part = f"{full}: {words}" if words else full
-                specifications[part] = Specification(part, f"{title}: {words}" if words else title, simplify(forbidden))
+                specifications[part] = Specification(part, followed_by(title, words), simplify(forbidden))
                 meaning.declarations.places[part] = name.place
     return specifications
 
@@ -732,9 +733,9 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
     declarations.places |= {Path(place.file).name: place for place in station.empty}
     automaton = Automaton(
         name=str(station.station.name),
-        title=str(station.title),
+        title=own_title(station.station.title, station.station.name),
         description=str(station.station.description or ""),
-        resources={name: str(doc.title or name) for name, doc in station.resources.items()},
+        resources={name: own_title(doc.title, name) for name, doc in station.resources.items()},
         variables=declarations.variables | meaning.activities,
         abilities=abilities,
         flags=_flags(abilities, declarations, findings),
@@ -773,9 +774,9 @@ def ground_variables(station: Station) -> tuple[Automaton, list[Finding]]:
     declarations = Declarations(station, findings)
     automaton = Automaton(
         name=str(station.station.name),
-        title=str(station.title),
+        title=own_title(station.station.title, station.station.name),
         description="",
-        resources={name: str(doc.title or name) for name, doc in station.resources.items()},
+        resources={name: own_title(doc.title, name) for name, doc in station.resources.items()},
         variables=declarations.variables,
         abilities={},
         flags=(),

@@ -175,19 +175,25 @@ def read_within(path: Path, limits: Limits) -> Automaton:
     try:
         with within(limits.left):
             return usable_automaton(path)
-    except TimeoutError:
+    except DeadlinePassed:
         refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FOUND)
+
+
+class DeadlinePassed(BaseException):
+    """The end of the block of `within`, at whatever line. As `KeyboardInterrupt`, it is no error of the file that is
+    being read just then, and no handler of such errors takes it for one.
+    """
 
 
 @contextmanager
 def within(seconds: float) -> Iterator[None]:
-    """Raise `TimeoutError` in the block after so many seconds; in the main thread only."""
+    """Raise `DeadlinePassed` in the block after so many seconds; in the main thread only."""
 
     def ring(number: int, frame: FrameType | None) -> None:
-        raise TimeoutError
+        raise DeadlinePassed
 
     before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, max(seconds, 1e-6))  # 0 would be no deadline at all
     try:
         yield
     finally:

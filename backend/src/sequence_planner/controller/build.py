@@ -22,7 +22,7 @@ from sequence_planner.controller.features.variables import KIND as BELIEFS
 from sequence_planner.controller.features.variables import Beliefs, Variables
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.ticks import Ticker
-from sequence_planner.controller.io.traffic import LivePicture, PipelineTraffic
+from sequence_planner.controller.io.traffic import LivePicture, PipelineTraffic, WrittenShifts
 from sequence_planner.controller.metrics import Figures
 from sequence_planner.controller.planner_client import AdvisorClient, PlannerQuestions
 from sequence_planner.controller.recovery.build import build_recovery
@@ -128,6 +128,7 @@ def build_controller(
         in_control,
         PipelineTraffic(station.pipelines, devices),
         LivePicture(station),
+        WrittenShifts(station),
         devices,
         devices.overrides,
         Figures(

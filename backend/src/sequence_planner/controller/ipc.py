@@ -467,6 +467,7 @@ class ControllerClient:
         self.path = path
         self.view: StationView | None = None
         self.last_heard: float | None = None  # on the clock of `time.monotonic`
+        self._moved: float | None = None  # when the time of the view was another one than before, on that clock
         self._reply_deadline = reply_deadline
         self.network: NetworkView | None = None
         self._listeners: list[Callable[[StationView], None]] = []
@@ -492,6 +493,11 @@ class ControllerClient:
     def heard(self) -> bool:
         """True if a view came within the last two seconds."""
         return self.last_heard is not None and time.monotonic() - self.last_heard <= SILENCE
+
+    @property
+    def age(self) -> float | None:
+        """Seconds since the controller's time was seen to move; None where it never was."""
+        return None if self._moved is None else time.monotonic() - self._moved
 
     def listen(self, listener: Callable[[StationView], None]) -> None:
         """Call `listener` with each view as it arrives; it must not block."""
@@ -595,7 +601,10 @@ class ControllerClient:
                 self._answered(message)
 
     def _hear(self, view: StationView) -> None:
-        self.view, self.last_heard = view, time.monotonic()
+        now = time.monotonic()
+        if self.view is not None and self.view.time != view.time:
+            self._moved = now
+        self.view, self.last_heard = view, now
         if self._looking is None:
             self._look_for_silence()
         for listener in self._listeners:

@@ -25,9 +25,9 @@ from sequence_planner.editor.symbols.texts import (
     STATION,
     WORK_MASTERS,
     ModelContent,
-    entry,
     message_of,
     text_at,
+    title_at,
 )
 from sequence_planner.editor.symbols.types import type_part
 from sequence_planner.model.paths import resource_of, shown_path, type_of
@@ -260,8 +260,8 @@ class _Things:
 
     def _title(self, file: str, path: EntryPath) -> str | None:
         content = self._content.whole.get(file)
-        found = text_at(content, "title") if not path else entry(content, *map(str, path), "title")
-        return str(found) if isinstance(found, str) else None
+        found = title_at(content, *map(str, path), "title")
+        return None if found is None else str(found)
 
 
 def _variable(full: str) -> ModelPart:
@@ -272,7 +272,7 @@ def _variable(full: str) -> ModelPart:
 def station_of(files: Mapping[str, str]) -> tuple[str, str | None]:
     """The name and the title of a station, as far as they can be read."""
     content = ModelContent({STATION: files.get(STATION, "")}).get(STATION)
-    return str(text_at(content, "name") or ""), text_at(content, "title")
+    return str(text_at(content, "name") or ""), title_at(content, "title")
 
 
 # What is shown of a model as a whole.

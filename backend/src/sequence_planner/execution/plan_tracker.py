@@ -26,7 +26,7 @@ from sequence_planner.planning.problem import (
     Verdict,
 )
 from sequence_planner.planning.validation.lookahead import Lookahead
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import all_titles, message
 
 # Why there is a plan, or none: sentences for the people at the station.
 
@@ -73,7 +73,7 @@ def formula_of(automaton: Automaton, name: str) -> str:
 
 
 def _titles(automaton: Automaton, names: Iterable[str]) -> str:
-    return ", ".join(automaton.operations[name].title for name in sorted(names))
+    return all_titles(automaton.operations[name].title for name in sorted(names))
 
 
 # The plan that is being followed: what was started, what runs, what comes next.

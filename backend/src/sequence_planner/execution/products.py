@@ -41,8 +41,8 @@ def still_written(automaton: Automaton, master: WorkMaster, running: Iterable[st
     brought = frozenset(map(target, master.brings))
     for name in sorted(running):
         ability = automaton.abilities[name]
-        if written := sorted(_written(ability) & brought):
-            yield message("waits.end-of", title=ability.title, name=name, variables=", ".join(written))
+        if _written(ability) & brought:
+            yield message("waits.end-of", title=ability.title)
 
 
 def _written(ability: Ability) -> frozenset[str]:

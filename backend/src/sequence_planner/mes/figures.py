@@ -1,4 +1,4 @@
-"""The figures of the day: how long the station worked, what it has made, and how long a product takes."""
+"""The figures of the day and of shifts: how long the station worked, what it has made, how long a product takes."""
 
 from __future__ import annotations
 
@@ -10,13 +10,18 @@ from pydantic import BaseModel, ConfigDict
 
 from sequence_planner.controller.views.details import WorkMasterView
 from sequence_planner.controller.views.station import PackML
+from sequence_planner.mes.shifts import Shift, Span, seconds_within, with_span
 
 # Kept as the records of the run's journal are read one after the other, together with what is made for jobs, so that
 # nothing is read twice and a server that is started anew knows them at once.
 #
-# Availability is that of ISO 22400-2, APT / PBT. Nobody plans the planned busy time (PBT) here, so that is all of the
-# day since the station worked first, without the time in which it works by order and has none. The actual production
-# time (APT) is that of PackML's `execute`. While the controller was away nothing was produced.
+# Availability is that of ISO 22400-2, APT / PBT. The actual production time (APT) is that of PackML's `execute`. While
+# the controller was away nothing was produced. The planned busy time (PBT) of a shift is all of it but its breaks, as
+# far as the station was watched. Nobody plans that of a day: it is all of it since the station worked first, without
+# the time in which it works by order and has none.
+#
+# Records say when it worked and when products were done, and nothing of shifts: what a shift comes to is reckoned when
+# somebody asks, with the shifts as they are then.
 #
 # How long something lasted is told by the monotonic clock, which nobody sets; only the day is that of the wall clock.
 
@@ -28,6 +33,10 @@ _TREND_EVERY: Final = 600.0  # seconds between two points
 _TREND: Final = 150  # points: a day of 25 hours
 _MADE: Final = 5000  # products whose orders are remembered
 _BACK: Final = 3600.0  # seconds by which a clock that is set back leaves the day as it is
+_KEPT: Final = 26 * 3600.0  # seconds: a shift of a day on which the clocks are set back, and a bit more
+_JOINED: Final = 0.05  # seconds between records, by two clocks, that were no pause
+_SPANS: Final = 500  # in which it worked
+_MINUTE: Final = 60
 
 
 class MadeProduct(BaseModel):
@@ -42,6 +51,9 @@ class MadeProduct(BaseModel):
 class DayFigures(BaseModel):
     """The figures of the `day` that began then. `since` the station worked first `counted` seconds could have been
     worked, and `available` were. `heard` is the time of the last record.
+
+    It was `worked` in these spans of time, as far as it was `watched`, and so many products were done in each minute
+    since the epoch (`done`): for shifts, those of the last day.
 
     Of each work master there are the seconds that the last products took which were made freely (`cycles`), and since
     when the next one is made (`open`): null from the end of one until the next has begun.
@@ -61,12 +73,15 @@ class DayFigures(BaseModel):
     trend: list[tuple[float, float]] = []  # when, and the availability until then
     count: int = 0
     made: list[MadeProduct] = []  # the last of these
+    watched: float | None = None
+    worked: list[Span] = []
+    done: dict[int, int] = {}
     cycles: dict[str, list[float]] = {}
     open: dict[str, float | None] = {}
 
     def copied(self) -> DayFigures:
         """One that can go on without this one."""
-        lists = {"trend": [*self.trend], "made": [*self.made], "open": dict(self.open)}
+        lists = {"trend": [*self.trend], "made": [*self.made], "open": dict(self.open), "done": dict(self.done)}
         return self.model_copy(update={**lists, "cycles": {name: [*each] for name, each in self.cycles.items()}})
 
     @property
@@ -85,6 +100,7 @@ class DayFigures(BaseModel):
             monotonic = self.monotonic + elapsed
         self.heard, self.counted_to, self.monotonic = time, time, monotonic
         self._count(elapsed, time)
+        self._note_work(elapsed, time)
 
     def note_start(self, time: float) -> None:
         """Note that the controller was started anew: nobody knows that it worked since it was heard last."""
@@ -119,6 +135,13 @@ class DayFigures(BaseModel):
         if share is not None and not 0 <= now - last < _TREND_EVERY:
             self.trend = [*self.trend, (now, share)][-_TREND:]
 
+    def _note_work(self, seconds: float, now: float) -> None:
+        begin = now - seconds
+        self.watched = begin if self.watched is None else min(self.watched, begin)
+        spans = [each for each in self.worked if each[1] > now - _KEPT]
+        end = now if self.state == EXECUTE else begin
+        self.worked = with_span(spans, begin, end, joined=_JOINED, most=_SPANS)
+
     def _new_day(self) -> None:
         self.since, self.counted, self.available, self.trend = None, 0.0, 0.0, []
         self.count, self.made = 0, []
@@ -129,6 +152,34 @@ class DayFigures(BaseModel):
         """Count a product."""
         self.count += 1
         self.made = [*self.made, product][-_MADE:]
+        minute = int(product.ended // _MINUTE)
+        kept = int(_KEPT // _MINUTE)
+        self.done = {each: n for each, n in self.done.items() if abs(minute - each) <= kept}
+        self.done[minute] = self.done.get(minute, 0) + 1
+
+    # What a shift comes to.
+
+    def made_in(self, shift: Shift) -> int:
+        """Return how many products were done in a shift."""
+        return sum(n for minute, n in self.done.items() if shift.begin <= minute * _MINUTE < shift.end)
+
+    def counted_from(self, shift: Shift) -> float:
+        """Return since when a shift is counted: since it began, or the station is known."""
+        return shift.begin if self.watched is None else max(self.watched, shift.begin)
+
+    def seconds_of(self, shift: Shift, until: float) -> tuple[float, float]:
+        """Return how much of a shift was to be worked until then, and in how much of that the station worked."""
+        begin = self.counted_from(shift)
+        planned = [(max(first, begin), min(last, until)) for first, last in shift.planned]
+        worked = sum(seconds_within(self.worked, first, last) for first, last in planned if first < last)
+        return seconds_within(shift.planned, begin, until), worked
+
+    def trend_of(self, shift: Shift, until: float) -> list[tuple[float, float]]:
+        """Return the availability in a shift as it was every ten minutes."""
+        begin = self.counted_from(shift)
+        points = (begin + each * _TREND_EVERY for each in range(1, _TREND + 1))
+        found = ((at, self.seconds_of(shift, at)) for at in points if at <= until)
+        return [(at, worked / planned) for at, (planned, worked) in found if planned > 0]
 
     def work_freely(
         self, masters: Mapping[str, WorkMasterView], activated: Sequence[str], completed: Sequence[str], now: float

@@ -29,7 +29,7 @@ from sequence_planner.mimic.views import (
     MimicTrack,
     MimicView,
 )
-from sequence_planner.model.documents import Words, words_of
+from sequence_planner.model.fields import Words, words_of
 from sequence_planner.model.mimic.documents import (
     BindDocument,
     MimicDocument,

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from sequence_planner.model.fields import Action, DocumentPart, Given, Predicate, Seconds, TypeName
+from sequence_planner.model.fields import Action, DocumentPart, Given, Predicate, Seconds, TypeName, Words
 from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.marks import ReadValue
@@ -149,56 +149,6 @@ Duration = Annotated[
 ]
 
 
-def _said(text: SourceText) -> SourceText:
-    if not text.strip():
-        raise ValueError("write a text: this one is empty")
-    return text
-
-
-SaidText = Annotated[SourceText, AfterValidator(_said)]
-
-
-class WordsDocument(DocumentPart):
-    """A text for people in several languages."""
-
-    en: Given[SaidText] = None
-    """English, which is told where a language has no text of its own."""
-    sv: Given[SaidText] = None
-    """Swedish."""
-
-    @model_validator(mode="after")
-    def _says_something(self) -> WordsDocument:
-        if not self.model_fields_set:
-            raise ValueError("say it in one language at least: `en` or `sv`")
-        return self
-
-
-def _form_of_words(content: object) -> str | None:
-    if isinstance(content, dict | WordsDocument):
-        return "words"
-    return "text" if isinstance(content, str) else None
-
-
-Words = Annotated[
-    Annotated[SaidText, Tag("text")] | Annotated[WordsDocument, Tag("words")],
-    Discriminator(_form_of_words, "words", "a text, or one for each language: `{en: …, sv: …}`"),
-]
-
-
-def by_language(text: Words | None) -> dict[str, SourceText]:
-    """A text for people by its language; one that is written in none in particular is under the empty one."""
-    if text is None:
-        return {}
-    if isinstance(text, SourceText):
-        return {"": text}
-    return {language: said for language in type(text).model_fields if (said := getattr(text, language)) is not None}
-
-
-def words_of(text: Words | None) -> Mapping[str, str]:
-    """The same without the places at which it is written."""
-    return {language: str(said) for language, said in by_language(text).items()}
-
-
 # The words for values: `{placed: placed, tightened: tight}`, or `{true: in place, false: away}`.
 ValueTitles = dict[ReadValue, Words]
 
@@ -261,7 +211,7 @@ class EffectDocument(DocumentPart):
 class HumanDocument(DocumentPart):
     """A person carries the ability out: what the watch says, and the measured variable that is the acknowledgement."""
 
-    task: SourceText
+    task: Words
     """Text shown on the watch."""
     acknowledgement: SourceText
     """A measured `bool` of the resource."""
@@ -315,7 +265,7 @@ class TimeoutsDocument(DocumentPart):
 class AbilityDocument(DocumentPart):
     """An ability of a resource. `duration` estimates in seconds how long a run takes."""
 
-    title: Given[SourceText] = None
+    title: Given[Words] = None
     """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: one ability per value."""
@@ -546,7 +496,7 @@ EnumerationForm = Annotated[
 class ResourceDocument(DocumentPart):
     """A resource: its topics, its variables by who writes them, and what it can do."""
 
-    title: Given[SourceText] = None
+    title: Given[Words] = None
     """For people."""
     topics: dict[SourceText, TopicDocument] = Field(default_factory=dict)
     """The ROS 2 topics that the resource is reached by."""
@@ -596,7 +546,7 @@ class StationDocument(DocumentPart):
 
     name: SourceText
     """The station's name."""
-    title: Given[SourceText] = None
+    title: Given[Words] = None
     """For people."""
     description: Given[SourceText] = None
     """For people."""
@@ -646,7 +596,7 @@ class OperationDocument(DocumentPart):
     `local` is a formula of linear temporal logic over the run from activation to goal.
     """
 
-    title: Given[SourceText] = None
+    title: Given[Words] = None
     """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: one operation per value."""
@@ -667,7 +617,7 @@ class SpecificationDocument(DocumentPart):
     `exclusive`; a `zone` that resources share; an `order` of conditions.
     """
 
-    title: Given[SourceText] = None
+    title: Given[Words] = None
     """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: one specification per value."""

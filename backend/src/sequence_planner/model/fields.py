@@ -5,10 +5,11 @@ share.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from enum import Enum
 from typing import Annotated, TypeVar
 
-from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.language.lexer import KEYWORDS
@@ -79,3 +80,62 @@ Predicate = Annotated[SourceText | bool, TextUse.CONDITION]
 Action = Annotated[SourceText, TextUse.ACTION]
 TypeName = Annotated[SourceText, TextUse.TYPE]
 Seconds = Annotated[float, Field(ge=0, le=86_400)]
+
+
+# Texts for people.
+
+
+def _said(text: SourceText) -> SourceText:
+    if not text.strip():
+        raise ValueError("write a text: this one is empty")
+    return text
+
+
+SaidText = Annotated[SourceText, AfterValidator(_said)]
+
+
+class WordsDocument(DocumentPart):
+    """A text for people in several languages."""
+
+    en: Given[SaidText] = None
+    """English, which is told where a language has no text of its own."""
+    sv: Given[SaidText] = None
+    """Swedish."""
+
+    @model_validator(mode="after")
+    def _says_something(self) -> WordsDocument:
+        if not self.model_fields_set:
+            raise ValueError("say it in one language at least: `en` or `sv`")
+        return self
+
+
+def _form_of_words(content: object) -> str | None:
+    if isinstance(content, dict | WordsDocument):
+        return "words"
+    return "text" if isinstance(content, str) else None
+
+
+Words = Annotated[
+    Annotated[SaidText, Tag("text")] | Annotated[WordsDocument, Tag("words")],
+    Discriminator(_form_of_words, "words", "a text, or one for each language: `{en: …, sv: …}`"),
+]
+
+
+def by_language(text: Words | None) -> dict[str, SourceText]:
+    """A text for people by its language; one that is written in none in particular is under the empty one."""
+    if text is None:
+        return {}
+    if isinstance(text, SourceText):
+        return {"": text}
+    return {language: said for language in type(text).model_fields if (said := getattr(text, language)) is not None}
+
+
+def words_of(text: Words | None) -> Mapping[str, str]:
+    """The same without the places at which it is written."""
+    return {language: str(said) for language, said in by_language(text).items()}
+
+
+def main_text(text: Words | None) -> SourceText | None:
+    """A text for people as it stands in records and names: in English, or else in the first language that there is."""
+    said = by_language(text)
+    return said.get("en") or next(iter(said.values()), None)

@@ -33,6 +33,7 @@ from sequence_planner.model.efa_document import PlainDocument
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.mimic.documents import MimicDocument
 from sequence_planner.model.sequences import KINDS, SequenceDocument, SequencePart
+from sequence_planner.model.shifts.documents import ShiftDocument
 from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
 from sequence_planner.model.types.packages import PackageDocument
@@ -48,6 +49,7 @@ FILES: Mapping[str, tuple[Any, str]] = {
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
     "mimic": (MimicDocument, "mimic.yaml"),
+    "shifts": (dict[str, ShiftDocument], "shifts.yaml"),
     "efa": (PlainDocument, "*.efa.json"),
 }
 

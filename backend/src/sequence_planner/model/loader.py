@@ -1,6 +1,7 @@
 """A station's folder, brought together.
 
 station.yaml  resources/*.yaml  types/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  mimic.yaml
+shifts.yaml
 messages/<package>/msg/*.msg  messages/<package>/srv/*.srv  messages/<package>/action/*.action
 drawings/*.svg
 """
@@ -24,7 +25,7 @@ from sequence_planner.model.documents import (
     StationDocument,
     WorkMasterDocument,
 )
-from sequence_planner.model.fields import DocumentPart
+from sequence_planner.model.fields import DocumentPart, main_text
 from sequence_planner.model.paths import DEFINITIONS, DRAWING, DRAWINGS, FILES, FOLDERS
 from sequence_planner.model.sequences import SequenceDocument, is_sequence
 from sequence_planner.model.source import Finding, ModelError, SourceText
@@ -33,6 +34,7 @@ from sequence_planner.model.yaml.reader import EntryPath, YamlDocument, read_tex
 
 if TYPE_CHECKING:
     from sequence_planner.model.mimic.documents import MimicDocument
+    from sequence_planner.model.shifts.documents import ShiftDocument
     from sequence_planner.model.types.instances import InstancesBefore
     from sequence_planner.model.types.layers import Layer, WrittenInstance
 
@@ -59,6 +61,7 @@ class Station:
     mimic: MimicDocument | None = None
     undrawn: tuple[Finding, ...] = ()
     drawings: Mapping[str, SourceText] = field(default_factory=dict)
+    shifts: Mapping[SourceText, ShiftDocument] = field(default_factory=dict)
 
     @property
     def messages(self) -> Path:
@@ -74,7 +77,7 @@ class Station:
     @property
     def title(self) -> str:
         """The name that people call it by."""
-        return self.station.title or self.station.name
+        return main_text(self.station.title) or self.station.name
 
 
 class ReadBefore:
@@ -119,6 +122,7 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
     mimic, undrawn, drawings = reader.mimic()
+    shifts = reader.shifts()
     reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
@@ -136,6 +140,7 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
         mimic,
         undrawn,
         drawings,
+        shifts,
     )
 
 
@@ -214,6 +219,16 @@ class _FolderReader:
         undrawn = tuple(self.findings[before:])
         del self.findings[before:]
         return document, undrawn, drawings
+
+    def shifts(self) -> dict[SourceText, ShiftDocument]:
+        """The shifts; none where the station has no such file."""
+        if not (self._folder / "shifts.yaml").exists():
+            return {}
+        from sequence_planner.model.shifts.documents import ShiftDocument, unfit_times  # noqa: PLC0415
+
+        found = self.entries("shifts.yaml", ShiftDocument)
+        self.findings += unfit_times(found)
+        return found
 
     def packaged(
         self, station: StationDocument | None

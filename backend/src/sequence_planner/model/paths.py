@@ -24,7 +24,7 @@ PICTURES = ("svg", "png", "jpg", "webp")
 VIDEOS = ("mp4", "webm")
 INSTRUCTION = re.compile(rf"[A-Za-z_][A-Za-z0-9_]{{0,99}}\.(?:{'|'.join((*PICTURES, *VIDEOS))})")
 # The documents of a station beside its resources.
-FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml", "mimic.yaml")
+FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml", "mimic.yaml", "shifts.yaml")
 
 
 _RESOURCE = re.compile(r"resources/([^/]+)\.yaml")

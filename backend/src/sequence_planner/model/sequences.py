@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from sequence_planner.language.suggestions import nearest
-from sequence_planner.model.fields import DocumentPart, Given
+from sequence_planner.model.fields import DocumentPart, Given, Words, main_text
 from sequence_planner.model.source import SourceText
 
 SequenceKind = Literal["sequence", "parallel", "alternative", "arbitrary"]
@@ -83,8 +83,13 @@ class SequencePart(DocumentPart):
 class TitledDocument(DocumentPart):
     """Something that people know by a title."""
 
-    title: Given[SourceText] = None
+    title: Given[Words] = None
     """For people."""
+
+    @property
+    def main_title(self) -> SourceText | None:
+        """The title as it stands in records."""
+        return main_text(self.title)
 
 
 class SequenceDocument(SequencePart, TitledDocument):

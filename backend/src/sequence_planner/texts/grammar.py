@@ -55,11 +55,11 @@ class Grammar:
         return rest if rest and article.lower() in self.articles else text
 
     def clause(self, text: str, before: str = "") -> Clause:
-        """A statement in its parts, divided at its first known verb, which stands before the word `before` if there is
-        one.
+        """A statement in its parts, divided at its first known verb; where the word `before` is not its first one, at
+        a verb that stands before it.
         """
         words = text.split(" ")
-        end = next((at for at, word in enumerate(words) if before and before in word), len(words))
+        end = next((at for at, word in enumerate(words) if at and before and before in word), len(words))
         at = next((at for at, word in enumerate(words[:end]) if at and word in self.verbs), None)
         if at is None or at + 1 == len(words):
             return Clause(text)

@@ -73,6 +73,25 @@ class Message(str):
         return handler(made["schema"]) | {"title": cls.__name__, "description": cls.__doc__}
 
 
+class Title(str):
+    """What a part of the model is called, in the words of who has written it: by language, and as a string as it stands
+    in records.
+    """
+
+    __slots__ = ("words",)
+    words: Mapping[str, str]
+
+    def __new__(cls, text: str, words: Mapping[str, str]) -> Self:
+        """Make it; `text` is one of the `words`."""
+        made = super().__new__(cls, text)
+        made.words = words
+        return made
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, Mapping[str, str]]]:
+        """Let other processes have it."""
+        return type(self), (str(self), self.words)
+
+
 @dataclass(frozen=True)
 class Wording:
     """A text in the words of who has written the model, by language."""
@@ -165,9 +184,23 @@ def quoted(titles: Collection[str]) -> list[Item]:
     return [message("quoted", title=title) for title in titles]
 
 
+def all_titles(titles: Iterable[str]) -> str:
+    """Titles with commas between, in each language in which one of them is written."""
+    every = list(titles)
+    languages = sorted({language for each in every if isinstance(each, Title) for language in each.words})
+    told = ", ".join(every)
+    if not languages:
+        return told
+    said = {
+        language: ", ".join(each.words.get(language, each) if isinstance(each, Title) else each for each in every)
+        for language in languages
+    }
+    return Title(told, said)
+
+
 # All that is waited for in one sentence: things that come, and what is to be so.
 
-_CLAUSES = frozenset(("waits.sake", "waits.goal-holds"))
+_CLAUSES = frozenset(("waits.sake",))
 
 
 def waits_in_one(conditions: Iterable[Message]) -> Message | None:
@@ -195,7 +228,7 @@ def _sent(argument: Argument) -> object:
             return argument.sent()
         case Sentence():
             return {"words": dict(argument.words), "written": argument.written}
-        case Wording():
+        case Wording() | Title():
             return {"words": dict(argument.words)}
         case str() | int() | float():
             return argument

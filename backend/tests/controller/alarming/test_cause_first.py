@@ -53,7 +53,7 @@ def test_a_robot_that_is_stuck_is_one_alarm_of_the_robot() -> None:
     lasting = {key: alarm for key, alarm in rig.shown.items() if alarm.ended is None}
     assert lasting.keys() == {ROBOT_IS_STILL}
     alarm = lasting[ROBOT_IS_STILL]
-    assert alarm.text == "Robot UR10 is stalled: it still reports robot.moving and robot.pose == unknown"
+    assert alarm.text == "Robot UR10 has stalled. It still reports: robot.moving and robot.pose == unknown"
     assert "“Tighten bolt pair 3”" in alarm.consequence
     assert "Robot UR10: Move to bolt pair 3 has not finished within 30 s" in alarm.parts
     assert alarm.priority is Priority.HIGH, "it led outside the safe states"
@@ -94,7 +94,7 @@ def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:
     ]
     rig.run(1)
     (alarm,) = rig.shown.values()
-    assert "bolts[bolt_pair_3] is believed to be placed" in " ".join(alarm.parts)
+    assert "It is believed that bolts[bolt_pair_3] == placed" in " ".join(alarm.parts)
 
 
 def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
@@ -106,7 +106,7 @@ def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
     rig.faulty.clear(Clear())
     rig.run(3)
     (alarm,) = rig.shown.values()
-    assert alarm.text.startswith("Robot UR10 was stalled")
+    assert alarm.text.startswith("Robot UR10 had stalled")
     assert alarm.text.endswith("This is over, but not all that followed")
     assert any("outside its safe states" in part for part in alarm.parts)
 
@@ -117,7 +117,7 @@ def test_once_it_is_over_it_reads_so() -> None:
     rig.faulty.clear(Clear())
     rig.run(30)
     (alarm,) = (alarm for alarm in rig.shown.values() if alarm.state is AlarmState.RETURNED)
-    assert alarm.text.startswith("Robot UR10 was stalled")
+    assert alarm.text.startswith("Robot UR10 had stalled")
     assert any(part == "Robot UR10: Move to bolt pair 3 did not finish within 30 s" for part in alarm.parts)
     assert not any(" has not " in part for part in alarm.parts)
 

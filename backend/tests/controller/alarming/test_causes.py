@@ -166,7 +166,7 @@ def test_a_question_names_the_operations_that_it_decides() -> None:
         )
     ]
     told = shown.current(Timestamp(1000, 10))["contradiction"]
-    assert "bolts[bolt_pair_1] is believed to be placed" in told.text
+    assert "It is believed that bolts[bolt_pair_1] == placed" in told.text
     assert told.consequence == "Plans may be wrong, and so may be whether “Tighten bolt pair 1” is reached."
 
 
@@ -176,7 +176,7 @@ def test_a_forced_variable_is_told_as_long_as_it_lasts() -> None:
     now = Timestamp(1000, 10)
     rig.execution.force("robot.pose", "home", Timestamp(1060, 70), "Eva", "its camera is dirty")
     told = shown.current(now)["forced:robot.pose"]
-    assert told.text == "robot.pose is forced to home by Eva: its camera is dirty"
+    assert told.text == "Forced: robot.pose == home. By Eva: its camera is dirty"
     assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
     rig.execution.release("robot.pose")
     assert "forced:robot.pose" not in shown.current(now)
@@ -267,7 +267,7 @@ def test_what_was_moved_by_hand_is_a_notice_that_nobody_has_to_acknowledge(monke
     monkeypatch.setattr(shown.by_hand, "notices", lambda monotonic: notices)
     told = shown.current(now)["by-hand:robot"]
     assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
-    assert told.text == "Robot UR10 says robot.pose == home (before: bolt_pair_1), which nothing commanded"
+    assert told.text == "Robot UR10 has changed without a command. Now: robot.pose == home (before: bolt_pair_1)"
     assert told.consequence == "Nothing has been started because of it yet."
     notices[:] = [dataclasses.replace(moved, by="robot.move_to_position(home)", how=WentOn.STARTED, on=now)]
     assert shown.current(now)["by-hand:robot"].consequence == "“Move to home” was started after it."

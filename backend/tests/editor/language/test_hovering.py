@@ -34,18 +34,18 @@ def hovered(file: str, path: EntryPath, marked: str) -> Hover | None:
     [
         (ROBOT, MOVE, "po|se == position", NameKind.MEASURED, "robot.pose", (ROBOT, 46, 3)),
         (ROBOT, MOVE, "robot.pose| == position", NameKind.MEASURED, "robot.pose", (ROBOT, 46, 3)),
-        (ROBOT, MOVE, "pose == |position", NameKind.PARAMETER, "position", (ROBOT, 59, 18)),
+        (ROBOT, MOVE, "pose == |position", NameKind.PARAMETER, "position", (ROBOT, 90, 18)),
         (ROBOT, MOVE, "pose == ho|me", NameKind.VALUE, "home", ("station.yaml", 20, 14)),
-        (ROBOT, MOVE, "|executing", NameKind.FLAG, "robot.move_to_position(position).executing", (ROBOT, 67, 16)),
+        (ROBOT, MOVE, "|executing", NameKind.FLAG, "robot.move_to_position(position).executing", (ROBOT, 98, 16)),
         (
             ROBOT,
             MOVE,
             "robot.move_to_position(position).exec|uting",
             NameKind.FLAG,
             "robot.move_to_position(position).executing",
-            (ROBOT, 67, 16),
+            (ROBOT, 98, 16),
         ),
-        (ROBOT, MOVE, "move_to_position(pos|ition).executing", NameKind.PARAMETER, "position", (ROBOT, 59, 18)),
+        (ROBOT, MOVE, "move_to_position(pos|ition).executing", NameKind.PARAMETER, "position", (ROBOT, 90, 18)),
         (ROBOT, MOVE, "bolts[bolt_pair|_1] == empty", NameKind.VALUE, "bolt_pair_1", ("station.yaml", 10, 14)),
         (
             ROBOT,
@@ -71,7 +71,7 @@ def hovered(file: str, path: EntryPath, marked: str) -> Hover | None:
             "robot.move_to_position|",
             NameKind.ABILITY,
             "robot.move_to_position",
-            (ROBOT, 57, 3),
+            (ROBOT, 88, 3),
         ),
         (
             "work_masters.yaml",

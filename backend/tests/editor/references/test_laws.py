@@ -105,7 +105,7 @@ def check(files: dict[str, str], folder: Path, *also: ModelPart, every: int | No
 
 @pytest.mark.parametrize("station", STATIONS)
 def test_every_part_there_and_back(station: str, tmp_path: Path) -> None:
-    renaming = check(STATIONS[station], tmp_path, every=1 if SHARE >= 1 else 3)
+    renaming = check(STATIONS[station], tmp_path, every=1 if SHARE >= 1 else 6)
     assert station != "shorthand" or renaming.refused == []
 
 

@@ -163,6 +163,30 @@ def test_a_robot_that_is_away_is_brought_back(station: Automaton, advisor: Advis
     assert ValueChange("robot.pose", None, "unknown") in offer.assumed
 
 
+def test_nothing_is_started_blindly_where_bringing_a_robot_back_is_enough(station: Automaton, advisor: Advisor) -> None:
+    """With the robot away, a tool that runs would make certain that the station is safe, once the bolts are there."""
+    around: dict[str, Value | None] = {
+        "bolts[bolt_pair_1]": "empty",
+        "bolts[bolt_pair_2]": "tightened",
+        "bolts[bolt_pair_3]": "tightened",
+        "operator.requested_pair": "bolt_pair_1",
+        "robot.target_pose": "bolt_pair_3",
+    }
+    heard: dict[str, Value | None] = {**around, **dict.fromkeys(("robot.pose", "robot.previous_pose"), "bolt_pair_3")}
+    own = [n for n in station.names(Kind.MEASURED) if station.variables[n].resource == "robot"]
+    request = AdviceRequest(
+        state_of(station, {**around, **dict.fromkeys(own)}),
+        goals_of(station, ["place_bolt_pair(bolt_pair_1)"]),
+        circumstances=Circumstances(offline=frozenset({"robot"})),
+        last={name: value for name in own if (value := state_of(station, heard)[name]) is not None},
+        deadline=60,
+    )
+    assert [(offer.kind, offer.online) for offer in advisor.advise(request).offers] == [
+        (OfferKind.PHYSICAL, ("robot",)),
+        (OfferKind.WAY_BACK, ()),
+    ]
+
+
 def test_outside_the_safe_states_written_guards_lead_back(station: Automaton, advisor: Advisor) -> None:
     there: dict[str, Value | None] = dict.fromkeys(
         ("robot.pose", "robot.previous_pose", "robot.target_pose"), "bolt_pair_1"

@@ -11,6 +11,14 @@ export function holderOf(control: Control | null, session: string | null, person
 	return control.person === person ? 'you-elsewhere' : 'another';
 }
 
+/** The same as a sentence of the bar. */
+export function heldText(control: Control | null, holder: Holder): string {
+	const words = say().account.control;
+	if (holder === 'nobody') return words.free;
+	if (holder === 'you') return words.mine;
+	return holder === 'you-elsewhere' ? words.mineElsewhere : words.held(holderText(control, holder));
+}
+
 /** As it is said: `Operator A`, `you`, `you, elsewhere`, `nobody`. */
 export function holderText(control: Control | null, holder: Holder): string {
 	switch (holder) {

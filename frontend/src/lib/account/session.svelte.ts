@@ -19,6 +19,8 @@ const LEFT = 'signed-out';
 const HASHING = 20_000;
 /** Milliseconds to wait for what the server asks a provider: three questions at most. */
 const PROVIDER = 30_000;
+/** Milliseconds for which a page is not shown yet, as the server may say by then who is signed in. */
+const AT_ONCE = 250;
 /** Milliseconds after which a server that did not answer is asked again, or whether a demonstration can begin by now. */
 const ASK_AGAIN = 2000;
 
@@ -64,7 +66,7 @@ export class Session {
 		return includes(this.person?.role ?? null, role);
 	}
 
-	/** Asks the server, and listens for whatever may have ended the session; the result stops that. */
+	/** Listens for whatever may have ended the session, and asks the server until somebody is signed in; the result stops that. */
 	attach(): () => void {
 		this.#channel = new BroadcastChannel(CHANNEL);
 		this.#channel.onmessage = ({ data }: MessageEvent<News>) => {
@@ -92,7 +94,6 @@ export class Session {
 			const idle = this.state !== 'signed-in' && !this.#left && !this.#changing;
 			if (idle && document.visibilityState === 'visible') void this.check();
 		}, ASK_AGAIN);
-		void this.check();
 		return () => {
 			clearInterval(again);
 			document.removeEventListener('visibilitychange', look);
@@ -211,6 +212,13 @@ const [useSession, setSession] = createContext<Session>();
 export { useSession };
 
 /** Makes the session for all components below. */
-export function provideSession(): Session {
-	return setSession(new Session());
+export function provideSession(session: Session): Session {
+	return setSession(session);
+}
+
+/** A session after its first question to the server: with the answer, unless that takes longer than `AT_ONCE`. */
+export async function askedSession(): Promise<Session> {
+	const session = new Session();
+	await Promise.race([session.check(), new Promise((resolve) => setTimeout(resolve, AT_ONCE))]);
+	return session;
 }

@@ -51,6 +51,14 @@ export class AlarmRecord {
 		this.pending = false;
 	}
 
+	/** Reads what is not known yet since `from`, as far as there is not too much. */
+	async backTo(from: number): Promise<void> {
+		if (this.pending) return;
+		this.pending = true;
+		for (let page = 0; page < PAGES && !this.reachesTo(from); page++) if (!(await this.#goBack())) break;
+		this.pending = false;
+	}
+
 	/** Reads one page more; false where there is none, or it was refused. */
 	async #goBack(): Promise<boolean> {
 		const from = this.#known?.next ?? null;

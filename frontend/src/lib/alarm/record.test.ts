@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { Alarm, HistoryAnswer, RunRecord } from '#lib/contract.ts';
 import { alarm } from '#lib/testing/view.ts';
-import { arrivals, frequent, past, reachesTo, turnsOf, withNewest, withOlder } from './record.ts';
+import { arrivals, frequent, past, perSpan, reachesTo, turnsOf, withNewest, withOlder } from './record.ts';
 
 function record(number: number, event = 'came', rest: Partial<Alarm> = {}, key = 'silent:robot'): RunRecord {
 	const content = { alarm: key, event, ...alarm(rest) } as unknown as RunRecord['content'];
@@ -35,6 +35,18 @@ describe('of the turns in the life of an alarm', () => {
 			['b 1', 2]
 		]);
 	});
+});
+
+test('each alarm is counted in the span in which it came, and none twice', () => {
+	const times = fc.array(fc.integer({ min: 0, max: 99 }), { maxLength: 30 });
+	fc.assert(
+		fc.property(times, fc.integer({ min: 1, max: 12 }), fc.integer({ min: 1, max: 8 }), (came, seconds, n) => {
+			const spans = perSpan(turnsOf(came.map((time) => record(time))), 100, seconds, n);
+			expect(spans.map(({ at }) => at)).toEqual(spans.map((_, place) => 100 - (n - place) * seconds));
+			for (const { at, count } of spans) expect(count).toBe(came.filter((time) => at <= time && time < at + seconds).length);
+			expect(spans.reduce((sum, { count }) => sum + count, 0)).toBe(came.filter((time) => time >= 100 - n * seconds).length);
+		})
+	);
 });
 
 test('what is known is always a stretch of the journal without gaps, from the newest on', () => {

@@ -29,9 +29,10 @@ export function turnsOf(records: readonly RunRecord[]): Turn[] {
 	});
 }
 
-/** Those with which an alarm was over, and of which nobody has to take note any more. */
+/** Those with which an alarm was over, and of which nobody has to take note any more; what ended last comes first. */
 export function past(turns: readonly Turn[]): Turn[] {
-	return turns.filter(({ event, alarm }) => PAST.has(event) && alarm.ended !== null);
+	const over = turns.filter(({ event, alarm }) => PAST.has(event) && alarm.ended !== null);
+	return over.sort((one, other) => (other.alarm.ended ?? 0) - (one.alarm.ended ?? 0));
 }
 
 /** Those with which an alarm came, not before `from`. */
@@ -48,6 +49,14 @@ export function frequent(came: readonly Turn[], most: number): [last: Turn, time
 		else times.set(turn.key, [turn, 1]);
 	}
 	return [...times.values()].sort(([, a], [, b]) => b - a).slice(0, most);
+}
+
+/** How many of `came` there were in each of `n` spans of `seconds`, of which the last one ends at `end`; the oldest first. */
+export function perSpan(came: readonly Turn[], end: number, seconds: number, n: number): { readonly at: number; readonly count: number }[] {
+	return Array.from({ length: n }, (_, place) => {
+		const at = end - (n - place) * seconds;
+		return { at, count: came.filter(({ time }) => time >= at && time < at + seconds).length };
+	});
 }
 
 /** Whether all records since `from` are known. */

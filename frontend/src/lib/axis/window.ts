@@ -7,7 +7,7 @@ export interface Window {
 /** The shortest part that can be looked at. */
 export const SHORTEST = 5;
 /** What is first in sight, where nothing else is asked for. */
-export const USUAL = 600;
+export const USUAL = 120;
 
 /** `window`, kept within the journal from `first` to `last`, with a little room on both sides. */
 export function within(window: Window, first: number, last: number): Window {

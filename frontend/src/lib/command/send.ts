@@ -75,7 +75,7 @@ export function stopErrand(): Promise<Refusal | null> {
 }
 
 /** Says that the alarm `key` has been seen as it was shown. 409: it has come again since. */
-export function acknowledgeAlarm(key: string, alarm: Alarm): Promise<Refusal | null> {
+export function acknowledgeAlarm(key: string, alarm: Pick<Alarm, 'since'>): Promise<Refusal | null> {
 	return command('POST', '/api/v1/alarms/acknowledge', { body: { alarm: key, since: alarm.since } });
 }
 

@@ -70,6 +70,10 @@ export class Correction {
 		const variables = this.#station.view?.variables ?? {};
 		return this.undoes === null && Object.keys(this.values).some((name) => variables[name]?.dual_approval === true);
 	});
+	/** It is made at once, and can be taken back. */
+	get isNew(): boolean {
+		return this.undoes === null && !this.dual;
+	}
 	/** The state is another than the one that was looked at. */
 	readonly moved: boolean = $derived.by(
 		() => this.preview !== null && (this.#overtaken || (this.#station.view?.revision ?? 0) > this.preview.revision)

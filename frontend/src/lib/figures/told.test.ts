@@ -1,12 +1,12 @@
 import { expect, test } from 'vitest';
 import type { Figures } from '#lib/contract.ts';
-import { cycleLevel, first, madeLevel, orderOf, percentText } from './told.ts';
+import { cycleLevel, first, madeLevel, orderOf, percentText, worked } from './told.ts';
 
 const AT = '2026-06-01T08:00:00Z';
 
 function figures(rest: Partial<Figures> = {}): Figures {
 	const made = { count: 0, planned: null, by_now: null };
-	return { time: 100, time_at: AT, day: 0, day_at: AT, in_work: [], made, cycle: null, availability: null, ...rest };
+	return { time: 100, time_at: AT, day: 0, day_at: AT, in_work: [], made, cycle: null, availability: null, shift: null, next_shift: null, ...rest };
 }
 
 function product(job: string | null, began: number): Figures['in_work'][number] {
@@ -45,4 +45,27 @@ test('the median has its place on the bar however long a product takes', () => {
 test('a share is told as people of the language write it', () => {
 	expect(percentText(0.9421, 'en-GB')).toBe('94.2');
 	expect(percentText(1, 'sv-SE')).toBe('100,0');
+});
+
+const EARLY = { name: 'early', title: { en: 'Early shift', sv: 'Förmiddag' }, begins: 0, begins_at: AT, ends: 28_800, ends_at: AT };
+const DAY = { since: 10, since_at: AT, share: 0.5, counted: 4, available: 2, trend: [] };
+
+test('the availability is that of the shift that is on, be it known or not', () => {
+	const trend = [{ time: 600, time_at: AT, share: 1 }];
+	const availability = { ...DAY, share: 0.9, trend };
+	const found = worked(figures({ availability: DAY, shift: { ...EARLY, made: 3, availability }, next_shift: EARLY }), 100);
+	expect(found.head).toBe('Available · Early shift');
+	expect(found.times).toMatch(/^Early shift, \d\d:\d\d to \d\d:\d\d$/);
+	expect(found.figure).toEqual({ since: 10, share: 0.9, trend: [1, 0.9] });
+	const unknown = { ...EARLY, made: null, availability: null };
+	expect(worked(figures({ availability: DAY, shift: unknown, next_shift: EARLY }), 100).figure, 'it is not that of the day').toBeNull();
+});
+
+test('outside of a shift it is that of the day, and it is said that there is none now', () => {
+	const found = worked(figures({ availability: DAY, next_shift: EARLY }), 100);
+	expect(found.head).toBe('Available today · no shift now');
+	expect(found.times).toMatch(/^No shift is on. Next: Early shift, /);
+	expect(found.figure?.share).toBe(0.5);
+	expect(worked(figures({ availability: DAY }), 100)).toMatchObject({ head: 'Available today', times: null });
+	expect(worked(null, 100).figure).toBeNull();
 });

@@ -1,6 +1,6 @@
 /** What the palette can lead to or do: pages, variables, abilities, operations, alarms, and what is possible now. */
 import { ABILITY, addressOf as abilityAddress } from '#lib/ability/address.ts';
-import { MENU } from '#lib/account/pages.ts';
+import { MENU, type Page } from '#lib/account/pages.ts';
 import type { Session } from '#lib/account/session.svelte.ts';
 import { byUrgency } from '#lib/alarm/priority.ts';
 import { setMode, startProduction, takeControl, releaseControl } from '#lib/command/send.ts';
@@ -8,6 +8,7 @@ import type { StationView } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { fullName } from '#lib/wording/names.svelte.ts';
 import { pagesFor } from './shown.ts';
 
 /** Of more of a group the reader would not look at the others. */
@@ -20,6 +21,8 @@ export interface Entry {
 	readonly text: string;
 	/** What else it is found by, and told from others of that text. */
 	readonly name: string;
+	/** The page that it leads to. */
+	readonly page?: Page['title'];
 	/** Where it leads, what it does, or of which operation it asks why that waits. */
 	readonly does: { readonly to: string } | { readonly run: () => Promise<Refusal | null> } | { readonly why: string };
 }
@@ -55,7 +58,7 @@ export function entriesOf(known: Known): Entry[] {
 	const pages = [...pagesFor(session).flatMap((group) => group.pages), ...MENU.filter(({ role }) => session.may(role))];
 	return [
 		...acts(known),
-		...pages.map(({ title, address }): Entry => ({ group: 'page', text: say().pages[title], name: title, does: { to: address } })),
+		...pages.map(({ title, address }): Entry => ({ group: 'page', text: say().pages[title], name: title, page: title, does: { to: address } })),
 		...byUrgency(view?.alarms ?? {}).map(
 			([key, alarm]): Entry => ({ group: 'alarm', text: wordsOf(alarm).text, name: key, does: { to: '/alarms' } })
 		),
@@ -66,7 +69,7 @@ export function entriesOf(known: Known): Entry[] {
 			([name, { title }]): Entry => ({ group: 'ability', text: title, name, does: { to: abilityAddress(name) || ABILITY } })
 		),
 		...Object.keys(view?.variables ?? {}).map(
-			(name): Entry => ({ group: 'variable', text: name, name, does: { to: `/state?search=${encodeURIComponent(name)}` } })
+			(name): Entry => ({ group: 'variable', text: fullName(view, name), name, does: { to: `/state?search=${encodeURIComponent(name)}` } })
 		)
 	];
 }

@@ -7,7 +7,7 @@ import type { StationView } from '#lib/contract.ts';
 
 export const MODE_MARKS = { automatic: Play, paused: Pause, hold: OctagonPause, restart: RotateCcw };
 
-/** Whether the mode looks like well-being: the station works by itself, and is not outside its safe states. */
+/** Whether the mode looks like well-being: the station works by itself, hears all its devices, and is not outside its safe states. */
 export function isWell(view: StationView): boolean {
-	return view.mode === 'automatic' && view.production === 'started' && view.way_back === null;
+	return view.standing === 'working' && view.way_back === null;
 }

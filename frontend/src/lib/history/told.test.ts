@@ -70,7 +70,7 @@ test('an answer of the planner says what came of it', () => {
 		'planned for a',
 		'2 starts'
 	]);
-	expect(said('answered', { what: { answer: { verdict: 'none' } }, plan: { status: 'none', reason: '' } })[4]).toBe('no plan');
+	expect(said('answered', { what: { answer: { verdict: 'none' } }, plan: { status: 'none', reason: '' } })).toEqual(['No plan', '', '', '', '']);
 });
 
 test('a kind that is not known keeps its own name', () => {

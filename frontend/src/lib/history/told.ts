@@ -1,6 +1,6 @@
 /** A record of the run in words: what happened, on what, by whom and why. */
 import type { Alarm, Message } from '#lib/contract.ts';
-import { told as said, wordsOf } from '#lib/text/message.ts';
+import { leading, told as said, wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { plain } from '#lib/wording/values.ts';
 import type { Names } from './names.ts';
@@ -11,6 +11,8 @@ export interface Told {
 	readonly who: string;
 	readonly why: string;
 	readonly outcome: string;
+	/** Where several things happened at once, each by itself. */
+	readonly several?: readonly string[];
 }
 
 /** A record, or a mark of the time line, which has less of its content. */
@@ -100,7 +102,7 @@ export function told(record: Tellable, names: Names): Told {
 		case 'job-forgotten':
 			return { ...nothing, what: words.jobForgotten, on: textOf(what['job']) };
 		case 'alarm':
-			return { ...nothing, what: words.alarm(textOf(what['event'])), on: wordsOf(what as unknown as Alarm).text, outcome: textOf(what['priority']) };
+			return { ...nothing, ...alarmed(what as unknown as Alarm), what: words.alarm(textOf(what['event'])), outcome: textOf(what['priority']) };
 		case 'alarms-aside':
 			return { ...nothing, what: words.aside };
 		case 'beliefs':
@@ -114,6 +116,11 @@ export function told(record: Tellable, names: Names): Told {
 export function titleOf({ what, on }: Told): string {
 	if (on === '') return what;
 	return on.startsWith(`${what.split(', ')[0]}: `) ? on : `${what}: ${on}`;
+}
+
+/** What happened, each thing by itself. */
+export function factsOf(told: Told): readonly string[] {
+	return told.several ?? [titleOf(told)];
 }
 
 /** What changed that nothing commanded, or by which ability the station then went on. */
@@ -165,8 +172,14 @@ function tick(content: Content, why: string, names: Names): Partial<Told> & { wh
 		return { what: heard === null ? words.ticked : words.heard, on: settings(heard ?? {}, names) };
 	}
 	if (done.length === 1) return { ...first, why };
-	const on = done.map((each) => (each.on === '' ? '' : `${each.what}: ${each.on}`)).filter((text) => text !== '');
-	return { what: done.map((each) => each.what).join(', '), on: on.join(' · '), why };
+	const several = done.filter((each) => each.on !== '').map((each) => `${each.what}: ${each.on}`);
+	return { what: done.map((each) => each.what).join(', '), on: several.join(' · '), why, several };
+}
+
+/** Of an alarm that came what leads is what came, and the rest what is told of it. */
+function alarmed(alarm: Alarm): Pick<Told, 'on' | 'why'> {
+	const [on, why] = leading(wordsOf(alarm).text);
+	return { on, why };
 }
 
 function answered(content: Content, what: Content, why: string): Partial<Told> & { what: string } {
@@ -174,8 +187,10 @@ function answered(content: Content, what: Content, why: string): Partial<Told> &
 	const found = partOf(partOf(what, 'answer') ?? {}, 'plan');
 	const ticks = Array.isArray(found?.['ticks']) ? found['ticks'] : [];
 	const starts = ticks.reduce((sum: number, each: unknown) => sum + startsOf(each), 0);
+	const plan = planWords(content);
 	const length = 'answer' in what ? (found === null ? words.noPlan : words.starts(starts)) : '';
-	return { what: planWords(content) ?? words.answered, why, outcome: length };
+	// That there is no plan is said once.
+	return { what: plan ?? words.answered, why, outcome: found === null && plan === words.planNone ? '' : length };
 }
 
 function startsOf(tick: unknown): number {

@@ -42,10 +42,13 @@ test('on what it was done is said by its title, and with what was changed', () =
 	);
 	const corrected = record('correct-estimates', 'bolts[bolt_pair_1]', { values: { 'bolts[bolt_pair_1]': 'empty' } });
 	expect(subjectText(corrected, names)).toBe('Bolts · bolt pair 1: empty');
+	expect(subjectText(record('force-variable', 'bolts[bolt_pair_1]', { value: 'placed' }), names)).toBe('Bolts · bolt pair 1: placed');
+	expect(subjectText(record('release-force', 'bolts[bolt_pair_1]'), names)).toBe('Bolts · bolt pair 1');
 });
 
 test('why it was refused, and every detail, can be read', () => {
-	expect(becauseText(record('set-mode', '', { because: 'control-needed' }))).toBe('control needed');
+	expect(becauseText(record('set-mode', '', { because: 'control-needed' }))).toBe('control is needed');
+	expect(becauseText(record('set-mode', '', { because: 'the-moon-is-full' }))).toBe('the moon is full');
 	expect(becauseText(record('set-mode', ''))).toBe('');
 	expect([true, 3, null, ['read'], 'x'].map(detailText)).toEqual(['yes', '3', 'null', '["read"]', 'x']);
 });

@@ -2,7 +2,9 @@
 import type { Actor, AuditRecord, Outcome } from '#lib/contract.ts';
 import type { Names } from '#lib/history/names.ts';
 import { modeText } from '#lib/history/told.ts';
+import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { inSentence } from '#lib/wording/names.svelte.ts';
 
 type Details = NonNullable<AuditRecord['entry']['details']>;
 
@@ -34,10 +36,10 @@ export function actorText(actor: Actor): string {
 /** How an act ended as a mark, beside its word. */
 export const MARKS: Record<Outcome, string> = { requested: '◌', done: '✓', refused: '✕', failed: '▲' };
 
-/** Why an act was refused or failed: `control-needed` → `control needed`. Empty where that is not written. */
+/** Why an act was refused or failed, as a refusal says it: `control-needed` → `control is needed`. Empty where that is not written. */
 export function becauseText(record: AuditRecord): string {
 	const because = record.entry.details?.['because'];
-	return typeof because === 'string' ? because.replaceAll('-', ' ') : '';
+	return typeof because === 'string' ? inSentence(told({ id: `refused.${because}` }, because.replaceAll('-', ' '))) : '';
 }
 
 /** A detail of a record for a person to read. */
@@ -56,6 +58,10 @@ export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' |
 			return modeText(detail('mode'));
 		case 'acknowledge-task':
 			return detail('title') === '' ? subject : `${detail('title')} (${subject})`;
+		case 'force-variable':
+			return 'value' in details ? `${names.variable(subject)}: ${names.value(subject, details['value'])}` : names.variable(subject);
+		case 'release-force':
+			return names.variable(subject);
 		case 'person-changed':
 			return [subject, ...changes(details)].join(', ');
 		case 'set-override':

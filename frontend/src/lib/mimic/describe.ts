@@ -5,6 +5,8 @@ import { nextSteps } from '#lib/plan/status.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told } from '#lib/text/message.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
+import { capital } from '#lib/wording/capital.ts';
+import { inSentence } from '#lib/wording/names.svelte.ts';
 import { plain, valueText, variableName } from '#lib/wording/values.ts';
 import { holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 
@@ -27,13 +29,20 @@ export function stopName(track: MimicTrack, value: string, language: string): st
 	return inLanguage(title, language) || plain(value);
 }
 
+/** What is found of all resources at once. */
+export interface Found {
+	readonly doing: ReadonlyMap<string, Doing>;
+	/** The variable that says most of each. */
+	readonly keys: ReadonlyMap<string, string>;
+}
+
 /** What a thing does or is. */
-export function nowOf(symbol: MimicSymbol, view: StationView, doing: Doing | undefined, language: string): Now {
+export function nowOf(symbol: MimicSymbol, view: StationView, found: Found, language: string): Now {
 	const texts = say().mimic;
 	const { variables, tasks } = view;
 	const resource = symbol.resource;
 	if (resource !== null && view.resources[resource]?.online === false) return { text: texts.notHeard, tone: 'doubt' };
-	const running = doing?.running ?? [];
+	const running = found.doing.get(resource ?? '')?.running ?? [];
 	const active = running.length > 0 || (symbol.active.length > 0 && holds(symbol.active, variables) === true);
 	const tone = active ? 'active' : 'rests';
 	if (symbol.track !== null) return whereNow(symbol.track, view, active, language);
@@ -44,11 +53,11 @@ export function nowOf(symbol: MimicSymbol, view: StationView, doing: Doing | und
 	const said = saidOf(symbol.texts, variables, language);
 	if (active && running[0] !== undefined && (said === '' || symbol.active.length === 0)) return { text: running[0].title, tone };
 	if (said !== '') return { text: said, tone };
-	const key = keyOf(resource, variables);
-	if (key === null) return { text: resource === null || symbol.parts.length > 0 ? '' : texts.rests, tone };
+	const key = found.keys.get(resource ?? '');
+	if (key === undefined) return { text: resource === null || symbol.parts.length > 0 ? '' : texts.rests, tone };
 	const value = valueOf(variables, key);
 	const told = value === null ? say().common.unknown : valueText(value);
-	return { text: texts.is(variableName(key, resource), told), tone: value === null ? 'doubt' : tone };
+	return { text: capital(texts.is(variableName(key, resource), told)), tone: value === null ? 'doubt' : tone };
 }
 
 function whereNow(track: MimicTrack, view: StationView, active: boolean, language: string): Now {
@@ -58,7 +67,7 @@ function whereNow(track: MimicTrack, view: StationView, active: boolean, languag
 	if (valueOf(variables, track.position) === null) return { text: texts.unknownPlace, tone: 'doubt' };
 	const target = sentTo(track, variables);
 	if (at === null || (at.kind === 'moving' && target === null)) return { text: texts.between, tone: 'active' };
-	const stop = capitalised(stopName(track, at.kind === 'moving' ? (target ?? at.to) : at.to, language));
+	const stop = capital(stopName(track, at.kind === 'moving' ? (target ?? at.to) : at.to, language));
 	if (at.kind === 'moving') return { text: texts.towards(stop), tone: 'active' };
 	const work = workAt(at.to, view);
 	if (work === null) return { text: stop, tone: active ? 'active' : 'rests' };
@@ -75,19 +84,16 @@ function workAt(stop: string, { abilities, operations }: StationView): string | 
 	return Object.entries(operations).find(([name, { active }]) => active && valuesIn(name).includes(stop))?.[1].title ?? null;
 }
 
-function capitalised(text: string): string {
-	return text.slice(0, 1).toUpperCase() + text.slice(1);
-}
-
-/** The variable that says most of a resource: the first that is measured and more than yes or no. */
-function keyOf(resource: string | null, variables: Variables): string | null {
-	let yesOrNo: string | null = null;
-	for (const [name, variable] of Object.entries(variables)) {
-		if (resource === null || variable.resource !== resource || variable.kind !== 'measured') continue;
-		if (typeof variable.domain[0] !== 'boolean') return name;
-		yesOrNo ??= name;
+/** The variable that says most of each resource: the first that is measured and more than yes or no. */
+export function keysOf(variables: Variables): ReadonlyMap<string, string> {
+	const [found, yesOrNo] = [new Map<string, string>(), new Map<string, string>()];
+	for (const name in variables) {
+		const variable = variables[name];
+		if (variable?.resource == null || variable.kind !== 'measured') continue;
+		const among = typeof variable.domain[0] === 'boolean' ? yesOrNo : found;
+		if (!among.has(variable.resource)) among.set(variable.resource, name);
 	}
-	return yesOrNo;
+	return new Map([...yesOrNo, ...found]);
 }
 
 /** The values in brackets behind the names of what runs: what is being worked on, by a person or by a device. */
@@ -149,15 +155,13 @@ export function happening(view: StationView): string {
 		.sort((a, b) => Number(a.human) - Number(b.human))
 		.map(({ title }) => title);
 	const next = nextSteps(view.plan)[0];
-	// What a condition is called is told, never how it is written.
-	const waits = next === undefined ? '' : told(next.sentence, '');
-	const then = waits !== '' ? waits : next === undefined ? null : uncapitalised(next.title);
-	if (running.length === 0) return waits === '' ? texts.nothingMoves : texts.nothingMovesAnd(waits);
+	if (running.length === 0) {
+		// What a condition is called is told, never how it is written.
+		const waits = next === undefined ? '' : told(next.sentence, '');
+		if (view.silent.length > 0) return texts.unheard(view.silent.join(', '));
+		return waits === '' ? texts.nothingMoves : texts.nothingMovesAnd(waits);
+	}
+	const then = next === undefined ? null : inSentence(next.title);
 	const now = running.length > NAMED ? texts.andMore(running.slice(0, NAMED).join(' · '), running.length - NAMED) : running.join(' · ');
 	return then === null ? now : texts.then(now, then);
-}
-
-/** A title within a sentence: names and abbreviations stay as they are. */
-function uncapitalised(text: string): string {
-	return /^\p{Lu}\p{Ll}/u.test(text) ? text.slice(0, 1).toLowerCase() + text.slice(1) : text;
 }

@@ -3,7 +3,7 @@ import type { Mimic, MimicSymbol, Priority, StationView } from '#lib/contract.ts
 import { doingOf } from '#lib/resource/doing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { variableName } from '#lib/wording/values.ts';
-import { nameOf, nowOf, partValue, type Now } from './describe.ts';
+import { keysOf, nameOf, nowOf, partValue, type Now } from './describe.ts';
 import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
 
 export interface Told {
@@ -16,9 +16,9 @@ export interface Told {
 }
 
 export function toldOf(mimic: Mimic, view: StationView, language: string): Told[] {
-	const doing = doingOf(view.abilities);
+	const found = { doing: doingOf(view.abilities), keys: keysOf(view.variables) };
 	return mimic.symbols.map((symbol) => {
-		const now = nowOf(symbol, view, doing.get(symbol.resource ?? ''), language);
+		const now = nowOf(symbol, view, found, language);
 		return {
 			symbol,
 			title: nameOf(symbol, view.resources, language),

@@ -1,5 +1,6 @@
 /** What the files of a model hold: values by their paths, whatever somebody has written there. */
 import type { Json as Contract } from '#lib/contract.ts';
+import { inLanguage } from '#lib/text/text.svelte.ts';
 
 /** The contract says only that it is some JSON value. */
 export type Json = null | boolean | number | string | readonly Json[] | { readonly [name: string]: Json };
@@ -41,6 +42,13 @@ export function same(one: Json | undefined, other: Json | undefined): boolean {
 export function textAt(content: Json | undefined, path: Path): string | null {
 	const value = valueAt(content, path);
 	return typeof value === 'string' ? value : null;
+}
+
+/** The title at `path`, in a language where it is written by language; null where there is none. */
+export function titleAt(content: Json | undefined, path: Path, language: string): string | null {
+	const value = valueAt(content, path);
+	const texts = entriesOf(value).filter((entry): entry is [string, string] => typeof entry[1] === 'string');
+	return texts.length > 0 ? inLanguage(Object.fromEntries(texts), language) : textAt(content, path);
 }
 
 /** A path as people write it: `abilities.run_nut.start.do[0]`. */

@@ -21,10 +21,10 @@ const THEME = EditorView.theme({
 		borderRadius: 'var(--r-2)',
 		background: 'var(--raised)',
 		color: 'var(--ink)',
-		fontSize: 'var(--t-base)'
+		fontSize: 'var(--t-small)'
 	},
-	'&.cm-focused': { outline: '3px solid var(--ink)', outlineOffset: '2px' },
-	'.cm-scroller': { fontFamily: 'var(--mono)', lineHeight: '1.5' },
+	'&.cm-focused': { outline: '2px solid var(--focus)', outlineOffset: '2px' },
+	'.cm-scroller': { fontFamily: 'var(--mono)', fontFeatureSettings: "'calt' 0", lineHeight: '1.55' },
 	'.cm-content': { padding: '0.55rem 0', caretColor: 'var(--ink)' },
 	'.cm-line': { padding: '0 0.75rem' },
 	'.cm-gutters': { background: 'var(--sunken)', color: 'var(--ink-2)', borderRight: '1px solid var(--line)' },
@@ -48,13 +48,13 @@ const THEME = EditorView.theme({
 	'.cm-diagnostic-warning': { borderLeftColor: 'var(--medium)' },
 	'.cm-lintRange-error': { backgroundImage: 'none', borderBottom: '3px double var(--high)' },
 	'.cm-lintRange-warning': { backgroundImage: 'none', borderBottom: '3px dotted var(--medium)' },
-	'.cm-chosen': { background: 'var(--press)' },
+	'.cm-chosen': { background: 'var(--accent-soft)', boxShadow: 'inset 2px 0 0 var(--accent)' },
 	'.unseen': { position: 'absolute', clipPath: 'inset(50%)', width: '1px', height: '1px', overflow: 'hidden' }
 });
 
-/** Grey as the pages are: words by their weight, what is only for the reader by being quieter. */
+/** Names by the accent and their weight, what is only for the reader by being quieter. */
 const STYLE = HighlightStyle.define([
-	{ tag: [tags.keyword, tags.operatorKeyword, tags.propertyName, tags.definition(tags.propertyName)], fontWeight: '700' },
+	{ tag: [tags.keyword, tags.operatorKeyword, tags.propertyName, tags.definition(tags.propertyName)], color: 'var(--accent-ink)', fontWeight: '600' },
 	{ tag: [tags.comment, tags.meta], color: 'var(--ink-2)', fontStyle: 'italic' },
 	{ tag: [tags.separator, tags.squareBracket, tags.brace, tags.punctuation], color: 'var(--ink-2)' }
 ]);

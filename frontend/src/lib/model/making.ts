@@ -1,5 +1,6 @@
 /** What is made, copied, moved and taken away: each as the edits that do it. */
 import type { Edit } from '#lib/contract.ts';
+import { capital } from '#lib/wording/capital.ts';
 import { isList, isMapping, same, shownPath, valueAt, type Json, type Path } from './content.ts';
 import { SPECIFICATIONS } from './specification.ts';
 import { typeFile } from './types.ts';
@@ -42,6 +43,7 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 		{ kind: 'sequence', file: 'operations.yaml', path: [], section: 'operations' },
 		{ kind: 'specification', file: 'specifications.yaml', path: [], section: 'specifications' },
 		{ kind: 'work_master', file: 'work_masters.yaml', path: [], section: 'work_masters' },
+		{ kind: 'shift', file: 'shifts.yaml', path: [], section: 'shifts' },
 		{ kind: 'message', file: '', path: null, section: 'messages' }
 	];
 	const all = [...inAbility, ...inResource, ...elsewhere];
@@ -52,10 +54,7 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 	return nearest === undefined ? all : [nearest, ...all.filter((place) => place !== nearest)];
 }
 
-const inWords = (name: string): string => {
-	const words = name.replaceAll('_', ' ').trim();
-	return words.slice(0, 1).toUpperCase() + words.slice(1);
-};
+const inWords = (name: string): string => capital(name.replaceAll('_', ' ').trim());
 
 /** What something begins as; `given` is what was asked for beside its name. */
 export function beginning(kind: EntryKind, name: string, given: Readonly<Record<string, Json>>): Json {
@@ -79,6 +78,8 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 			return { ...title, ...(Object.keys(given).length > 0 ? given : SPECIFICATIONS.forbidden) };
 		case 'work_master':
 			return { ...title, operations: {} };
+		case 'shift':
+			return { ...title, from: '06:00', to: '14:00', days: ['mon', 'tue', 'wed', 'thu', 'fri'] };
 		case 'resource':
 		case 'type':
 			return { ...given, ...title };

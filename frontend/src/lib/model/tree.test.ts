@@ -81,7 +81,7 @@ describe('the tree', () => {
 		const robot = idOf('resources/robot.yaml', []);
 		const shown = (open: string[], sought: string): string[] =>
 			rowsOf(TREE, new Set(open), sought).map(({ node, level }) => `${level} ${node.name}`);
-		expect(shown([], '')).toEqual(['1 station', '1 resources', '1 operations', '1 specifications', '1 work_masters', '1 picture', '1 messages']);
+		expect(shown([], '')).toEqual(['1 station', '1 resources', '1 operations', '1 specifications', '1 work_masters', '1 picture', '1 shifts', '1 messages']);
 		expect(shown(['#resources', robot], '')).toContain('3 abilities');
 		expect(shown([], 'mov')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
 		expect(shown([], 'robot.move')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);

@@ -1,6 +1,7 @@
 /** The parts of a model as a tree: made from what its files hold. */
 import type { FileMark } from '#lib/contract.ts';
-import { entriesOf, isMapping, textAt, valueAt, type Json, type Path } from './content.ts';
+import { language } from '#lib/text/text.svelte.ts';
+import { entriesOf, isMapping, textAt, titleAt, valueAt, type Json, type Path } from './content.ts';
 import { inherited, layersOf, namesIn, removedFrom, typeOf, type Layer } from './types.ts';
 
 /** What a person can make, name and delete. */
@@ -25,6 +26,7 @@ export type EntryKind =
 	| 'specification'
 	| 'work_master'
 	| 'symbol'
+	| 'shift'
 	| 'message';
 
 /** Where entries of one kind stand together. */
@@ -52,6 +54,7 @@ export type SectionName =
 	| 'specifications'
 	| 'work_masters'
 	| 'picture'
+	| 'shifts'
 	| 'messages';
 
 export interface Node {
@@ -74,6 +77,7 @@ export interface Node {
 export const STATION = 'station.yaml';
 /** The file of the live picture. */
 export const PICTURE = 'mimic.yaml';
+const SHIFTS = 'shifts.yaml';
 const IN_FILES = { operations: 'operation', specifications: 'specification', work_masters: 'work_master' } as const;
 
 /** The sections of a resource, by the key under which each stands, and what is in them. */
@@ -114,7 +118,7 @@ export const messageOf = (file: string): string | null => /^messages\/(\w+\/(?:m
 export const messageFile = (name: string): string => `messages/${name}.${name.split('/')[1] ?? 'msg'}`;
 
 function entry(kind: EntryKind, file: string, path: Path, value: Json, children: readonly Node[] = []): Node {
-	const title = textAt(value, ['title']);
+	const title = titleAt(value, ['title'], language());
 	return { id: idOf(file, path), kind, name: String(path.at(-1)), title, file, path, children };
 }
 
@@ -144,14 +148,14 @@ function entriesIn(kind: EntryKind, file: string, path: Path, content: Json | un
  * The resource of each content that was made into one, and the contents of its types: an edit of one file leaves all
  * others what they were.
  */
-const RESOURCES = new WeakMap<object, readonly [made: Node, of: readonly (Json | undefined)[]]>();
+const RESOURCES = new WeakMap<object, readonly [made: Node, of: readonly (Json | undefined)[], language: string]>();
 
 function resource(file: string, name: string, content: Json | undefined, layers: readonly Layer[]): Node {
 	if (!isMapping(content)) return resourceFrom(file, name, content, layers);
-	const [before, of = []] = RESOURCES.get(content) ?? [];
-	if (before?.file === file && of.length === layers.length && layers.every((each, at) => each.content === of[at])) return before;
+	const [before, of = [], spoken] = RESOURCES.get(content) ?? [];
+	if (before?.file === file && spoken === language() && of.length === layers.length && layers.every((each, at) => each.content === of[at])) return before;
 	const made = resourceFrom(file, name, content, layers);
-	RESOURCES.set(content, [made, layers.map((each) => each.content)]);
+	RESOURCES.set(content, [made, layers.map((each) => each.content), language()]);
 	return made;
 }
 
@@ -159,8 +163,8 @@ function resourceFrom(file: string, name: string, content: Json | undefined, lay
 	const sections = (Object.keys(IN_RESOURCE) as InResource[])
 		.map((key) => section(key, file, [key], entriesIn(IN_RESOURCE[key], file, [key], content, layers)))
 		.filter(({ children }) => children.length > 0);
-	const title = textAt(content, ['title']) ?? inherited(layers, ['title'])?.value;
-	return { ...entry('resource', file, [], isMapping(content) ? content : {}, sections), name, title: typeof title === 'string' ? title : null };
+	const title = titleAt(content, ['title'], language()) ?? titleAt(inherited(layers, ['title'])?.value, [], language());
+	return { ...entry('resource', file, [], isMapping(content) ? content : {}, sections), name, title };
 }
 
 /** A type; what is in it is named by the resource `owner`, the first of the instances. */
@@ -197,7 +201,7 @@ export function treeOf(
 			id: idOf(STATION, []),
 			kind: 'station',
 			name: textAt(station, ['name']) ?? '',
-			title: textAt(station, ['title']),
+			title: titleAt(station, ['title'], language()),
 			file: STATION,
 			path: [],
 			children: [
@@ -216,6 +220,7 @@ export function treeOf(
 			return section(name, file, [], entriesIn(kind, file, [], contents[file]));
 		}),
 		section('picture', PICTURE, [], entriesIn('symbol', PICTURE, ['symbols'], contents[PICTURE])),
+		section('shifts', SHIFTS, [], entriesIn('shift', SHIFTS, [], contents[SHIFTS])),
 		section('messages', '', [], messages)
 	];
 }
@@ -319,6 +324,7 @@ export function partOf(node: Node): string | null {
 		case 'station':
 		case 'section':
 		case 'symbol':
+		case 'shift':
 			return null;
 		case 'variable':
 		case 'ability':
@@ -344,7 +350,7 @@ export function parameterOf(node: Node, name: string): string | null {
 }
 
 /** What has no form of fields: it is written as text. */
-const WITHOUT_FORM: readonly string[] = ['section', 'symbol', 'message'];
+const WITHOUT_FORM: readonly string[] = ['section', 'symbol', 'shift', 'message'];
 
 /** The shape of a node's document: what its form has. */
 export function shapeOf(node: Node): string | null {

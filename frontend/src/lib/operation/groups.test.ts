@@ -8,11 +8,12 @@ const titled = (...all: [string, string][]): Record<string, ReturnType<typeof op
 
 test('operations that differ in a parameter alone are one group at the place of the first', () => {
 	const groups = groupsOf(
-		titled(['identify', 'Identify'], ['place(p1)', 'Place pair 1'], ['place(p2)', 'Place pair 2'], ['leave', 'Leave'], ['place(p3)', 'Place pair 3'])
+		titled(['identify', 'Identify'], ['place(p1)', 'Place pair 1'], ['place(p2)', 'Place pair 2'], ['leave', 'Leave'], ['place(p3)', 'Place pair 3']),
+		(word) => `${word}s`
 	);
 	expect(groups.map(({ name, title, members }) => [name, title, members.length])).toEqual([
 		['identify', 'Identify', 1],
-		['place', 'Place pair 1–3', 3],
+		['place', 'Place pairs 1–3', 3],
 		['leave', 'Leave', 1]
 	]);
 });

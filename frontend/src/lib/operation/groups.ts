@@ -11,8 +11,8 @@ export interface Group {
 	readonly members: readonly Named[];
 }
 
-/** All operations in groups, each at the place of its first. */
-export function groupsOf(operations: Readonly<Record<string, Operation>>): Group[] {
+/** All operations in groups, each at the place of its first; `plural` makes of a word that of several. */
+export function groupsOf(operations: Readonly<Record<string, Operation>>, plural = (word: string): string => word): Group[] {
 	const groups = new Map<string, Named[]>();
 	for (const named of Object.entries(operations)) {
 		const name = named[0].split('(')[0] ?? named[0];
@@ -24,14 +24,15 @@ export function groupsOf(operations: Readonly<Record<string, Operation>>): Group
 		name,
 		title: titleOf(
 			members.map(([, { title }]) => title),
-			name
+			name,
+			plural
 		),
 		members
 	}));
 }
 
-/** What titles have in common, with what is different between: `Tighten pair 1–6`, `Load … into the rack`. */
-function titleOf(titles: readonly string[], name: string): string {
+/** What titles have in common, with what is different between: `Tighten pairs 1–6`, `Load … into the rack`. */
+function titleOf(titles: readonly string[], name: string, plural: (word: string) => string): string {
 	const [first = name, ...rest] = titles;
 	if (rest.length === 0) return first;
 	const words = titles.map((title) => title.split(' '));
@@ -44,7 +45,11 @@ function titleOf(titles: readonly string[], name: string): string {
 	const head = words[0]?.slice(0, before) ?? [];
 	const tail = after === 0 ? [] : (words[0]?.slice(-after) ?? []);
 	if (head.length + tail.length === 0) return name.replaceAll('_', ' ');
-	return [...head, between(words.map((of) => of.slice(before, of.length - after).join(' '))), ...tail].filter(Boolean).join(' ');
+	const what = between(words.map((of) => of.slice(before, of.length - after).join(' ')));
+	const last = head.at(-1);
+	// A word of a sentence, and no name: several of it are counted.
+	if (what.includes('–') && last !== undefined && /^\p{Ll}+$/u.test(last)) head.splice(-1, 1, plural(last));
+	return [...head, what, ...tail].filter(Boolean).join(' ');
 }
 
 /** Numbers that follow one another are told by the first and the last. */

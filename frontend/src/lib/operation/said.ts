@@ -5,11 +5,12 @@ import type { Text } from '#lib/text/text.svelte.ts';
 import { durationText } from '#lib/wording/time.ts';
 import type { OperationStanding } from './standing.ts';
 
-/** Since when an active one is under way and until when, or what another waits for. */
+/** Until when an active one is under way and for how long it has been, or what another waits for. */
 export function saidOf(operation: Operation, standing: OperationStanding, now: number, texts: Text['operate']['operations']): string {
 	const { active, active_since, goal, precondition, sentence } = operation;
 	const what = sentence ? told(sentence, active ? goal : precondition) : '';
 	if (!active) return what;
 	const lasted = durationText(now - (active_since ?? now));
-	return `${(standing === 'stopped' ? texts.stoppedFor : texts.activeFor)(lasted)} ${what}`;
+	const parts = standing === 'stopped' ? [texts.stoppedFor(lasted), what] : [what, lasted];
+	return parts.filter((part) => part !== '').join(' · ');
 }

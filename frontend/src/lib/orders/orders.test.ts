@@ -2,7 +2,7 @@ import { describe, expect, test } from 'vitest';
 import type { JobOrder, JobResponse, OrderOfWork } from '#lib/contract.ts';
 import { view as viewOf } from '#lib/testing/view.ts';
 import { lineOf } from './line.ts';
-import { actsOf, inOrder, isOfDay, lastEnd, lateBy, progressOf, secondsOf, standing, titleOf } from './orders.ts';
+import { actsOf, inOrder, isOfDay, lastEnd, lateBy, progressOf, secondsOf, standing, titleOf, waitsText } from './orders.ts';
 
 function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 	return {
@@ -151,6 +151,13 @@ describe('the order of work over time', () => {
 		expect(lanes.get('truck_engine')).toMatchObject([{ id: 'run', from: 210, to: 300, open: true }]);
 		expect(unknown).toBe(2);
 	});
+});
+
+test('what an order waits for is a sentence, and in short the first of it', () => {
+	const waiting = (...reasons: string[]): Parameters<typeof waitsText>[0] => ({ waits_for: reasons, waits_for_messages: [], sentence: null });
+	expect([waitsText(waiting()), waitsText(waiting('a plan'), true)]).toEqual(['', 'Waits: a plan']);
+	expect(waitsText(waiting('a plan', 'control'))).toBe('Waits: a plan; control');
+	expect(waitsText(waiting('a plan', 'control'), true)).toBe('Waits: a plan +1');
 });
 
 test('how far an order has come is told by its job', () => {

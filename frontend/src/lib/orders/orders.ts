@@ -1,5 +1,9 @@
 /** Job orders as they are shown: in which order, what they are called, how far they are and how late they are. */
-import type { JobOrder, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
+import type { JobOrder, JobResponse, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
+import type { OrderCycle } from '#lib/figures/told.ts';
+import { told, toldAll } from '#lib/text/message.ts';
+import { say } from '#lib/text/text.svelte.ts';
+import { capital } from '#lib/wording/capital.ts';
 
 /** The states of an order that is not over, those first that the station works on. */
 export const OPEN = ['Running', 'Interrupted', 'AllowedToStart', 'NotAllowedToStart'] as const;
@@ -50,10 +54,37 @@ export function standing(orders: readonly JobOrder[], stand: Stand): JobOrder[] 
 	return orders.filter(({ state }) => STANDS[stand].some((each) => each === state));
 }
 
+type Waiting = Pick<JobOrder, 'waits_for' | 'waits_for_messages' | 'sentence'>;
+
+/**
+ * What an order waits for, as a sentence; empty where that is nothing, or only the time before which it may not begin. In short
+ * it is the first that is said, and how many there are besides.
+ */
+export function waitsText({ waits_for: reasons, waits_for_messages: messages, sentence }: Waiting, short = false): string {
+	const all = toldAll(messages, reasons).filter((_, place) => messages[place]?.id !== 'order-waits.earliest');
+	const [first] = all;
+	if (first === undefined) return '';
+	if (short && all.length > 1) return `${say().orders.waits(first)} +${String(all.length - 1)}`;
+	return capital(told(sentence, say().orders.waits(all.join('; '))));
+}
+
 /** The act that stands on the card, and those in its menu. */
 export function actsOf({ allowed }: Pick<JobOrder, 'allowed'>): { first: OrderCommand | null; rest: readonly OrderCommand[] } {
 	const first = FIRST.find((each) => allowed.includes(each)) ?? null;
 	return { first, rest: allowed.filter((each) => each !== first) };
+}
+
+/** Of so many it is drawn how long they took. */
+const CYCLES = 16;
+
+/** How long those of a work master took that were made, from the oldest to the newest. */
+export function cyclesOf(responses: readonly JobResponse[], master: string): OrderCycle[] {
+	return responses
+		.flatMap(({ job_order: id, description, work_master, outcome, began, ended }) =>
+			work_master === master && outcome === 'completed' && began !== null ? [{ id, title: titleOf({ description, id }), ended, seconds: ended - began }] : []
+		)
+		.sort((one, other) => one.ended - other.ended)
+		.slice(-CYCLES);
 }
 
 export interface Progress {

@@ -2,11 +2,11 @@
 import { createContext } from 'svelte';
 import type { DraftPipeline, DraftPipelines, Edit, Finding, PipelineRun, RunStep } from '#lib/contract.ts';
 import type { Bench } from '#lib/model/bench.svelte.ts';
-import { textAt } from '#lib/model/content.ts';
+import { titleAt } from '#lib/model/content.ts';
 import { idOf } from '#lib/model/tree.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
-import { say } from '#lib/text/text.svelte.ts';
+import { language, say } from '#lib/text/text.svelte.ts';
 import type { Looked, PartAt } from './address.ts';
 import type { Passing } from './passing.svelte.ts';
 
@@ -101,7 +101,7 @@ export class Loom {
 
 	/** What a resource is called by people. */
 	titleOf(resource: string): string {
-		return textAt(this.bench.draft.contents[`resources/${resource}.yaml`], ['title']) ?? resource;
+		return titleAt(this.bench.draft.contents[`resources/${resource}.yaml`], ['title'], language()) ?? resource;
 	}
 
 	/** A type as people read it: one of many values is said by their number. */

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Operation } from '#lib/contract.ts';
-import { PLAN, step, view } from '#lib/testing/view.ts';
-import { nothingNext } from './status.ts';
+import { alarm, PLAN, step, view } from '#lib/testing/view.ts';
+import { isUnheard, nothingNext } from './status.ts';
 
 const active = { active: true } as Operation;
 const idle = { ...PLAN, status: 'idle' as const };
@@ -17,4 +17,15 @@ test.each([
 	['none', view({ mode: 'restart', plan: { ...PLAN, status: 'none' } })]
 ])('no next start is said as %s, and never as nothing to plan while something is active', (said, station) => {
 	expect(nothingNext(station)).toBe(said);
+});
+
+test('a step runs unheard while an alarm tells that its device is silent, and no longer', () => {
+	const [run] = running;
+	const silent = alarm({ kind: 'silent', resources: ['nutrunner'] });
+	expect(run && isUnheard(run, { a: silent })).toBe(true);
+	expect(run && isUnheard(run, { a: { ...silent, kind: 'many-silent', resources: ['robot', 'nutrunner'] } })).toBe(true);
+	expect(run && isUnheard(run, { a: { ...silent, ended: 995 } })).toBe(false);
+	expect(run && isUnheard(run, { a: { ...silent, resources: ['robot'] } })).toBe(false);
+	expect(run && isUnheard(run, { a: { ...silent, kind: 'overdue' } })).toBe(false);
+	expect(isUnheard(step('run', 'nutrunner', 0, { status: 'next' }), { a: silent })).toBe(false);
 });

@@ -25,10 +25,18 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 
 /** Kinds of alarms that tell that a device does not do what it should. */
 const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
+/** Kinds of alarms that tell that nothing is heard of one, or of several. */
+const UNHEARD: ReadonlySet<string> = new Set(['silent', 'many-silent', 'never-heard']);
 
 /** The most urgent alarm that lasts about the devices of a resource. */
 export function failing(resource: string, alarms: Alarms): Alarm | undefined {
 	return byUrgency(alarms).find(([, alarm]) => alarm.group === 'device' && !isOver(alarm) && alarm.resources.includes(resource))?.[1];
+}
+
+/** Whether nothing is heard of the device that carries it out: how far it is nobody knows. */
+export function isUnheard({ status, resource }: PlanStep, alarms: Alarms): boolean {
+	const tells = (alarm: Alarm): boolean => UNHEARD.has(alarm.kind) && !isOver(alarm) && alarm.resources.includes(resource);
+	return status === 'running' && Object.values(alarms).some(tells);
 }
 
 /** How urgent it is that a run does not come to its end: it is the last of its resource, of which an alarm tells it since then. */

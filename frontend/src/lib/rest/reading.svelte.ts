@@ -1,11 +1,13 @@
 /** What an address of the server says, read again and again: the last answer, and why the last question failed. */
 import type { Address } from '#lib/contract.ts';
+import { titled } from '#lib/wording/titled.svelte.ts';
 import type { Refusal } from './refusal.ts';
 import { request } from './request.ts';
 
 export class Reading<Value> {
+	#value = $state.raw<Value | null>(null);
 	/** The last answer; it stays when a later question fails. Null before the first. */
-	value = $state.raw<Value | null>(null);
+	readonly value: Value | null = $derived(titled(this.#value));
 	/** Why the last question was not answered; null when it was. */
 	refusal = $state.raw<Refusal | null>(null);
 	/** Seconds by which the server's clock is ahead of this device's. */
@@ -23,7 +25,7 @@ export class Reading<Value> {
 		const answer = await request<Value>('GET', this.#path);
 		if (asked !== this.#asked) return;
 		if (answer.ok) {
-			this.value = answer.value;
+			this.#value = answer.value;
 			this.ahead = answer.ahead;
 			this.refusal = null;
 		} else this.refusal = answer.refusal;

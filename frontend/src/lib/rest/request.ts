@@ -5,6 +5,8 @@
  * found it ended listens with `whenSignedOut`.
  */
 import type { Address } from '#lib/contract.ts';
+import { readRefusals } from '#lib/text/text.svelte.ts';
+import { titled } from '#lib/wording/titled.svelte.ts';
 import { refusalOf, unreached, unread, type Refusal } from './refusal.ts';
 
 type Method = 'GET' | 'POST' | 'PUT' | 'PATCH' | 'DELETE';
@@ -32,6 +34,8 @@ export type Answer<Value> =
 	  }
 	| { readonly ok: false; readonly refusal: Refusal };
 
+/** What is edited there is a draft, and stays as it is written. */
+const DRAFT = '/api/v1/model/';
 /** Milliseconds after which an answer is no longer waited for, unless the request says otherwise. */
 const PATIENCE = 5000;
 
@@ -64,10 +68,12 @@ export async function request<Value = undefined>(
 		const answer = await fetch(path, { method, headers, signal, ...sent });
 		const text = await answer.text();
 		if (answer.ok) {
-			const value = (text === '' ? undefined : JSON.parse(text)) as Value;
+			const read = (text === '' ? undefined : JSON.parse(text)) as Value;
+			const value = path.startsWith(DRAFT) ? read : titled(read);
 			const ahead = aheadOf(answer.headers.get('Date'), Date.now());
 			return { ok: true, value, etag: answer.headers.get('ETag'), ahead };
 		}
+		await readRefusals();
 		const refusal = refusalOf(answer.status, text, answer.headers.get('Retry-After'));
 		if (refusal.kind === 'signed-out') for (const listener of listeners) listener();
 		return { ok: false, refusal };

@@ -1,5 +1,6 @@
 /** How acts that are done one after the other are said on the button that does them. */
 import { say, type Text } from '#lib/text/text.svelte.ts';
+import { capital } from '#lib/wording/capital.ts';
 import type { ModeAct } from './mode-acts.ts';
 
 type Texts = Pick<Text, 'locale'> & { readonly restart: Pick<Text['restart'], 'acts'> };
@@ -9,8 +10,7 @@ export function sayActs(acts: readonly ModeAct[], last: string | null = null, te
 	const { words } = texts.restart.acts;
 	const first = acts.map((act) => words[act]);
 	const all = last === null ? first : [...first, acts.length === 0 ? last : lower(last)];
-	return upper(new Intl.ListFormat(texts.locale, { type: 'conjunction' }).format(all));
+	return capital(new Intl.ListFormat(texts.locale, { type: 'conjunction' }).format(all));
 }
 
-const upper = (text: string): string => text.charAt(0).toLocaleUpperCase() + text.slice(1);
 const lower = (text: string): string => text.charAt(0).toLocaleLowerCase() + text.slice(1);

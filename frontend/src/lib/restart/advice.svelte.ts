@@ -3,6 +3,7 @@ import type { AdviceAnswer } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { isDue, isSettled } from './due.ts';
+import { merged } from './merge.ts';
 
 /** Milliseconds in which the server answers, also where it has given itself more time. */
 const PATIENCE = 12_000;
@@ -14,13 +15,25 @@ export class Advice {
 	pending = $state(false);
 	/** A person is at one of the offers: they stay as they are. */
 	held = $state(false);
+	/** The way that a person has chosen themselves, also while another step is open. */
+	picked = $state<string | null>(null);
+	/** It was taken: whatever is offered after that is nobody's choice yet. */
+	spent = $state(false);
 	/** Answers in a row for the same state. */
 	#times = $state(0);
 	#last = -Infinity;
+	/** The question that is under way. */
+	#looking: Promise<void> | null = null;
 
 	/** The last answer, unless there was too little time for it and it is asked for again. */
 	get settled(): AdviceAnswer | null {
 		return this.answer && isSettled(this.answer, this.#times) ? this.answer : null;
+	}
+
+	/** A person chooses a way; null: nobody has. */
+	pick(key: string | null): void {
+		this.picked = key;
+		this.spent = false;
 	}
 
 	/** Keeps the offers as they are, for as long as a person is at one of them. */
@@ -41,9 +54,13 @@ export class Advice {
 		if (!this.held && isDue(asked, revision)) void this.look();
 	}
 
-	/** Asks, unless a question is under way. */
-	async look(): Promise<void> {
-		if (this.pending) return;
+	/** Asks, or waits for the question that is under way. */
+	look(): Promise<void> {
+		this.#looking ??= this.#ask().finally(() => (this.#looking = null));
+		return this.#looking;
+	}
+
+	async #ask(): Promise<void> {
 		this.pending = true;
 		const answer = await request<AdviceAnswer>('GET', '/api/v1/recovery/proposals', { patience: PATIENCE });
 		this.pending = false;
@@ -55,6 +72,6 @@ export class Advice {
 		this.refusal = null;
 		this.#times = answer.value.revision === this.answer?.revision ? this.#times + 1 : 1;
 		// Whoever opened a dialog meanwhile reads on undisturbed; it is asked again after that.
-		if (!this.held) this.answer = answer.value;
+		if (!this.held) this.answer = merged(this.answer, answer.value);
 	}
 }

@@ -20,6 +20,17 @@ export function openQuestions(view: Seen): Question[] {
 	return view.questions.filter((question) => !isAnswered(view, question));
 }
 
+/**
+ * What is asked at once of those that are open: what is wrong in any case by itself, since correcting it may answer the
+ * others; otherwise all that may be so, since who looks sees it together.
+ */
+export function askedNow(open: readonly Question[]): readonly Question[] {
+	const [first] = open;
+	if (first === undefined) return [];
+	const maybe = open.filter(({ believed, possible }) => possible.includes(believed));
+	return maybe.includes(first) ? maybe : [first];
+}
+
 /** Those that were answered, and are asked all the same. */
 export function answeredQuestions(view: Seen): Question[] {
 	return view.questions.filter((question) => isAnswered(view, question));

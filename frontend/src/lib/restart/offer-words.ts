@@ -4,6 +4,7 @@ import { told } from '#lib/text/message.ts';
 import { say, type Text } from '#lib/text/text.svelte.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import { asksForHands, canBeTaken, onlySays } from './offer.ts';
+import { returning } from './returning.ts';
 import { operationTitles, resourceTitle } from './titles.ts';
 
 type Ways = Text['restart']['ways'];
@@ -39,6 +40,20 @@ export function saidOf({ corrections }: Pick<WayOffer, 'corrections'>): string {
 	return corrections.map(soOf).join(', ');
 }
 
+/** What of that which a person does first is not so yet; null where all of it is. */
+export function stillAsked(view: StationView, { online, in_service, physical }: WayOffer): string | null {
+	const { still: texts, now } = say().restart.ways;
+	const parts = [
+		...online.flatMap((name) => {
+			const { how } = returning(view, name);
+			return how === 'back' ? [] : [texts[how](resourceTitle(view, name))];
+		}),
+		...in_service.map((name) => texts.out(view.abilities[name]?.title ?? name)),
+		...physical.map((change) => texts.other(soOf(change), now(valueOf(change.name, change.now))))
+	];
+	return parts.length === 0 ? null : texts.checked(parts.join(', '));
+}
+
 /** So much a person does by hand, before it or within it. */
 export function handsOf({ physical, online, in_service, errand }: WayOffer): number {
 	return physical.length + online.length + in_service.length + (errand?.steps.filter((step) => step.human).length ?? 0);
@@ -52,11 +67,13 @@ export function resourcesOf({ errand }: Pick<WayOffer, 'errand'>): string[] {
 /** What happens, in a sentence or two. */
 export function storyOf(view: Known, offer: WayOffer): string {
 	const texts = say().restart.ways;
-	const goals = operationTitles(view, offer.goals);
+	// What somebody says to be done already does not come then.
+	const goals = operationTitles(view, offer.goals.filter((name) => !offer.claims.includes(name)));
 	const then = goals.length === 0 ? texts.goalsPlain : texts.goals(few(texts, goals));
 	if (asksForHands(offer)) return offer.errand === null ? then : `${startsOf(view, offer)} ${then}`;
 	if (offer.errand !== null) return startsOf(view, offer);
-	return canBeTaken(offer) ? `${texts.correct}: ${saidOf(offer)}.` : `${texts.goOn} ${then}`;
+	// What it corrects is among its facts, and in its title.
+	return canBeTaken(offer) ? then : `${texts.goOn} ${then}`;
 }
 
 function startsOf(view: Known, { errand }: WayOffer): string {

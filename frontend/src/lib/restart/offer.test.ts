@@ -1,8 +1,9 @@
 import { expect, test } from 'vitest';
 import { offer, preview } from '#lib/testing/offer.ts';
+import { operation, view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
-import { asksForHands, canBeTaken, goesOn, mayBeWanted, onlySays } from './offer.ts';
-import { handsOf, kindWord, resourcesOf, timeWords } from './offer-words.ts';
+import { asksForHands, canBeTaken, goesOn, goesOnMeanwhile, mayBeWanted, onlySays } from './offer.ts';
+import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, timeWords } from './offer-words.ts';
 
 const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } };
 
@@ -42,4 +43,31 @@ test('what a person does by hand is counted, before it and within it', () => {
 test('a kind has a word, whether this page knows it or not', () => {
 	expect(kindWord(en.restart.ways, 'way-back')).toBe('back to safety');
 	expect(kindWord(en.restart.ways, 'toString')).toBe('toString');
+});
+
+test('whoever is to go in holds the station first, where it would go on by itself', () => {
+	const hands = offer({ physical: [CHANGE] });
+	const works = { mode: 'automatic', production: 'started' } as const;
+	expect(goesOnMeanwhile(hands, works)).toBe(true);
+	expect(goesOnMeanwhile(hands, { ...works, mode: 'hold' })).toBe(false);
+	expect(goesOnMeanwhile(hands, { ...works, mode: 'restart' })).toBe(false);
+	expect(goesOnMeanwhile(hands, { ...works, production: 'waiting' })).toBe(false);
+	expect(goesOnMeanwhile(offer({ online: ['robot'] }), works)).toBe(false);
+});
+
+test('who says too early that it is done hears what is not so yet', () => {
+	const silent = view({ resources: { robot: { title: 'Robot UR10', online: false, awaited_topics: ['/state'] } } });
+	expect(stillAsked(silent, offer({ online: ['robot'] }))).toBe('Checked: Robot UR10 is still not heard.');
+	expect(stillAsked(silent, offer({ physical: [CHANGE] }))).toBe('Checked: it is not so yet that b is empty (now placed).');
+	expect(stillAsked(silent, offer({ in_service: ['move'], online: ['robot'] }))).toMatch(/^Checked: Robot UR10 is still not heard, .* is still out of service\.$/);
+	const heard = view({ resources: { robot: { title: 'Robot UR10', online: true, awaited_topics: [] } } });
+	expect(stillAsked(heard, offer({ online: ['robot'] }))).toBe(null);
+});
+
+test('what somebody says to be done is not among what the station then does', () => {
+	const operations = { tighten: operation({ title: 'Tighten' }), place: operation({ title: 'Place' }) };
+	const story = (claims: string[]): string => storyOf(view({ operations }), offer({ corrections: [CHANGE], goals: ['tighten', 'place'], claims }));
+	expect(story([])).toBe('Then the station goes on: Tighten, Place.');
+	expect(story(['tighten'])).toBe('Then the station goes on: Place.');
+	expect(story(['tighten', 'place'])).toBe('Then the station goes on.');
 });

@@ -1,9 +1,14 @@
 /** What an offer asks of a person. */
-import type { WayOffer } from '#lib/contract.ts';
+import type { StationView, WayOffer } from '#lib/contract.ts';
 
 /** Whether something has to be done at the station before anything can be taken. */
 export function asksForHands(offer: WayOffer): boolean {
 	return offer.physical.length > 0 || offer.online.length > 0 || offer.in_service.length > 0;
+}
+
+/** Whether the station goes on by itself as soon as a person has done it: whoever goes in holds it first. */
+export function goesOnMeanwhile({ physical }: WayOffer, { mode, production }: Pick<StationView, 'mode' | 'production'>): boolean {
+	return physical.length > 0 && mode === 'automatic' && production === 'started';
 }
 
 /** Whether there is something to be taken: starts, a wait, or corrections. */
@@ -26,7 +31,8 @@ export function goesOn(offer: WayOffer): boolean {
 	return !asksForHands(offer) && !canBeTaken(offer);
 }
 
-/** How an offer is told from the others, also when it is found again in a later state; `index` is its rank. */
-export function keyOf(offer: WayOffer, index: number): string {
-	return `${offer.kind} ${offer.title} ${index}`;
+/** What it asks for, whatever number it has: two of the same meaning are the same way, also when it is found again in a later state. */
+export function meaningOf({ kind, operation, title, online, in_service, physical, corrections }: WayOffer): string {
+	const values = (changes: WayOffer['physical']): string[] => changes.map(({ name, then }) => `${name} ${JSON.stringify(then)}`).sort();
+	return JSON.stringify([kind, operation, title, [...online].sort(), [...in_service].sort(), values(physical), values(corrections)]);
 }

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { expect, test } from 'vitest';
-import { LEAST, lanesOf, shortTitles } from './preview-lanes.ts';
+import { LEAST, lanesOf } from './preview-lanes.ts';
 
 const step = fc
 	.record({
@@ -41,11 +41,4 @@ test('bars of one row lie one after the other', () => {
 				for (const [place, bar] of row.entries()) expect(bar.from).toBeGreaterThanOrEqual(row[place - 1]?.to ?? 0);
 		})
 	);
-});
-
-test('a short title leaves out what all of a lane begin with', () => {
-	expect(shortTitles(['Move to pair 4', 'Move to pair 5'])).toEqual(['pair 4', 'pair 5']);
-	expect(shortTitles(['Move home', 'Move to pair 5'])).toEqual(['Move home', 'Move to pair 5']);
-	expect(shortTitles(['Move', 'Move to pair 5'])).toEqual(['Move', 'Move to pair 5']);
-	expect(shortTitles(['Lift', 'Lift'])).toEqual(['Lift', 'Lift']);
 });

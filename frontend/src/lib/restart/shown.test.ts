@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { StationView } from '#lib/contract.ts';
-import { estimate, operation, PLAN, view } from '#lib/testing/view.ts';
-import { concernsRestart, unconfirmed, wantedFor } from './shown.ts';
+import { alarm, estimate, operation, PLAN, view } from '#lib/testing/view.ts';
+import { concernsRestart, leadingAlarm, passedAlarms, unconfirmed, wantedFor } from './shown.ts';
 
 const active = operation({ active: true, active_since: 990 });
 
@@ -41,4 +41,16 @@ test('what is out of service is a reason only where there is no plan without it'
 	const stands = view({ out_of_service: [out], plan: { ...PLAN, status: 'none' }, operations: { tighten: active } });
 	expect(wantedFor(stands)).toEqual(['noPlan', 'outOfService']);
 	expect(wantedFor({ ...stands, out_of_service: [{ ...out, of: 'operation' }] })).toEqual(['noPlan']);
+});
+
+test('what a person is wanted for is not led by an alarm that is over, or that only reminds', () => {
+	const over = alarm({ state: 'returned', since: 20, ended: 25 });
+	const seen = alarm({ state: 'acknowledged', since: 10, ended: 15 });
+	const low = alarm({ priority: 'low' });
+	const leads = (rest: Partial<StationView>): (string | undefined)[] => [leadingAlarm(view(rest))?.[0], ...passedAlarms(view(rest)).map(([key]) => key)];
+	expect(leads({ mode: 'hold', alarms: { over, seen, low } })).toEqual([undefined, 'over']);
+	expect(leads({ mode: 'hold', alarms: { over, lasts: alarm() } })).toEqual(['lasts']);
+	// Where the station works by itself it is all that there is to be said.
+	expect(leads({ alarms: { over } })).toEqual(['over']);
+	expect(leads({ mode: 'hold' })).toEqual([undefined]);
 });

@@ -1,6 +1,6 @@
 /** When a person has to do with a restart at all: as long as the station works by itself, the page does not speak of one. */
-import { byUrgency } from '#lib/alarm/priority.ts';
-import type { Alarm, OutOfService, StationView, Value, Variable } from '#lib/contract.ts';
+import { byUrgency, isNew, isOver, type Keyed } from '#lib/alarm/priority.ts';
+import type { OutOfService, StationView, Value, Variable } from '#lib/contract.ts';
 import { openQuestions } from './answers.ts';
 
 /** Why a person is wanted for a restart, the most telling first. */
@@ -34,7 +34,7 @@ export function isUnsure({ violated, differences, awaits }: NonNullable<StationV
 }
 
 /** The alarms of what is not as it should be now; what only reminds people, such as of a force, is none of them. */
-export function lastingAlarms({ alarms }: Pick<StationView, 'alarms'>): [string, Alarm][] {
+export function lastingAlarms({ alarms }: Pick<StationView, 'alarms'>): Keyed[] {
 	return byUrgency(alarms).filter(([, alarm]) => alarm.ended === null && alarm.priority !== 'low');
 }
 
@@ -56,6 +56,22 @@ export function wantedFor(view: StationView): Wanted[] {
 		['paused', view.mode === 'paused']
 	];
 	return reasons.flatMap(([reason, holds]) => (holds ? [reason] : []));
+}
+
+/** The alarm that leads what is said of the station. Where a person is wanted it is one that lasts and not only reminds. */
+export function leadingAlarm(view: StationView): Keyed | undefined {
+	return (concernsRestart(view) ? lastingAlarms(view) : byUrgency(view.alarms))[0];
+}
+
+/** The alarms that are over and that nobody has seen, where what a person is wanted for leads and not an alarm. */
+export function passedAlarms(view: StationView): Keyed[] {
+	if (!concernsRestart(view) || leadingAlarm(view)) return [];
+	return byUrgency(view.alarms).filter(([, alarm]) => isOver(alarm) && isNew(alarm));
+}
+
+/** Whether a person has asked for help with a task and nothing else is wanted: no way back helps with that. */
+export function onlyHelps(view: StationView): boolean {
+	return wantedFor(view).every((reason) => reason === 'alarm') && lastingAlarms(view).every(([, { kind }]) => kind === 'problem');
 }
 
 /** Whether there is anything to say of it. */

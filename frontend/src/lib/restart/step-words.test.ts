@@ -3,7 +3,7 @@ import { alarm, view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
 import { sv } from '#lib/text/sv.ts';
 import { sayActs } from './act-words.ts';
-import { doneSteps } from './step-words.ts';
+import { doneSteps, stepWords } from './step-words.ts';
 
 test('all that a button does is said on it, as one sentence', () => {
 	expect(sayActs(['control', 'enter'], null, en)).toBe('Take control and enter restart mode');
@@ -19,4 +19,11 @@ test('steps before the next one are done, but for a state that is still asked ab
 	expect(doneSteps(view(late), 'ways')).toEqual({ understand: true, state: true, ways: false, on: false });
 	expect(doneSteps(view({ ...late, unconfirmed: true }), 'ways').state).toBe(false);
 	expect(doneSteps(view({ mode: 'restart' }), 'on')).toEqual({ understand: true, state: true, ways: true, on: false });
+});
+
+test('of a device that is not heard nobody says that it stands still', () => {
+	const seen = (silent: string[]): string => stepWords({ view: view({ silent }), next: 'enter', step: 'state', advice: null, now: 0 }).understand;
+	expect(seen([])).toContain('All devices stand still.');
+	expect(seen(['Robot UR10'])).toContain('Nobody knows whether Robot UR10 moves.');
+	expect(seen(['Robot UR10'])).not.toContain('stand still');
 });

@@ -52,7 +52,10 @@ function happened(view: StationView): string {
 	const texts = say().restart.steps;
 	const [first] = lastingAlarms(view);
 	const moving = Object.values(view.abilities).filter(runs).map(({ resource }) => resourceTitle(view, resource));
-	return `${first ? ended(firstOf(wordsOf(first[1]).text)) : modeMeaning(view)} ${moving.length === 0 ? texts.still : texts.moving([...new Set(moving)].join(', '))}`;
+	const said = [first ? ended(firstOf(wordsOf(first[1]).text)) : modeMeaning(view)];
+	if (moving.length > 0) said.push(texts.moving([...new Set(moving)].join(', ')));
+	if (view.silent.length > 0) said.push(texts.unheard(view.silent.join(', ')));
+	return said.length > 1 ? said.join(' ') : `${said.join('')} ${texts.still}`;
 }
 
 /** The first sentence of several. */

@@ -103,6 +103,18 @@ describe('the watch', () => {
 		expect(await (await shell.file('/_app/immutable/later.1.js')).text()).toBe('later 1');
 	});
 
+	test('keeps what it loads later also when the worker has begun anew since', async () => {
+		const { server, shell, cache } = await installed();
+		await shell.file('/_app/immutable/later.1.js');
+		const anew = new Shell(cache, server.load);
+		await anew.file('/_app/immutable/later.1.js');
+		const work: Promise<void>[] = [];
+		await anew.page((each) => work.push(each));
+		await Promise.all(work);
+		server.state = 'away';
+		expect(await (await anew.file('/_app/immutable/later.1.js')).text()).toBe('later 1');
+	});
+
 	test('is not installed by half', async () => {
 		const [server, cache] = [new Server(), new Cache()];
 		server.build(1);

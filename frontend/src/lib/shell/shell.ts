@@ -32,8 +32,8 @@ export function filesOf(html: string): string[] {
 export class Shell {
 	readonly #kept: Kept;
 	readonly #load: Load;
-	/** What was kept since the worker began, which the page that is there now may have asked for later. */
-	readonly #new = new Set<string>();
+	/** What was asked for since the worker began, which the page that is there now may have read later. */
+	readonly #asked = new Set<string>();
 
 	constructor(kept: Kept, load: Load) {
 		this.#kept = kept;
@@ -60,13 +60,11 @@ export class Shell {
 	/** A file of the build. */
 	async file(address: string): Promise<Response> {
 		if (!address.startsWith(IMMUTABLE)) return this.#orKept(address, this.#load(address));
+		this.#asked.add(address);
 		const found = await this.#kept.match(address);
 		if (found !== undefined) return found;
 		const response = await this.#load(address);
-		if (response.ok) {
-			this.#new.add(address);
-			await this.#kept.put(address, response.clone());
-		}
+		if (response.ok) await this.#kept.put(address, response.clone());
 		return response;
 	}
 
@@ -101,7 +99,7 @@ export class Shell {
 	async #drop(needed: ReadonlySet<string>): Promise<void> {
 		for (const { url } of await this.#kept.keys()) {
 			const address = new URL(url, 'https://here.invalid').pathname;
-			if (!needed.has(address) && !this.#new.has(address)) await this.#kept.delete(address);
+			if (!needed.has(address) && !this.#asked.has(address)) await this.#kept.delete(address);
 		}
 	}
 }

@@ -104,6 +104,12 @@ export function countsIn(pieces: readonly Thing[]): [Kind, number][] {
 	return ORDER.flatMap((kind): [Kind, number][] => (counts.has(kind) ? [[kind, counts.get(kind) ?? 0]] : []));
 }
 
+/** What people call it, for any value of its parameters; null where it has no title, or one that is nothing but such a value. */
+export function spokenName({ title }: Thing): string | null {
+	if (title === null || /^\{[^}]*\}$/.test(title)) return null;
+	return title.replace(/\{([^}]*)\}/g, (_, parameter: string) => parameter.replaceAll('_', ' '));
+}
+
 /** What a piece is called in its lane, where its resource is said already. */
 export function shortName(thing: Thing): string {
 	const prefix = `${thing.resource ?? ''}.`;

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { ModelGraph, ModelThing, ModelTie } from '#lib/contract.ts';
 import { addressOf, lookedAt } from './address.ts';
-import { bandsOf, countsIn, shortName } from './bands.ts';
+import { bandsOf, countsIn, shortName, spokenName } from './bands.ts';
 import { findingsAt } from './findings.ts';
 import { reached, tiedTo, wholeOf, type Manner, type Whole } from './graph.ts';
 import { looseEnds } from './loose.ts';
@@ -151,4 +151,11 @@ test('arrow keys go through rows as they are seen', () => {
 	expect(next(all, all[0], 'ArrowLeft')).toBeNull();
 	expect(next(all, all[3], 'End')).toBe(all[5]);
 	expect(next(all, {}, 'ArrowDown')).toBeNull();
+});
+
+test('what is called after a value is called after its parameter, and by its name where that is all', () => {
+	const [thing] = WHOLE.things;
+	if (thing === undefined) throw new Error('nothing is there');
+	const said = (title: string | null): string | null => spokenName({ ...thing, title });
+	expect([said('Place {bolt_pair}'), said('{bolt_pair}'), said(null)]).toEqual(['Place bolt pair', null, null]);
 });

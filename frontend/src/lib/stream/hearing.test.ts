@@ -7,6 +7,8 @@ interface Message {
 	readonly step: number;
 	/** Milliseconds on the way. */
 	readonly delay: number;
+	/** The share of them, from 0 to 1, for which the server had it and says so; null where it says nothing. */
+	readonly kept?: number | null;
 }
 
 /** Hears messages made on a controller's clock that is `apart` from this page's; they arrive in order. */
@@ -17,12 +19,14 @@ function listen(messages: readonly Message[], apart: number): { hearing: Hearing
 	for (const message of messages) {
 		made += message.step;
 		arrival = Math.max(arrival, made + message.delay);
-		hearing = hear(hearing, arrival, made - apart);
+		const { kept = null } = message;
+		hearing = hear(hearing, arrival, made - apart, kept === null ? null : kept * message.delay);
 	}
 	return { hearing, arrival, made };
 }
 
-const messages = fc.array(fc.record({ step: fc.integer({ min: 1, max: 900 }), delay: fc.nat(5000) }), { minLength: 1 });
+const kept = fc.option(fc.double({ min: 0, max: 1, noNaN: true }));
+const messages = fc.array(fc.record({ step: fc.integer({ min: 1, max: 900 }), delay: fc.nat(5000), kept }), { minLength: 1 });
 const clocks = fc.integer({ min: -1_000_000, max: 1_000_000 });
 
 describe('the age of a document', () => {
@@ -81,6 +85,12 @@ describe('the age of a document', () => {
 	test('is not known before anything was heard', () => {
 		expect(ageOf(SILENCE, 5)).toBeNull();
 	});
+});
+
+test('the first document is as old as the server says, and no less live for being the first', () => {
+	const once = hear(SILENCE, 10_000, 500, 400);
+	expect(once.proven).toBe(true);
+	expect(ageOf(once, 10_000)).toBe(400);
 });
 
 test('one document alone proves nothing: its controller may be long dead', () => {

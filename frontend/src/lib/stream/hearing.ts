@@ -24,22 +24,33 @@ export interface Hearing {
 	readonly minima: readonly Minimum[];
 	/** The controller's time in the last document heard. */
 	readonly last: number | null;
-	/** That time was seen to move. A first document alone may be what a controller left behind that is long dead. */
+	/**
+	 * That time was seen to move, here or by the server. A first document alone may be what a controller left behind that is
+	 * long dead.
+	 */
 	readonly proven: boolean;
 }
 
 export const SILENCE: Hearing = { minima: [], last: null, proven: false };
 
-/** What is known of the clocks after a document of the controller's time `time` arrived. */
-export function hear(hearing: Hearing, arrival: number, time: number): Hearing {
+/**
+ * What is known of the clocks after a document of the controller's time `time` arrived. `age` is how long the server had it
+ * by then, where it saw that time move.
+ */
+export function hear(hearing: Hearing, arrival: number, time: number, age: number | null = null): Hearing {
 	const second = Math.floor(arrival / 1000);
-	const difference = arrival - time;
-	const proven = hearing.proven || (hearing.last !== null && hearing.last !== time);
+	const difference = arrival - (age ?? 0) - time;
+	const proven = hearing.proven || age !== null || (hearing.last !== null && hearing.last !== time);
 	const newest = hearing.minima.at(-1);
 	if (newest?.second !== second)
 		return { minima: [...hearing.minima, { second, difference }].slice(-SECONDS_KEPT), last: time, proven };
 	const least = { second, difference: Math.min(newest.difference, difference) };
 	return { minima: [...hearing.minima.slice(0, -1), least], last: time, proven };
+}
+
+/** How long the server had what a message shows, in milliseconds, where it says so. */
+export function serverAge(message: { readonly age: number | null }): number | null {
+	return message.age === null ? null : message.age * 1000;
 }
 
 /** This page's clock minus the controller's, as well as is known; null before anything was heard. */

@@ -5,7 +5,7 @@ import { SILENCE, hear } from './hearing.ts';
 import { OLD_AFTER, judge } from './liveness.ts';
 import { NOTHING, receive } from './receive.ts';
 
-const stream = receive(NOTHING, { kind: 'snapshot', sequence: 1, view: view() });
+const stream = receive(NOTHING, { kind: 'snapshot', sequence: 1, age: null, view: view() });
 const hearing = hear(hear(SILENCE, 0, 0), 100, 100);
 
 describe('what is shown', () => {
@@ -30,6 +30,7 @@ describe('what is shown', () => {
 		['the controller is lost', { ...stream, controller: 'lost' } as const, hearing, true, 'controller'],
 		['a message is missing', { ...stream, gap: true }, hearing, true, 'gap'],
 		['only one document came', stream, hear(SILENCE, 100, 100), true, 'connecting'],
+		['the only document was old when it came', stream, hear(SILENCE, 100, 100, OLD_AFTER + 1), true, 'silent'],
 		[
 			'the server has never heard the controller',
 			{ ...NOTHING, controller: 'lost' } as const,

@@ -5,7 +5,7 @@ import { task, view } from '#lib/testing/view.ts';
 import { NOTHING, apply, receive, type Stream } from './receive.ts';
 
 const started = (over: Partial<StationView> = {}): Stream =>
-	receive(NOTHING, { kind: 'snapshot', sequence: 7, view: view(over) });
+	receive(NOTHING, { kind: 'snapshot', sequence: 7, age: null, view: view(over) });
 const delta = (sequence: number, changed: Delta['changed'] = {}, removed: Delta['removed'] = {}): Delta => ({
 	kind: 'delta',
 	sequence,
@@ -76,7 +76,7 @@ describe('a gap', () => {
 		const broken = receive(started(), delta(9, { tick: 9 }));
 		const still = receive(broken, delta(8, { tick: 8 }));
 		expect(still).toMatchObject({ gap: true, view: { tick: 0 } });
-		const healed = receive(still, { kind: 'snapshot', sequence: 20, view: view({ tick: 20 }) });
+		const healed = receive(still, { kind: 'snapshot', sequence: 20, age: null, view: view({ tick: 20 }) });
 		expect(receive(healed, delta(21, { tick: 21 }))).toMatchObject({ gap: false, view: { tick: 21 } });
 	});
 
@@ -97,7 +97,7 @@ test('a delta does not bring a lost controller back; the server says when it is 
 test('what the server complains of is kept until the next snapshot', () => {
 	const stream = receive(started(), { kind: 'error', detail: 'not JSON' });
 	expect(stream.trouble).toBe('not JSON');
-	expect(receive(stream, { kind: 'snapshot', sequence: 1, view: view() }).trouble).toBeNull();
+	expect(receive(stream, { kind: 'snapshot', sequence: 1, age: null, view: view() }).trouble).toBeNull();
 });
 
 test('a task named like a property of all objects is a task', () => {

@@ -10,6 +10,7 @@ const made = (value: Value | null, since: number): Variable => estimate({ domain
 const snapshot = (time: number, variables: Record<string, Variable>): StreamMessage => ({
 	kind: 'snapshot',
 	sequence: 1,
+	age: null,
 	view: view({ time, variables })
 });
 const delta = (time: number, variables: Record<string, Variable>, gone: string[] = []): StreamMessage => ({

@@ -6,10 +6,11 @@
 import { createContext } from 'svelte';
 import type { StationView } from '#lib/contract.ts';
 import { connect } from './connection.ts';
-import { SILENCE, clockDifference, hear, type Hearing } from './hearing.ts';
+import { SILENCE, clockDifference, hear, serverAge, type Hearing } from './hearing.ts';
 import { judge, type Liveness } from './liveness.ts';
 import { NOTHING, receive, type Stream } from './receive.ts';
 import { Recorder } from './recorder.ts';
+import { titled } from '#lib/wording/titled.svelte.ts';
 
 /** Milliseconds between two looks at the clock. */
 const REFRESH = 150;
@@ -30,8 +31,8 @@ export class Station {
 		return this.#names;
 	}
 
-	/** The last document, live or not; null before the first. */
-	readonly view: StationView | null = $derived(this.#stream.view);
+	/** The last document, live or not, with titles in the language of the page; null before the first. */
+	readonly view: StationView | null = $derived(titled(this.#stream.view));
 	readonly liveness: Liveness = $derived(judge(this.#stream, this.#hearing, this.#open, this.#now));
 	readonly live: boolean = $derived(this.liveness.live);
 	/** What the server last complained of. */
@@ -65,9 +66,10 @@ export class Station {
 					connection.resync();
 				}
 				const time = this.#stream.view?.time;
+				const age = message.kind === 'snapshot' ? serverAge(message) : null;
 				// Only the controller's own clock proves that the controller is behind a message.
 				if (time !== undefined && (time !== before.view?.time || message.kind === 'snapshot'))
-					this.#hearing = hear(this.#hearing, this.#now, time * 1000);
+					this.#hearing = hear(this.#hearing, this.#now, time * 1000, age);
 			},
 			closed: (code) => {
 				this.#open = false;

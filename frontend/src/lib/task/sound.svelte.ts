@@ -1,9 +1,11 @@
-/** The tone with which the watch tells of a task. It can be turned off, which is kept in this browser. */
+/** The tones with which the watch tells of a task, and of what is wrong. They can be turned off, which is kept in this browser. */
 
 const KEY = 'watch-sound';
 const OFF = 'off';
 /** Hertz, one after the other: a rising pair is heard beside machines. */
 const TONES = [880, 1320];
+/** The same for what is wrong: a falling pair, twice. */
+const CALL = [1320, 880, 1320, 880];
 /** Seconds that each lasts. */
 const LENGTH = 0.14;
 const LOUDNESS = 0.4;
@@ -45,11 +47,11 @@ export class Sound {
 		};
 	}
 
-	/** Sounds once, where it is on and the page was touched. */
-	play(): void {
+	/** Sounds once, where it is on and the page was touched: for a task, or a `call` for what is wrong. */
+	play(call = false): void {
 		const audio = this.#audio;
 		if (!this.#on || audio === null || audio.state === 'closed') return;
-		TONES.forEach((hertz, n) => {
+		(call ? CALL : TONES).forEach((hertz, n) => {
 			const [tone, volume] = [audio.createOscillator(), audio.createGain()];
 			const start = audio.currentTime + n * LENGTH;
 			tone.frequency.value = hertz;

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { stateText, toneOf } from './standing.ts';
+import { nextText, progressIn, stateText, toneOf } from './standing.ts';
 
 test('what is most in the way is said of the station: that it stands, then what is not heard, then what needs help', () => {
 	expect(stateText('working', [], [])).toBe('');
@@ -11,9 +11,35 @@ test('what is most in the way is said of the station: that it stands, then what 
 test('what wants help is told from what wants distance, and from what is as it should be', () => {
 	expect(toneOf('working', [], [])).toBe('plain');
 	for (const [silent, failing] of [[['Smart nutrunner'], []], [[], ['Robot UR10']]] as const)
-		expect(toneOf('working', silent, failing)).toBe('high');
+		expect(toneOf('working', silent, failing)).toBe('medium');
 	expect(toneOf('stopped', [], [])).toBe('high');
+	// It looks as the alarm that names it does on the other pages.
+	expect(toneOf('working', [], ['Robot UR10'], 'high')).toBe('high');
+	expect(toneOf('stopped', [], [], 'medium')).toBe('medium');
 	for (const standing of ['held', 'restart'] as const) expect(toneOf(standing, [], ['Robot UR10'])).toBe('medium');
 	// A station that was not started, or that somebody has paused, needs nobody's help.
 	for (const standing of ['waiting', 'preparing', 'paused'] as const) expect(toneOf(standing, ['Robot UR10'], [])).toBe('plain');
+});
+
+test('what comes next is told with about when, as far as that is known', () => {
+	const next = { title: 'Place bolts', at: 108 };
+	expect(nextText(null, 100)).toBe('');
+	expect(nextText(undefined, null)).toBe('');
+	expect(nextText(next, 100)).toBe('Place bolts in\u00a0about\u00a08\u00a0s');
+	expect(nextText(next, -25)).toBe('Place bolts in\u00a0about\u00a02\u00a0min');
+	// What was expected and has not come yet still comes.
+	expect(nextText(next, 120)).toBe('Place bolts soon');
+	expect(nextText({ ...next, at: null }, 100)).toBe('Next: Place bolts');
+});
+
+test('how far the station is: of the order in work, or of the operations since the first of them began', () => {
+	const operation = (active: boolean, began: number | null, ended: number | null): object => ({ active, active_since: active ? began : null, began, ended });
+	const of = (jobs: object, operations: object[], byOrder = false): unknown =>
+		progressIn({ jobs, operations: { ...operations }, by_order: byOrder } as unknown as Parameters<typeof progressIn>[0]);
+	const steps = { a: { state: 'completed' }, b: { state: 'skipped' }, c: { state: 'active' } };
+	expect(of({ one: { state: 'running', steps } }, [])).toEqual({ done: 1, all: 2 });
+	expect(of({ one: { state: 'ended', steps } }, [operation(false, 1, 2)], true)).toBeNull();
+	// What was completed before this round is not done in it.
+	expect(of({}, [operation(false, 10, 12), operation(false, 5, 8), operation(true, 12, 9)])).toEqual({ done: 1, all: 3 });
+	expect(of({}, [])).toBeNull();
 });

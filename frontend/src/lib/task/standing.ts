@@ -1,5 +1,5 @@
 /** What somebody who is asked for something has to know of the station first. */
-import type { Standing } from '#lib/contract.ts';
+import type { Priority, Standing, StationView, WatchSnapshot } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
 
 /** How much of somebody's attention it wants. */
@@ -17,9 +17,38 @@ export function stateText(standing: Standing, silent: readonly string[], failing
 	return failing.length > 0 ? say().watch.failing(failing.join(', ')) : '';
 }
 
-/** How much attention that wants: somebody's help, or that one keeps clear. */
-export function toneOf(standing: Standing, silent: readonly string[], failing: readonly string[]): Tone {
+/** How much attention that wants: somebody's help, as urgently as the alarm of it says, or that one keeps clear. */
+export function toneOf(standing: Standing, silent: readonly string[], failing: readonly string[], alarm?: Priority): Tone {
 	if (standing === 'held' || standing === 'restart') return 'medium';
-	if (standing === 'stopped') return 'high';
-	return whyItStands(standing) === '' && silent.length + failing.length > 0 ? 'high' : 'plain';
+	if (standing === 'stopped') return toned(alarm) ?? 'high';
+	return whyItStands(standing) === '' && silent.length + failing.length > 0 ? (toned(alarm) ?? 'medium') : 'plain';
+}
+
+function toned(priority: Priority | undefined): Tone | undefined {
+	return priority === 'low' ? undefined : priority;
+}
+
+/** What somebody does next, and when, where that is known. */
+export type Next = Pick<NonNullable<WatchSnapshot['next']>, 'title' | 'at'>;
+
+/** What somebody does next, and in about how many seconds, as of `time`; empty where the plan has nothing. */
+export function nextText(next: Next | null | undefined, time: number | null): string {
+	if (!next) return '';
+	return say().watch.next(next.title, next.at === null || time === null ? null : Math.max(0, Math.round(next.at - time)));
+}
+
+export type Progress = NonNullable<WatchSnapshot['progress']>;
+
+/** The same as a watch is told: how far the order in work is, or the operations since the first of them began. */
+export function progressIn({ jobs, operations, by_order: byOrder }: Pick<StationView, 'jobs' | 'operations' | 'by_order'>): Progress | null {
+	const job = Object.values(jobs).find(({ state }) => state === 'running');
+	if (job) {
+		const states = Object.values(job.steps).map(({ state }) => state).filter((state) => state !== 'skipped');
+		return { done: states.filter((state) => state === 'completed').length, all: states.length };
+	}
+	const all = Object.values(operations);
+	const [first] = all;
+	if (byOrder || !first) return null;
+	const began = first.active_since ?? first.began ?? 0;
+	return { done: all.filter(({ active, ended }) => !active && ended !== null && ended >= began).length, all: all.length };
 }

@@ -1,8 +1,9 @@
 /** The station as a watch is shown it: the tasks of its own resource, and whether they are still as they were told. */
 import type { WatchSnapshot, WatchStreamMessage } from '#lib/contract.ts';
 import { connect } from '#lib/stream/connection.ts';
-import { SILENCE, hear, type Hearing } from '#lib/stream/hearing.ts';
+import { SILENCE, hear, serverAge, type Hearing } from '#lib/stream/hearing.ts';
 import { judge, type Liveness } from '#lib/stream/liveness.ts';
+import { titled } from '#lib/wording/titled.svelte.ts';
 
 /** Milliseconds between two looks at the clock. */
 const REFRESH = 150;
@@ -15,7 +16,7 @@ export class WatchStation {
 	#now = $state(0);
 
 	/** What was last told, live or not; null before the first. */
-	readonly snapshot: WatchSnapshot | null = $derived(this.#snapshot);
+	readonly snapshot: WatchSnapshot | null = $derived(titled(this.#snapshot));
 	readonly liveness: Liveness = $derived(
 		judge({ view: this.#snapshot, controller: this.#controller, gap: false }, this.#hearing, this.#open, this.#now)
 	);
@@ -55,7 +56,7 @@ export class WatchStation {
 			case 'watch':
 				this.#controller = 'heard';
 				this.#snapshot = message;
-				this.#hearing = hear(this.#hearing, this.#now, message.time * 1000);
+				this.#hearing = hear(this.#hearing, this.#now, message.time * 1000, serverAge(message));
 				break;
 			case 'link':
 				this.#controller = message.controller === 'heard' ? 'heard' : 'lost';

@@ -65,7 +65,7 @@ export function operation(rest: Partial<Operation> = {}): Operation {
 
 export function task(created: number): Task {
 	const place = { ability: 'operator.place', resource: 'operator', title: 'Place', text: 'Place it' };
-	return { revision: 1, ...place, created, next_moves: [], problem: null, instruction: null };
+	return { revision: 1, ...place, created, next_moves: [], movers: [], problem: null, instruction: null };
 }
 
 export function alarm(rest: Partial<Alarm> = {}): Alarm {
@@ -144,6 +144,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		topics: {},
 		overrides: {},
 		alarms: {},
+		named_alarm: null,
 		way_back: null,
 		who_can: null,
 		control: null,

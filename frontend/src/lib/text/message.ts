@@ -27,6 +27,12 @@ export function told(message: Message | null | undefined, written: string, catal
 	return (message && tell(message, catalogue)) ?? written;
 }
 
+/** What is said first, which leads, and all that is said after it. */
+export function leading(text: string): readonly [lead: string, rest: string] {
+	const [lead = text] = text.split(/(?<=[.!?])\s(?=\p{Lu})/u);
+	return [lead.replace(/\.$/, ''), text.slice(lead.length).trim()];
+}
+
 /** The same of several. */
 export function toldAll(messages: readonly Message[] | undefined, written: readonly string[], catalogue = ofPage()): readonly string[] {
 	return written.map((each, index) => told(messages?.[index], each, catalogue));

@@ -2,8 +2,8 @@
  * What the pages say, in the language that was chosen.
  *
  * `say()` has all texts; whoever reads it in a template or a derivation gets the others as soon as the language changes.
- * English is the catalogue that the others are typed by: a text that one of them lacks is a type error. What comes from
- * the station (titles of the model, sentences of the controller) is shown as it comes.
+ * English is the catalogue that the others are typed by: a text that one of them lacks is a type error. The titles of the
+ * model and the sentences of the controller come from the station, in each language that there is.
  *
  * The watch and the pages before the sign-in read only the rooms of the *front* catalogue; the station's pages `furnish`
  * those of operators, and the pages of engineers and of the plant's administration all the others. That no page says more
@@ -26,6 +26,11 @@ export type Front = Said<typeof front>;
 
 /** Where the texts of each language are read from. */
 export type Sources = Readonly<Record<Language, () => Front | Promise<Front>>>;
+
+/** What the server says of what it refused, which English needs not as a refusal says itself in it what it says. */
+const REFUSALS: Readonly<Record<Exclude<Language, 'en'>, () => Promise<{ default: Front['messages'] }>>> = {
+	sv: () => import('./sv/front.json')
+};
 
 let sources: Sources = { en: () => front, sv: async () => (await import('./sv-front.ts')).front };
 let texts = $state.raw<Front>(front);
@@ -68,6 +73,17 @@ export async function showKept(): Promise<void> {
 export async function furnish(more: Readonly<Record<Language, () => OfStation | Promise<OfStation>>>): Promise<void> {
 	sources = more;
 	await showKept();
+}
+
+/**
+ * What tells a refusal is there from now on: the watch and the pages before the sign-in read it when something is first refused,
+ * as most never are. Where it cannot be read a refusal is told in English.
+ */
+export async function readRefusals(): Promise<void> {
+	if (chosen === 'en' || Object.keys(texts.messages).length > 0) return;
+	const number = asked;
+	const found = await REFUSALS[chosen]().catch(() => null);
+	if (found !== null && number === asked) texts = { ...texts, messages: found.default };
 }
 
 /** Shows the pages in `wanted`, from now on. */

@@ -1,5 +1,6 @@
 /** What is said of who can do what: of operations that are active, and of those that come later. */
-import type { WhoCan } from '#lib/contract.ts';
+import { isOver } from '#lib/alarm/priority.ts';
+import type { Alarm, WhoCan } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import type { Row } from './who-can-rows.svelte';
@@ -7,6 +8,15 @@ import type { Row } from './who-can-rows.svelte';
 export interface Rows {
 	readonly now: readonly Row[];
 	readonly later: readonly Row[];
+}
+
+/**
+ * What takes no part, of which a page says nothing else: it has a list of what is out of service, and beside it stands the
+ * alarm `first`.
+ */
+export function absentUntold({ absent }: WhoCan, first: Alarm | undefined): WhoCan['absent'] {
+	const told = first && !isOver(first) ? first.resources : [];
+	return absent.filter(({ of, name, why }) => why !== 'out of service' && !(of === 'resource' && told.includes(name)));
 }
 
 type Told = WhoCan['nobody'][number] | WhoCan['others'][number];

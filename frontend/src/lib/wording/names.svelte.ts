@@ -1,11 +1,13 @@
 /**
- * What variables and their values are called, as the model says, in the language of the page.
+ * What variables, their values and the other parts are called, as the model says, in the language of the page.
  *
  * It is asked for once, and again with another model; until it is there, names are said in words.
  */
 import type { Names, StationView, Value } from '#lib/contract.ts';
 import { Reading } from '#lib/rest/reading.svelte.ts';
 import { language, say } from '#lib/text/text.svelte.ts';
+import { capital } from './capital.ts';
+import { tellTitles } from './titled.svelte.ts';
 import { valueText, variableName } from './values.ts';
 
 /** Milliseconds after which what was refused is asked for again. */
@@ -15,8 +17,9 @@ const reading = new Reading<Names>('/api/v1/names');
 
 /** Asks for the names; the result ends that. */
 export function readNames(): () => void {
-	void reading.again();
-	const timer = setInterval(() => reading.refusal && void reading.again(), AGAIN);
+	const ask = (): Promise<void> => reading.again().then(() => tellTitles(reading.value));
+	void ask();
+	const timer = setInterval(() => reading.refusal && void ask(), AGAIN);
 	return () => clearInterval(timer);
 }
 
@@ -25,8 +28,7 @@ export function nameOf(name: string, resource: string | null): string {
 	const called = reading.value?.variables[name]?.title;
 	const title = called?.[language()] ?? called?.['en'];
 	if (title !== undefined) return title;
-	const words = variableName(name, resource);
-	return words.slice(0, 1).toUpperCase() + words.slice(1);
+	return capital(variableName(name, resource));
 }
 
 /** The same where its resource is not in sight. A name that another variable has too is told with its resource. */

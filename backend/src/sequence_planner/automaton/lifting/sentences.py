@@ -46,7 +46,7 @@ from sequence_planner.texts.names import within_sentence
 MOST_KNOWN = 2000  # sentences that are kept
 # With one of these in it, a statement does not become its contrary by `not` behind its verb: `all pairs are tight`.
 _QUANTIFYING = re.compile(
-    r"\b(all|every|each|both|any|none?|some|and|n?or|n?either|"
+    r"\b(all|every|each|both|any|none?|some|no|and|n?or|n?either|"
     r"all[at]|varje|båda|någo[nt]|några|ing[ae]n?|inget|och|eller)\b",
     re.IGNORECASE,
 )
@@ -233,6 +233,8 @@ class Sentences:
         """What a predicate with a title says, or its contrary where that can be said of the title."""
         if (found := self._titled.get(form)) is not None:
             return found
+        if isinstance(form, ValueLiteral) and len(form.values) == 1 and isinstance(form.type, EnumerationType):
+            return None  # the value says it plainly
         if (found := self._titled.get(negated(form))) is not None and self._can_be_denied(found.words):
             return found._replace(holds=False, form=form)
         return None

@@ -13,6 +13,7 @@ from sequence_planner.automaton.lifting.normal_form import ValueLiteral
 from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE, VariableTitles, in_language
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Type, Value
 from sequence_planner.texts.grammar import ENGLISH, GRAMMARS, Clause, Grammar
+from sequence_planner.texts.message import Title
 from sequence_planner.texts.names import in_words, within_sentence
 
 _ARGUMENTS = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -21,6 +22,11 @@ _VALUE = f"{{{VALUE_IN_PHRASE}}}"
 
 Called = Iterable[tuple[str, Type | None, str]]
 """Parameters, each with its type and its value."""
+
+
+def title_in(title: str, language: str) -> str:
+    """The title of a part as it is in a language."""
+    return in_language(title.words, language) or title if isinstance(title, Title) else title
 
 
 class SpokenNames:
@@ -53,17 +59,20 @@ class SpokenNames:
         words = self.words(literal.variable, literal.type, grammar)
         held = [value for value in literal.type.domain if value in literal.values]
         others = [value for value in literal.type.domain if value not in literal.values]
-        if len(others) < len(held):
+        if len(others) < len(held) and self._set_title(held, grammar) is None:
             rest = self._one_of(others, words, grammar)
             if (denied := grammar.denied(self._phrased(literal.variable, rest, grammar))) is not None:
                 return denied
         return self._phrased(literal.variable, self._one_of(held, words, grammar), grammar)
 
     def _one_of(self, values: Sequence[Value], words: Mapping[Value, str], grammar: Grammar) -> str:
+        return self._set_title(values, grammar) or grammar.one([words[value] for value in values])
+
+    def _set_title(self, values: Sequence[Value], grammar: Grammar) -> str | None:
+        """What several values are called together."""
         title = self._titles.sets.get(frozenset(values)) if len(values) > 1 else None
-        if title is not None and (said := in_language(title, grammar.language)) is not None:
-            return within_sentence(said)
-        return grammar.one([words[value] for value in values])
+        said = None if title is None else in_language(title, grammar.language)
+        return None if said is None else within_sentence(said)
 
     def _number(self, literal: ValueLiteral, grammar: Grammar) -> str | None:
         """What is said of several numbers that follow each other; None of others, and of a single one."""
@@ -144,7 +153,7 @@ class SpokenNames:
         if name in self._automaton.variables or name not in self._automaton.types:
             return self._untitled(name, grammar)
         ability, _, flag = name.rpartition(".")
-        title = grammar.quoted.format(title=self._automaton.abilities[ability].title)
+        title = grammar.quoted.format(title=title_in(self._automaton.abilities[ability].title, grammar.language))
         return f"{title} {grammar.be} {grammar.words[flag]}"
 
     def heading(self, variable: str, grammar: Grammar) -> str:
@@ -201,7 +210,7 @@ class SpokenNames:
 
     def _untitled(self, name: str, grammar: Grammar) -> str:
         if (operation := self._activities.get(name)) is not None:
-            title = grammar.quoted.format(title=self._automaton.operations[operation].title)
+            title = grammar.quoted.format(title=title_in(self._automaton.operations[operation].title, grammar.language))
             return f"{title} {grammar.be} {grammar.words['active']}"
         return self._short(name, self._levels.get(without_arguments(name), 2), grammar)
 
@@ -218,7 +227,7 @@ class SpokenNames:
         told = f"{own} {arguments}".strip()
         if level < 2 or resource is None:
             return told
-        title = within_sentence(self._automaton.resources.get(resource, resource))
+        title = within_sentence(title_in(self._automaton.resources.get(resource, resource), grammar.language))
         return grammar.of.format(part=told, whole=title)
 
     @cached_property

@@ -10,7 +10,8 @@ from sequence_planner.automaton.findings import Findings, without_arguments
 from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.shorthand.titles import Titles, VariableTitles, Words
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Type, Value
-from sequence_planner.model import documents
+from sequence_planner.model import documents, fields
+from sequence_planner.model.fields import by_language, words_of
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
 
@@ -31,7 +32,9 @@ class TitleReader:
         self._findings = found
 
     def read_titles(self) -> Titles:
-        """Read all of them."""
+        """Read all of them; those of parts that can have parameters are checked."""
+        for text, parameters in _texts_of_parts(self._station):
+            self._check_words(text, parameters)
         return Titles(dict(self._variables()), self._values(), self._sets(), dict(self._predicates()))
 
     def _variables(self) -> Iterator[tuple[str, VariableTitles]]:
@@ -47,10 +50,7 @@ class TitleReader:
                     self._check_words(document.phrase, {*document.each, VALUE})
                     self._check_phrase(document.phrase)
                     values = self._read_values(document.titles, self._types.get(full), full)
-                    yield (
-                        full,
-                        VariableTitles(documents.words_of(document.title), documents.words_of(document.phrase), values),
-                    )
+                    yield full, VariableTitles(words_of(document.title), words_of(document.phrase), values)
 
     def _values(self) -> dict[EnumerationType, Mapping[Value, Words]]:
         """The titles of each enumeration's values: its own, then those of what it includes."""
@@ -81,14 +81,14 @@ class TitleReader:
         found: dict[Value, Words] = {}
         for each in document.includes:
             found |= {**self._included(str(each), (*around, name)), **found}
-        return found | {str(value): documents.words_of(text) for value, text in document.titles.items()}
+        return found | {str(value): words_of(text) for value, text in document.titles.items()}
 
     def _sets(self) -> dict[frozenset[Value], Words]:
         found: dict[frozenset[Value], Words] = {}
         for name, document in self._station.station.sets.items():
             if document.title is not None and str(name) in self._enumerations:
                 self._check_words(document.title, {})
-                found.setdefault(frozenset(self._enumerations[str(name)].values), documents.words_of(document.title))
+                found.setdefault(frozenset(self._enumerations[str(name)].values), words_of(document.title))
         return found
 
     def _predicates(self) -> Iterator[tuple[str, Words]]:
@@ -98,7 +98,7 @@ class TitleReader:
             for name, document in section.items():
                 if isinstance(document, documents.PredicateDocument) and document.title is not None:
                     self._check_words(document.title, document.parameters)
-                    yield f"{prefix}{name}", documents.words_of(document.title)
+                    yield f"{prefix}{name}", words_of(document.title)
 
     # What is wrong with them
 
@@ -114,22 +114,22 @@ class TitleReader:
                 near = suggestion(str(key), domain)
                 self._findings.add(key, f"`{key}` is no value of `{owner}`, which ranges over {type_}{near}")
                 continue
-            found[domain[str(key)]] = documents.words_of(text)
-            for language, said in documents.by_language(text).items():
+            found[domain[str(key)]] = words_of(text)
+            for language, said in by_language(text).items():
                 before = told.setdefault((language, said.strip().casefold()), key)
                 if before is not key:
                     message = f"`{said}` is what `{before}` is called already: nobody could tell them apart"
                     self._findings.add(said, f"{message}; write other words for one of them")
         return found
 
-    def _check_phrase(self, phrase: documents.Words | None) -> None:
-        for said in documents.by_language(phrase).values():
+    def _check_phrase(self, phrase: fields.Words | None) -> None:
+        for said in by_language(phrase).values():
             if f"{{{VALUE}}}" not in said:
                 message = f"a phrase has a place for the value: write `{{{VALUE}}}` in it"
                 self._findings.add(said, f"{message}, as in `the robot is at {{{VALUE}}}`")
 
-    def _check_words(self, text: documents.Words | None, known: Collection[str]) -> None:
-        for said in documents.by_language(text).values():
+    def _check_words(self, text: fields.Words | None, known: Collection[str]) -> None:
+        for said in by_language(text).values():
             for match in _IN_BRACES.finditer(said):
                 if match[1] not in known:
                     near = suggestion(match[1], map(str, known))
@@ -138,3 +138,16 @@ class TitleReader:
 
 def _written(type_: Type, value: Value) -> str:
     return str(value).lower() if type_ == BOOLEAN else str(value)
+
+
+def _texts_of_parts(station: Station) -> Iterator[tuple[fields.Words | None, Collection[str]]]:
+    """The titles of all parts that are there once for each value of their parameters, and the tasks of people."""
+    for resource in station.resources.values():
+        for ability in resource.abilities.values():
+            yield ability.title, ability.parameters
+            if ability.human is not None:
+                yield ability.human.task, ability.parameters
+    for operation in station.operations.values():
+        yield operation.title, operation.parameters
+    for specification in station.specifications.values():
+        yield specification.title, specification.parameters

@@ -15,6 +15,7 @@ from sequence_planner.analysis.store import content_key, read, write
 from sequence_planner.cli.analysing import (
     USUAL_DEADLINE,
     Deadline,
+    DeadlinePassed,
     Found,
     Limits,
     checked,
@@ -154,7 +155,7 @@ def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checke
             wrong = [] if station is None else station.failures() or start_findings(station, StartNeeds(emulator))
             if wrong:
                 raise ModelError(wrong)
-    except TimeoutError:
+    except DeadlinePassed:
         refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FINDINGS)
     automaton = model.automaton
     found = checked(automaton, model.connections, limits)

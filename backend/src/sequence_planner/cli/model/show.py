@@ -258,7 +258,7 @@ def _written(path: Path) -> Iterator[_DeclaredName]:
     if not path.is_dir():
         return  # a plain automaton has neither
     for name, document in load_station(path).sequences.items():
-        title = f": {document.title}" if document.title else ""
+        title = f": {document.main_title}" if document.title else ""
         content = document.model_dump(mode="json", by_alias=True, exclude_none=True, exclude_defaults=True)
         lines = tuple(_sequence(document, "  "))
         yield _DeclaredName("sequences", str(name), (f"sequence {name}{title}", *lines), content)

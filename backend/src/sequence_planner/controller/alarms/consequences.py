@@ -30,8 +30,11 @@ class Consequences:
         self._held_up: dict[frozenset[str], frozenset[str]] = {}  # by idle resources, of one plan
 
     def standstill(self) -> Message:
-        """Of what keeps everything from starting."""
-        return message("wait.standstill", waiting=self.waiting(self._execution.active))
+        """Of what keeps everything from starting; where the mode does so too nothing is added to it."""
+        execution = self._execution
+        if execution.production is Production.STARTED and execution.mode in {Mode.HOLD, Mode.RESTART}:
+            return message("wait.nothing")
+        return message("wait.standstill", waiting=self.waiting(execution.active))
 
     def waiting(self, operations: Collection[str], until_it_does: bool = False) -> Message:
         """That those of the operations that are active wait, or why none does just now."""
@@ -43,7 +46,7 @@ class Consequences:
             title = title_text(execution.operator_plan.title)
             return message("wait.errand", title=message("quoted", title=title), until=until)
         if execution.mode is not Mode.AUTOMATIC:
-            return message("wait.mode", mode=message(f"mode.{execution.mode}"))
+            return message(f"wait.{execution.mode}")
         names = sorted(execution.active.intersection(operations))
         if not names:
             return message("wait.none")

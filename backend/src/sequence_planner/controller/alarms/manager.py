@@ -21,13 +21,33 @@ from sequence_planner.controller.commands.alarms import (
 from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
 from sequence_planner.controller.restore import RestoredState
-from sequence_planner.controller.views.station import AlarmView, Priority
+from sequence_planner.controller.views.station import AlarmGroup, AlarmState, AlarmView, Priority
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 
 # What wants a person's attention, and what people do about it.
 
 KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that it is among what the journal keeps
+
+
+_LASTS = (AlarmState.UNACKNOWLEDGED, AlarmState.ACKNOWLEDGED)  # those that are not over, nor set aside
+_URGENT = (Priority.HIGH, Priority.MEDIUM)
+_NOT_NAMED = (AlarmGroup.PEOPLE, AlarmGroup.COMMUNICATION)
+
+
+def named_alarm(alarms: Mapping[str, AlarmView]) -> str | None:
+    """Return the key of the alarm to name where help is needed and one alone has room: the most urgent one, as the
+    pages order them.
+
+    What people have a problem with is between them and the operators; of what is not heard it is told which devices
+    that are, and no topics.
+    """
+    told = {
+        key: (_URGENT.index(alarm.priority), _LASTS.index(alarm.state), -alarm.since)
+        for key, alarm in alarms.items()
+        if alarm.state in _LASTS and alarm.priority in _URGENT and alarm.group not in _NOT_NAMED
+    }
+    return min(told, key=lambda key: told[key], default=None)
 
 
 class TellEvent(Protocol):
@@ -93,7 +113,8 @@ class AlarmManager:
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
-        return {"alarms": self.current(moment)}
+        alarms = self.current(moment)
+        return {"alarms": alarms, "named_alarm": named_alarm(alarms)}
 
     @handles(AcknowledgeAlarm)
     def acknowledge(self, command: AcknowledgeAlarm, moment: Timestamp) -> None:

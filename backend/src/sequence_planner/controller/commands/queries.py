@@ -11,6 +11,7 @@ from sequence_planner.controller.views.details import (
     AbilityDefinitionView,
     CorrectionPreview,
     NamesView,
+    ShiftsView,
     WhyNotView,
     WorkMastersView,
 )
@@ -235,3 +236,9 @@ class AboutWorkMasters(Query[WorkMastersView]):
     """What jobs consist of."""
 
     kind: Literal["about-work-masters"] = "about-work-masters"
+
+
+class AboutShifts(Query[ShiftsView]):
+    """When the station is to work."""
+
+    kind: Literal["about-shifts"] = "about-shifts"

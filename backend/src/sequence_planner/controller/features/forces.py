@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sequence_planner.automaton.automaton import Kind, State
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.alarms.kinds import FORCED, Cause
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
 from sequence_planner.controller.commands.command import CommandRefused, handles
@@ -42,8 +43,7 @@ class Forces:
             yield FORCED.cause(
                 name,
                 {
-                    "variable": name,
-                    "value": print_value(force.value),
+                    "so": sentences_of(self._execution.automaton).tell_value(name, force.value),
                     "by": force.by,
                     "why": force.why,
                     "consequence": message("forced.ignored") if started else message("forced.later"),
@@ -106,7 +106,7 @@ class Forces:
             return
         specifications = execution.automaton.specifications
         if broken:
-            named = [message("unsafe.specification", title=specifications[name].title, name=name) for name in broken]
+            named = [message("unsafe.specification", title=specifications[name].title) for name in broken]
             why = message("refused.force-unsafe.violates", specifications=named)
         elif self._certainly_outside(before):
             why = message("refused.force-unsafe.outside")

@@ -26,7 +26,7 @@ from sequence_planner.execution.plan_tracker import PlannedStart, Replacement, f
 from sequence_planner.execution.vocabulary import PlanStatus, Production, ServiceKind
 from sequence_planner.language.printer import print_expression
 from sequence_planner.planning.problem import Contract, Plan, PlanAnswer, Verdict
-from sequence_planner.texts.message import Message, message, waits_in_one
+from sequence_planner.texts.message import Message, all_titles, message, waits_in_one
 
 
 class LivePlan:
@@ -195,7 +195,7 @@ class LivePlan:
         excluded = [name for name in answer.left_out if name in active and name not in answer.undecided]
         for kind, names in ((LEFT_OUT, excluded), (UNDECIDED, undecided)):
             if names:
-                titles = ", ".join(operations[name].title for name in names)
+                titles = all_titles(operations[name].title for name in names)
                 waiting = self._consequences.waiting(names)
                 yield kind.cause("", {"operations": titles, "waiting": waiting}, follows=follows)
 

@@ -9,9 +9,9 @@ but that people are told of it, until the task is over or somebody says that it 
 from __future__ import annotations
 
 import secrets
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
-from sequence_planner.automaton.automaton import Automaton, Instruction, State
+from sequence_planner.automaton.automaton import Ability, Automaton, Instruction, State
 from sequence_planner.controller.alarms.kinds import PROBLEM, Cause
 from sequence_planner.controller.commands.command import CommandRefused, handles
 from sequence_planner.controller.commands.tasks import (
@@ -22,7 +22,7 @@ from sequence_planner.controller.commands.tasks import (
     TaskProblem,
     WaitingTask,
 )
-from sequence_planner.controller.views.station import InstructionView, TaskProblemView, TaskView
+from sequence_planner.controller.views.station import InstructionView, NextMovesView, TaskProblemView, TaskView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value
@@ -122,7 +122,7 @@ class OpenTasks:
             return {"tasks": {}}
         abilities = self._execution.automaton.abilities
         names = self._execution.plan.order.names if self._goes_on() else ()
-        moves = [abilities[name].title for name in names if abilities[name].human is None]
+        moves = [abilities[name] for name in names if abilities[name].human is None][:_NEXT_MOVES]
         views = {
             id_: TaskView(
                 revision=task.revision,
@@ -131,7 +131,8 @@ class OpenTasks:
                 title=task.title,
                 text=task.text,
                 created=task.created,
-                next_moves=moves[:_NEXT_MOVES],
+                next_moves=[each.title for each in moves],
+                movers=_by_resource(moves, self._execution.automaton.resources),
                 problem=_problem(self._tasks.problems.get(id_)),
                 instruction=_instruction(abilities[task.ability].instruction),
             )
@@ -156,6 +157,13 @@ class OpenTasks:
                 },
                 resources=[ability.resource],
             )
+
+
+def _by_resource(moves: Sequence[Ability], titles: Mapping[str, str]) -> list[NextMovesView]:
+    return [
+        NextMovesView(name=name, title=titles[name], moves=[each.title for each in moves if each.resource == name])
+        for name in dict.fromkeys(each.resource for each in moves)
+    ]
 
 
 def _instruction(instruction: Instruction | None) -> InstructionView | None:

@@ -21,6 +21,7 @@ from sequence_planner.execution.jobs import Job
 from sequence_planner.execution.state import InitialState
 from sequence_planner.language.syntax import Assignment, Expression, conjunction, variables
 from sequence_planner.language.types import Value
+from sequence_planner.texts.message import Title
 
 # Why each estimated variable is believed to have its value: who wrote it, when, from which evidence.
 #
@@ -268,7 +269,7 @@ class Variables:
 
 
 def names_view(automaton: Automaton, topics: Mapping[str, str]) -> NamesView:
-    """What the variables are called, with the topics that tell what they are."""
+    """What the variables are called, with the topics that tell what they are, and what all other parts are."""
     spoken = SpokenNames(automaton)
     found: dict[str, VariableNameView] = {}
     words: dict[tuple[tuple[str, tuple[tuple[str, str], ...]], ...], int] = {}  # each once, with its place
@@ -281,7 +282,23 @@ def names_view(automaton: Automaton, topics: Mapping[str, str]) -> NamesView:
             values=words.setdefault(key, len(words)) if key else None,
             topic=topics.get(name) if variable.kind is Kind.MEASURED else None,
         )
-    return NamesView(variables=found, values=[{value: dict(each) for value, each in key} for key in words])
+    abilities = automaton.abilities.values()
+    return NamesView(
+        variables=found,
+        values=[{value: dict(each) for value, each in key} for key in words],
+        station=_by_language({"": automaton.title}).get("", {}),
+        resources=_by_language(automaton.resources),
+        abilities=_by_language({each.name: each.title for each in abilities}),
+        tasks=_by_language({each.name: each.human.text for each in abilities if each.human is not None}),
+        operations=_by_language({each.name: each.title for each in automaton.operations.values()}),
+        specifications=_by_language({each.name: each.title for each in automaton.specifications.values()}),
+        work_masters=_by_language({each.name: each.title for each in automaton.work_masters.values()}),
+    )
+
+
+def _by_language(titles: Mapping[str, str]) -> dict[str, dict[str, str]]:
+    """The titles of those parts that have them by language, by name."""
+    return {name: dict(title.words) for name, title in titles.items() if isinstance(title, Title)}
 
 
 def _as_key(value: Value) -> str:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import (
     COMMAND,
@@ -265,12 +266,14 @@ class DeviceLinks:
         values = [name for name, sources in self._feeds.sources.items() if place in sources]
         unknown = sorted(name for name in values if self._execution.state[name] is None)
         what, resource = _counted(place, report, moment), self._feeds.resource_of(place)
+        automaton = self._execution.automaton
+        called, said = automaton.resources.get(resource, resource), sentences_of(automaton)
         return MESSAGE.cause(
             f"{place}:{cause}",
             {
-                "what": what,
-                "what_past": message("message.received-past", what=what),
-                "consequence": message("message.unknown", variables=unknown)
+                "what": message("message.received", resource=called, what=what),
+                "what_past": message("message.received-past", resource=called, what=what),
+                "consequence": message("message.unknown", variables=[said.call_variable(name) for name in unknown])
                 if unknown
                 else message("message.passed-over"),
                 "action": message("message.check"),

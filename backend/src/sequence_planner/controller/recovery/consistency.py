@@ -25,7 +25,6 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
 from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.printer import print_value
 from sequence_planner.language.types import Value
 from sequence_planner.texts.message import Message, Sentence, message
 
@@ -58,10 +57,10 @@ def contradictions(automaton: Automaton, known: NeverTogether, state: State) -> 
 
 
 def questions(automaton: Automaton, found: Contradictions, state: State) -> list[QuestionView]:
-    """Return what to look at; first the variable whose value leaves the fewest hypotheses, whichever it turns out to
-    be.
+    """Return what to look at; first what is wrong by every hypothesis, then the variable whose value leaves the fewest
+    of them, whichever it turns out to be.
     """
-    asked: list[tuple[int, QuestionView]] = []
+    asked: list[tuple[bool, int, QuestionView]] = []
     for name in automaton.names(Kind.ESTIMATED):
         believed = state[name]
         if believed is None or not any(name in hypothesis for hypothesis in found.hypotheses):
@@ -77,8 +76,8 @@ def questions(automaton: Automaton, found: Contradictions, state: State) -> list
             because=[*because],
             because_messages=because,
         )
-        asked.append((sum(said.count(value) ** 2 for value in possible), question))
-    return [question for _, question in sorted(asked, key=lambda each: each[0])]
+        asked.append((believed in possible, sum(said.count(value) ** 2 for value in possible), question))
+    return [question for *_, question in sorted(asked, key=lambda each: each[:2])]
 
 
 def _of_all(automaton: Automaton, fits: StateSet, state: State) -> Contradictions | None:
@@ -376,18 +375,16 @@ class ConsistencyMonitor:
     def causes(self, moment: Timestamp) -> Iterator[Cause]:
         """The causes of alarms that there are now."""
         if self.questions:
-            first = self.questions[0]
-            asked = [(each.variable, print_value(each.believed)) for each in self.questions]
-            texts = [message("contradiction.believed", variable=name, value=value) for name, value in asked]
-            past = [message("contradiction.believed-past", variable=name, value=value) for name, value in asked]
+            said = sentences_of(self._execution.automaton)
+            asked = [said.tell_value(each.variable, each.believed) for each in self.questions]
+            texts = [message("contradiction.believed", condition=each) for each in asked]
+            past = [message("contradiction.believed-past", condition=each) for each in asked]
             yield CONTRADICTION.cause(
                 "",
                 {
                     "first": texts[0],
                     "first_past": past[0],
-                    "because": "; ".join(first.because),
                     "consequence": self._consequences.of_values({each.variable for each in self.questions}),
-                    "variable": first.variable,
                 },
                 parts=texts,
                 past_parts=past,

@@ -137,7 +137,7 @@ def goal_holds(execution: Executor, goal: Expression) -> BlockingCondition:
     """Say that a goal holds, where it must not."""
     undone, words = Not(goal), wording_of(execution.automaton)
     said = sentences_of(execution.automaton).tell_so([undone], words.in_words(undone))
-    text = message("waits.goal-holds", condition=said)
+    text = message("blocked.goal-holds", condition=said)
     return BlockingCondition(HindranceKind.WRITTEN, text, undone, expansion(words.told_parts(undone), execution.state))
 
 
@@ -168,7 +168,8 @@ def _unsafe(execution: Executor, ability: Ability, after: State, guard: Supervis
     """Return what the supervisor's guard lacks, and which specification the start would break, at once or later."""
     kind = HindranceKind.SUPERVISOR
     if guard is not None:
-        causes: list[Item] = [execution.automaton.specifications[name].title for name in guard.specifications]
+        titles = (execution.automaton.specifications[name].title for name in guard.specifications)
+        causes: list[Item] = [*dict.fromkeys(titles)]  # those that one of the model was written out to have one title
         causes += [message("waits.rest")] if guard.rest else []
         said = TRUE if guard.expression is None else guard.expression
         if undone := list(wording_of(execution.automaton).lacking(said, execution.state)):

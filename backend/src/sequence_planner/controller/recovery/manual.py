@@ -23,7 +23,6 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.events import Heard, Ticked, TickOutcome
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Production
-from sequence_planner.language.printer import print_value
 from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Value
 from sequence_planner.pipelines.graph import GOAL_ON_ITS_WAY, StationPipelines
@@ -93,7 +92,10 @@ class ByHand:
         said = sentences_of(automaton)
         for moved in self.notices(moment.monotonic):
             values = [
-                message("by-hand.value", value=said.tell_value(name, after), before=print_value(before))
+                # Of what is true or false it is clear what it was before.
+                said.tell_value(name, after)
+                if isinstance(before, bool)
+                else message("by-hand.value", value=said.tell_value(name, after), before=said.call_value(name, before))
                 for name, (before, after) in moved.values.items()
             ]
             resource = automaton.resources.get(moved.resource, moved.resource)

@@ -134,12 +134,27 @@ class SafeStateMonitor:
             wrong = message("unsafe.no-rest")
         else:
             wrong = message("unsafe.either")
-        return message("unsafe.now", wrong=wrong, nearest=_nearest(automaton, situation.differences))
+        return message("unsafe.now", wrong=wrong)
 
     def past(self, situation: SafetyStatus) -> Message:
         """Say what was wrong, once it is over."""
         named = _named(self._execution.automaton, situation.violated)
         return message("unsafe.past-violated", specifications=named) if named else message("unsafe.past")
+
+    def _meaning(self, situation: SafetyStatus) -> Argument:
+        """Say what comes of it, and how the nearest safe state differs where that is known."""
+        consequence, automaton = self._consequences.standstill(), self._execution.automaton
+        differences = [
+            message(
+                "unsafe.difference",
+                safe=sentences_of(automaton).tell_value(each.name, each.safe),
+                now=sentences_of(automaton).call_value(each.name, each.now),
+            )
+            for each in situation.differences
+        ]
+        return (
+            message("unsafe.nearest", consequence=consequence, differences=differences) if differences else consequence
+        )
 
     def touched(self, situation: SafetyStatus) -> frozenset[str]:
         """The variables that make the state what it is: of what is violated, and those that would have to change."""
@@ -182,7 +197,7 @@ class SafeStateMonitor:
         answer = self.answer if situation.certain else None
         found = answer if isinstance(answer, WayBackAnswer) else None
         way = found.way if found is not None else None
-        reason = self.way() if situation.certain else message("unsafe.depends", topics=", ".join(awaits))
+        reason = self.way() if situation.certain else self._unsure(situation.awaited)
         return WayBackView(
             violated=named(situation.violated),
             threatened=named(found.threatened) if found is not None else [],
@@ -205,10 +220,21 @@ class SafeStateMonitor:
                 {
                     "what": self.describe(situation),
                     "what_past": self.past(situation),
-                    "waiting": self._consequences.standstill(),
+                    "waiting": self._meaning(situation),
                     "way": self.way(),
                 },
             )
+
+    def _unsure(self, awaited: tuple[str, ...]) -> Message:
+        """Say whom the station does not hear, so that it cannot tell whether it is safe."""
+        automaton = self._execution.automaton
+        resources = [automaton.variables[name].resource for name in awaited if name in self._feeds]
+        devices = sorted({automaton.resources[name] for name in resources if name is not None})
+        if devices:
+            return message("unsafe.unheard", devices=devices)
+        return message(
+            "unsafe.unknown", variables=[sentences_of(automaton).call_variable(name) for name in sorted(awaited)]
+        )
 
     def _no_way(self, searched: int) -> Message:
         unknown = self.situation.awaited if self.situation is not None else ()
@@ -240,23 +266,8 @@ class SafeStateMonitor:
         return tuple(state[name] for name in self._deciding)
 
 
-def _nearest(automaton: Automaton, differences: Iterable[SafeStateDifference]) -> Argument:
-    parts = [
-        message(
-            "unsafe.difference",
-            safe=sentences_of(automaton).tell_value(each.name, each.safe),
-            now=sentences_of(automaton).call_value(each.name, each.now),
-        )
-        for each in differences
-    ]
-    return message("unsafe.nearest", differences=parts) if parts else ""
-
-
 def _named(automaton: Automaton, specifications: Iterable[str]) -> list[Item]:
-    return [
-        message("unsafe.specification", title=automaton.specifications[name].title, name=name)
-        for name in specifications
-    ]
+    return [message("unsafe.specification", title=automaton.specifications[name].title) for name in specifications]
 
 
 def _steps(automaton: Automaton, way: RecoveryPath) -> list[WayBackStepView]:

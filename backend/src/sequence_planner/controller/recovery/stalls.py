@@ -49,8 +49,20 @@ class Culprits:
         is known to be.
         """
         late = {self.of_effect(name, state, since) for name in self._led_to(ability) & since.keys()}
-        own = any(self._effects[name].resource == ability.resource for name in late)
+        own = any(ability.resource in self.silent(name, state) for name in late)
         return frozenset() if own else frozenset(late)
+
+    def silent(self, name: str, state: State) -> dict[str, frozenset[str]]:
+        """The resources that do not say yet what the effect brings, each with the variables that should have changed.
+
+        The device that brings it about may be another one: a robot that is at its place has done its part where the
+        tool that it has brought does not say so.
+        """
+        effect, found = self._effects[name], dict[str, set[str]]()
+        for each, value in (effect_writes(effect, state) or {}).items():
+            if state[each] != value:
+                found.setdefault(self._automaton.variables[each].resource or effect.resource, set()).add(each)
+        return {resource: frozenset(names) for resource, names in found.items()}
 
     def has_to_act(self, ability: Ability, state: State) -> bool:
         """Return whether there is something that the ability's own device should do so that a run of it goes on."""
@@ -175,7 +187,8 @@ class StallDetector:
         """The resources whose devices are to blame, each with the measured variables that should have changed."""
         found: dict[str, frozenset[str]] = {}
         for name in self.late(monotonic):
-            found[self._resource(name)] = found.get(self._resource(name), frozenset()) | self._unchanged(name)
+            for resource, unchanged in self._silent(name).items():
+                found[resource] = found.get(resource, frozenset()) | unchanged
         return found
 
     def explained(self, monotonic: float) -> dict[str, tuple[frozenset[str], frozenset[str]]]:
@@ -183,20 +196,20 @@ class StallDetector:
         changed, and the resources that are to blame.
         """
         late = self.late(monotonic)
-        blamed = {self._resource(name) for name in late}
+        blamed = {resource for name in late for resource in self._silent(name)}
         found: dict[str, tuple[frozenset[str], frozenset[str]]] = {}
         for culprit, names in late.items():
-            for name in names:
-                if (resource := self._resource(name)) not in blamed:
+            for resource, unchanged in (each for name in names for each in self._silent(name).items()):
+                if resource not in blamed:
                     says, because = found.get(resource, (frozenset[str](), frozenset[str]()))
-                    found[resource] = says | self._unchanged(name), because | {self._resource(culprit)}
+                    found[resource] = says | unchanged, because.union(self._silent(culprit))
         return found
 
     def keeping(self, ability: Ability, monotonic: float) -> frozenset[str]:
         """The other resources whose devices keep a run of the ability from its end."""
         since = {name: self._since[name] for name in self._slow(monotonic)}
         culprits = self._culprits.of_run(ability, self._execution.state, since)
-        return frozenset(map(self._resource, culprits))
+        return frozenset(resource for name in culprits for resource in self._silent(name))
 
     def has_to_act(self, ability: Ability) -> bool:
         """Return whether there is something that the ability's own device should do so that a run of it goes on."""
@@ -214,13 +227,8 @@ class StallDetector:
         """The effects that take longer than they ever do."""
         return self._for_longer(monotonic, lambda effect: effect.longest + _SAYS_WITHIN)
 
-    def _resource(self, name: str) -> str:
-        return self._effects[name].resource
-
-    def _unchanged(self, name: str) -> frozenset[str]:
-        state = self._execution.state
-        written = effect_writes(self._effects[name], state) or {}
-        return frozenset(each for each, value in written.items() if state[each] != value)
+    def _silent(self, name: str) -> dict[str, frozenset[str]]:
+        return self._culprits.silent(name, self._execution.state)
 
     def _overdue(self, monotonic: float) -> list[Ability]:
         abilities = self._execution.automaton.abilities

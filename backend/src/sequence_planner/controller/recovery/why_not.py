@@ -32,7 +32,7 @@ from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import Expression, conjunction
 from sequence_planner.planning.recovery.request import GoalPlanRequest
-from sequence_planner.texts.message import Message, message, quoted
+from sequence_planner.texts.message import Message, all_titles, message, quoted
 
 
 class WhyNot:
@@ -74,7 +74,7 @@ class WhyNot:
             yield BlockingCondition(HindranceKind.PLAN, why)
         elif order[0] != name:
             titles = [self._execution.automaton.abilities[each].title for each in order[: order.index(name)]]
-            turn = message("waits.turn", abilities=", ".join(dict.fromkeys(titles)))
+            turn = message("waits.turn", abilities=all_titles(dict.fromkeys(titles)))
             yield BlockingCondition(HindranceKind.PLAN, turn)
         elif not self._execution.may_go_on(name):
             yield BlockingCondition(HindranceKind.PLAN, right_moment(self._execution))
@@ -99,8 +99,12 @@ class WhyNot:
         written = operation.precondition if operation.written is None else operation.written
         found += [each for each in self._lacking(written) if each.expression not in undone]
         found += self._out_of_turn(operation)
-        inactive = message("blocked.inactive", why=_summary(found)) if found else None
-        summary = inactive or message("blocked.next-tick")
+        if evaluate(operation.goal, execution.state) is True:
+            summary = message("blocked.done")
+        elif found:
+            summary = message("blocked.inactive", why=_summary(found))
+        else:
+            summary = message("blocked.next-tick")
         return self._view("operation", name, operation.title, summary, found)
 
     def _inactive(self, operation: Operation) -> Iterable[BlockingCondition]:

@@ -68,10 +68,21 @@ class VariableNameView(View):
 
 
 class NamesView(View):
-    """What all variables are called. `values` has each set of words once: by value, and then by language."""
+    """What all variables are called. `values` has each set of words once: by value, and then by language.
+
+    The others are the titles of the station and of its parts by language, of those parts that have them by language;
+    `tasks` what is asked of people, by ability.
+    """
 
     variables: dict[str, VariableNameView]
     values: list[dict[str, dict[str, str]]]
+    station: dict[str, str]
+    resources: dict[str, dict[str, str]]
+    abilities: dict[str, dict[str, str]]
+    tasks: dict[str, dict[str, str]]
+    operations: dict[str, dict[str, str]]
+    specifications: dict[str, dict[str, str]]
+    work_masters: dict[str, dict[str, str]]
 
 
 # How an ability is defined, and what of that holds in a state, most often that of the live station.
@@ -427,3 +438,23 @@ class WorkMastersView(View):
 
     work_masters: dict[str, WorkMasterView]
     abilities: dict[str, WorkAbilityView]
+
+
+# When the station is to work.
+
+
+class ShiftTimesView(View):
+    """A shift: its title by language, under "" that of none in particular, and the `days` on which it begins, Monday
+    being 0. From when to when it lasts, and its breaks, are in minutes since midnight of that day, by the clock.
+    """
+
+    title: dict[str, str]
+    minutes: tuple[int, int]
+    days: list[int]
+    breaks: list[tuple[int, int]]
+
+
+class ShiftsView(View):
+    """The shifts of a station, by their names; no two are on at the same time."""
+
+    shifts: dict[str, ShiftTimesView]

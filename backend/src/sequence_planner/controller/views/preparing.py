@@ -104,6 +104,7 @@ def preparing_view(
         topics={},
         overrides={},
         alarms=alarms,
+        named_alarm=None,
         way_back=None,
         analysis=analysis,
         standby=standby,

@@ -639,6 +639,14 @@ class InstructionView(View):
     video: str | None
 
 
+class NextMovesView(View):
+    """What moves once a task is acknowledged: a resource by name and title, and the titles of what it does."""
+
+    name: str
+    title: str
+    moves: list[str]
+
+
 class TaskView(View):
     """A task that waits for a person. An acknowledgement must carry its id and revision."""
 
@@ -649,6 +657,7 @@ class TaskView(View):
     text: str
     created: float
     next_moves: list[str]  # titles of what moves once it is acknowledged; nothing while production stands
+    movers: list[NextMovesView]  # the same by resource, each of them once
     problem: TaskProblemView | None
     instruction: InstructionView | None  # as the model has it, where it has one
 
@@ -696,7 +705,7 @@ class StationView(View):
     failing: list[str]  # titles of those that are, and do not do what they should
     stepping: bool  # every start waits for a person's step
     production: Production
-    unconfirmed: bool  # whether estimates came back from the journal that nobody has confirmed
+    unconfirmed: bool  # whether there are estimates of which nobody has seen whether they are still true
     undecided: dict[str, UndecidedOutputView]  # outputs on which a person must decide before production is started
     control: ControlView | None  # null while nobody is in control
     resources: dict[str, ResourceView]
@@ -718,6 +727,7 @@ class StationView(View):
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]  # by resource and name, as in `ur10.speed`
     alarms: dict[str, AlarmView]
+    named_alarm: str | None  # key of the one to name where help is needed and one alone has room, as on a watch
     way_back: WayBackView | None  # null while the state is safe
     analysis: AnalysisDocument | None  # what synthesis has found of the station, as far as it has got
     standby: StandbyView | None  # null where the station is alone

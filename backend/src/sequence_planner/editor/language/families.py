@@ -15,17 +15,14 @@ from sequence_planner.automaton.shorthand import parts_of, written_in, written_p
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.language.printer import print_value
 from sequence_planner.language.resolver import ENDS, STEPS
-from sequence_planner.language.shorthand.titles import in_language
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
 from sequence_planner.model.documents import (
     AbilityDocument,
     Parameters,
     PredicateDocument,
     VariableDocument,
-    Words,
-    words_of,
 )
-from sequence_planner.model.fields import Predicate
+from sequence_planner.model.fields import Predicate, Words, main_text
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.types.expansion import Expansion, GivenArgument
@@ -118,7 +115,7 @@ def families_of(station: Station, declarations: Declarations) -> Iterator[Family
                 yield from _flags(resource, name, ability, arguments)
     for name, operation in station.operations.items():
         if (arguments := _arguments(operation.parameters, declarations)) is not None:
-            title = None if operation.title is None else str(operation.title)
+            title = _in_english(operation.title)
             full = f"{OPERATION}.{name}"
             yield Family(full, NameKind.ACTIVITY, BOOLEAN, name.place, arguments, ".active", title=title)
     yield from _short(station, declarations)
@@ -193,11 +190,11 @@ def _variable(
 
 def _in_english(text: Words | None) -> str | None:
     """A text for people as engineers read it."""
-    return in_language(words_of(text), "en")
+    return None if (found := main_text(text)) is None else str(found)
 
 
 def _flags(resource: str, name: SourceText, document: AbilityDocument, arguments: tuple[str, ...]) -> Iterator[Family]:
-    title = None if document.title is None else str(document.title)
+    title = _in_english(document.title)
     for flag in FLAGS:
         text = getattr(document, flag)
         place = text.place if isinstance(text, SourceText) else name.place

@@ -249,7 +249,7 @@ class _Hovering:
             sequences = self._lexicon.station.sequences
             if (key := next((each for each in sequences if each == word), None)) is None:
                 return None
-            title, place, part = sequences[key].title, key.place, f"sequence:{word}"
+            title, place, part = sequences[key].main_title, key.place, f"sequence:{word}"
         return Hover(
             span.start, span.end, word, NameKind.OPERATION, word, full[:_MOST_NAMES], title=title,
             place=self._lexicon.within(place), part=part,

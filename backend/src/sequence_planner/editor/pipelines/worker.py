@@ -22,6 +22,7 @@ from sequence_planner.editor.pipelines.schemas import (
 )
 from sequence_planner.editor.pipelines.suggestions import fits
 from sequence_planner.editor.processes import Changed, encoded, read_body
+from sequence_planner.model.fields import main_text
 from sequence_planner.model.files import STAGES
 from sequence_planner.process.budget import Budget
 from sequence_planner.process.gc_tuning import collection_put_off
@@ -95,7 +96,7 @@ class PipelineService:
             variables=graph.variables,
             pipelines=with_live_edges(graph.pipelines, self._running.graph.pipelines),
             types=graph.types,
-            resources={name: str(doc.title or name) for name, doc in graph.sketch.station.resources.items()},
+            resources={name: str(main_text(doc.title) or name) for name, doc in graph.sketch.station.resources.items()},
             findings=graph.findings,
             unread=list(graph.sketch.unread),
         )

@@ -322,8 +322,8 @@ class _Walk:
         at = where.within(f"ability {part.full}", around)
         self._add(part, at, name, declares=True)
         self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
-        self._title(entry(document, "title"), at.to("title"))
-        self._title(entry(document, "human", "task"), at.to("human", "task"))
+        self._words(entry(document, "title"), at.to("title"))
+        self._words(entry(document, "human", "task"), at.to("human", "task"))
         self._words(entry(document, "instruction", "text"), at.to("instruction", "text"))
         for key in ("image", "video"):
             self._title(entry(document, "instruction", key), at.to("instruction", key))
@@ -379,7 +379,7 @@ class _Walk:
         at = Where(file, (str(name),), f"{part.kind} {name}", 1, around)
         self._add(part, at, name, declares=True)
         self._parameters(part.id, entry(document, "parameters"), at.to("parameters"))
-        self._title(entry(document, "title"), at.to("title"))
+        self._words(entry(document, "title"), at.to("title"))
         return at
 
     def work_masters(self, content: object) -> None:

@@ -139,6 +139,13 @@ def text_at(content: object, *names: str) -> SourceText | None:
     return found if isinstance(found, SourceText) else None
 
 
+def title_at(content: object, *names: str) -> SourceText | None:
+    """The same of a title, which may be written by language: in English, or else in the first language."""
+    found = entry(content, *names)
+    said = {str(language): text for language, text in pairs(found) if isinstance(text, SourceText)}
+    return text_at(content, *names) or said.get("en") or next(iter(said.values()), None)
+
+
 def texts(content: object, path: EntryPath) -> Iterator[tuple[EntryPath, SourceText]]:
     """All texts in some content, names included, each with its path."""
     if isinstance(content, SourceText):

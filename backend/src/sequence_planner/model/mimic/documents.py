@@ -6,8 +6,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
-from sequence_planner.model.documents import Words
-from sequence_planner.model.fields import DocumentPart, Given
+from sequence_planner.model.fields import DocumentPart, Given, Words
 from sequence_planner.model.source import SourceText
 
 SymbolKind = Literal[

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, PrivateAttr, model_validator
+from pydantic import AfterValidator, Field, ModelWrapValidatorHandler, PlainSerializer, PrivateAttr, model_validator
 from pydantic.fields import FieldInfo
 
 from sequence_planner.language.types import Place
@@ -78,7 +78,10 @@ def add_kind(declaration: type[StageDeclaration]) -> None:
         def put(content: object) -> StageDeclaration:
             return declaration.model_construct({name}, **{name: content})
 
-        written = Annotated[info.rebuild_annotation(), AfterValidator(put)]
+        def taken(content: object) -> object:
+            return getattr(content, name)
+
+        written = Annotated[info.rebuild_annotation(), AfterValidator(put), PlainSerializer(taken)]
     given: Any = Given
     field = FieldInfo.from_annotated_attribute(given[written], Field(default=None, description=declaration.about))
     StageDocument.__pydantic_fields__[declaration.kind] = field

@@ -14,6 +14,7 @@ from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.mimic.documents import MimicDocument
 from sequence_planner.model.paths import type_of
 from sequence_planner.model.sequences import SequenceDocument
+from sequence_planner.model.shifts.documents import ShiftDocument
 from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
 from sequence_planner.model.yaml.reader import EntryPath
 
@@ -23,6 +24,7 @@ _FILES: dict[str, object] = {
     "specifications.yaml": dict[str, SpecificationDocument],
     "work_masters.yaml": dict[str, WorkMasterDocument],
     "mimic.yaml": MimicDocument,
+    "shifts.yaml": dict[str, ShiftDocument],
 }
 
 

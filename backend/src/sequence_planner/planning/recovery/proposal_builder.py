@@ -77,6 +77,7 @@ class Making:
             left_out=len(given_up),
             breaks=len(breaks),
             unsupervised=unsupervised,
+            unseen=unsupervised and any(changed[name] is None for name in self._automaton.names(Kind.MEASURED)),
         )
         return RecoveryProposal(
             kind=kind,

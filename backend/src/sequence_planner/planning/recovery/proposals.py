@@ -81,6 +81,7 @@ WEIGHTS = {
     "returns": 90.0,  # a resource that a person brings back, or an ability put back into service
     "starts": 2.0,  # a start in restart mode, which a person has confirmed and watches
     "unsupervised": 60.0,  # starts outside the safe states
+    "unseen": 60.0,  # these, while something that is measured is not known
     "breaks": 300.0,  # a specification that is violated on the way
     "left_out": 600.0,  # a goal that is given up
 }
@@ -122,6 +123,7 @@ class ProposalEffort(Immutable):
     left_out: int = 0
     breaks: int = 0
     unsupervised: bool = False
+    unseen: bool = False
 
     @property
     def time(self) -> float:

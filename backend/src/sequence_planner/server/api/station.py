@@ -241,8 +241,8 @@ async def alarms(view: LiveView) -> AlarmsAnswer:
 
 @router.get("/figures")
 async def figures(request: Request, office: Identity, view: LiveView) -> FiguresAnswer:
-    """The figures of the day, in the time zone of the station: what is in work, what was made, how long that takes, and
-    how long the station worked.
+    """The figures of the day and of the shift that is on, in the time zone of the station: what is in work, what was
+    made, how long that takes, and how long the station worked.
     """
     return await figures_of(request.app.state.order_desk, office, view)
 

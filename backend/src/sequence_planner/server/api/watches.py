@@ -12,7 +12,9 @@ from sequence_planner.auth import watches
 from sequence_planner.auth import watches as pairing
 from sequence_planner.auth.roles import Role
 from sequence_planner.auth.watches import CONFIRMED_WITHIN, LIFE, PairingOffer, Watch, WatchState
-from sequence_planner.controller.views.station import StationStanding, StationView, TaskView
+from sequence_planner.controller.commands.queries import AboutNames
+from sequence_planner.controller.views.details import NamesView
+from sequence_planner.controller.views.station import AlarmState, Priority, StationStanding, StationView, TaskView
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.server.auth import allowed, watch_only
 from sequence_planner.server.dependencies import (
@@ -33,7 +35,7 @@ from sequence_planner.server.http.credentials import keep_watch
 from sequence_planner.server.interface import interface
 from sequence_planner.server.settings import Settings
 from sequence_planner.server.stream.messages import Silence, StreamError, StreamPart
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import Message, message
 
 # What is said of watches over REST, and on the WebSocket `/api/v1/wearables/stream`.
 #
@@ -120,20 +122,53 @@ class WatchSelfAnswer(AnswerModel):
     state: WatchState
 
 
+class WatchAlarm(AnswerModel):
+    """What is wrong where help is needed, and what to do: in English, and as messages for other languages."""
+
+    text: str
+    action: str
+    message: Message
+    action_message: Message | None
+    priority: Priority
+    state: AlarmState
+    since: float
+
+
+class WatchNext(AnswerModel):
+    """What the plan has for the watch's own resource next, and `at` about which time, where that is known."""
+
+    ability: str
+    title: str
+    at: float | None
+
+
+class WatchProgress(AnswerModel):
+    """How many operations of the order in work, or else of the present round, are `done`, of how many in `all`."""
+
+    done: int
+    all: int
+
+
 class WatchSnapshot(StreamPart):
-    """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
+    """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title. `age` is as in the
+    station's own stream.
 
     `standing` says whether anything starts by itself, `silent` which devices are not heard, `failing` which of
-    the others do not do what they should.
+    the others do not do what they should. Where any of these means that help is needed, `alarm` is the most urgent one.
+    `next` is null where nothing is planned, or nothing starts by itself; `progress` where nothing is in work.
     """
 
     kind: Literal["watch"]
     time: float
+    age: float | None
     station: str
     mode: Mode
     standing: StationStanding
     silent: list[str]
     failing: list[str]
+    alarm: WatchAlarm | None
+    next: WatchNext | None
+    progress: WatchProgress | None
     tasks: dict[str, TaskView]
 
 
@@ -147,6 +182,7 @@ class WatchStreamMessage(RootModel[Annotated[WatchSnapshot | Silence | StreamErr
 # and confirms it. Only then is it told anything. Whatever is wrong with a code, the answer is the same.
 
 OPERATOR = allowed(Role.OPERATOR)
+_NO_PARTS_OF_WATCHES = ("variables", "operations", "specifications", "work_masters")
 router = interface("/wearables", tags=["wearables"])
 
 
@@ -219,6 +255,22 @@ async def this_wearable(request: Request) -> WatchSelfAnswer:
     """The asking watch: its name, whose tasks it shows, and if it was confirmed yet."""
     watch: Watch = request.state.watch
     return _itself(watch)
+
+
+@router.get("/names", dependencies=[watch_only()], responses=refused(504))
+async def names_for_wearables(request: Request, client: Controller, view: LiveView) -> NamesView:
+    """What the station, its devices and the asking watch's own resource are called in other languages, with what these
+    do; nothing of other people.
+    """
+    watch: Watch = request.state.watch
+    names = await client.ask(AboutNames())
+    others = {each.name for each in _resources(view)} - {watch.resource}
+    told: dict[str, object] = {
+        "resources": {name: words for name, words in names.resources.items() if name not in others},
+        "abilities": {name: words for name, words in names.abilities.items() if name.partition(".")[0] not in others},
+        "tasks": {name: words for name, words in names.tasks.items() if name.partition(".")[0] == watch.resource},
+    }
+    return names.model_copy(update={"values": [], **{key: {} for key in _NO_PARTS_OF_WATCHES}, **told})
 
 
 def _resources(view: StationView) -> list[WatchResource]:

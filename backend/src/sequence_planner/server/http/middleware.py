@@ -357,9 +357,9 @@ async def while_waited_for(request: Request, work: Coroutine[Any, Any, Result]) 
 
 # Headers on every answer that tell a browser what it may never do with it.
 #
-# The built page holds a policy of its own in a meta element, with the hashes of the scripts written into it, which only
-# its build knows. As a browser keeps to every policy it is given, `document_policy` lets these hashes through in the
-# header too; all that is no document of the build gets the policy without them.
+# The built page holds a policy of its own in a meta element, with the hashes of the scripts and styles written into it,
+# which only its build knows. As a browser keeps to every policy it is given, `document_policy` lets these hashes
+# through in the header too; all that is no document of the build gets the policy without them.
 
 POLICY = {
     "default-src": "'self'",
@@ -372,7 +372,7 @@ POLICY = {
     "form-action": "'self'",
     "frame-ancestors": "'none'",
 }
-OF_THE_BUILD = ("script-src", "style-src-attr")  # what a built document may say for itself
+OF_THE_BUILD = ("script-src", "style-src", "style-src-attr")  # what a built document may say for itself
 META = re.compile(r'<meta http-equiv="content-security-policy" content="([^"]*)">')
 # The watch keeps its screen on and vibrates; nothing here sees, hears or locates anybody.
 DENIED = (

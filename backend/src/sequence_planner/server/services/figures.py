@@ -1,10 +1,11 @@
-"""The figures of the day: what is in work, what was made, how long that takes, and how long the station worked."""
+"""The figures of the day and the shift: what is in work, what was made, how long it takes, how long was worked."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
 from statistics import median
+from typing import Any
 
 from sequence_planner.controller.views.details import WorkMasterView
 from sequence_planner.controller.views.station import StationView
@@ -13,6 +14,7 @@ from sequence_planner.mes import orders
 from sequence_planner.mes.expected import NOBODY_KNOWS
 from sequence_planner.mes.figures import DayFigures, MadeProduct, end_of_day, last_operation, start_of_day
 from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.shifts import Shift, shift_after, shift_at
 from sequence_planner.server.dependencies import AnswerModel
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.orders import OrderService
@@ -51,17 +53,18 @@ class CycleFigures(AnswerModel):
 
 
 class AvailabilityPoint(AnswerModel):
-    """The availability from the first work of the day until `time`."""
+    """The availability from the first work of the day, or from the beginning of the shift, until `time`."""
 
     time: float
     time_at = iso("time")
     share: float
 
 
-class DayAvailability(AnswerModel):
-    """The part of the day in which the station worked (ISO 22400-2), from 0 to 1.
+class AvailabilityFigures(AnswerModel):
+    """The part of the day, or of a shift without its breaks, in which the station worked (ISO 22400-2), from 0 to 1.
 
-    From `since`, when it worked first today, it `counted` seconds in which it could, and worked in `available` of them.
+    From `since` it `counted` seconds in which it could have, and worked in `available` of them: of the day since it
+    worked first, of a shift since that began or the station is known.
     """
 
     since: float
@@ -72,8 +75,29 @@ class DayAvailability(AnswerModel):
     trend: list[AvailabilityPoint]
 
 
+class ShiftTimes(AnswerModel):
+    """A shift of a certain day. Its title is by language, under "" that of none in particular."""
+
+    name: str
+    title: dict[str, str]
+    begins: float
+    begins_at = iso("begins")
+    ends: float
+    ends_at = iso("ends")
+
+
+class ShiftFigures(ShiftTimes):
+    """The shift that is on, and how many products were completed in it; null where the model does not tell."""
+
+    made: int | None
+    availability: AvailabilityFigures | None
+
+
 class FiguresAnswer(AnswerModel):
-    """The figures of the `day` that began then; times are in seconds since the epoch. What nobody knows is null."""
+    """The figures of the `day` that began then; times are in seconds since the epoch. What nobody knows is null.
+
+    `shift` is the one that is on, and `next_shift` the one that begins next: null where the station has no shifts.
+    """
 
     time: float
     time_at = iso("time")
@@ -82,11 +106,13 @@ class FiguresAnswer(AnswerModel):
     in_work: list[ProductInWork]
     made: MadeToday
     cycle: CycleFigures | None
-    availability: DayAvailability | None
+    availability: AvailabilityFigures | None
+    shift: ShiftFigures | None
+    next_shift: ShiftTimes | None
 
 
 async def figures_of(desk: OrderService, office: IdentityService, view: StationView) -> FiguresAnswer:
-    """The figures of the day as of now, of a station whose `view` is live."""
+    """The figures of the day and the shift as of now, of a station whose `view` is live."""
     now = time.time()
     known = desk.tracker.figures.copied()
     if known.counted_to is not None:  # it still is as the journal said last
@@ -96,6 +122,9 @@ async def figures_of(desk: OrderService, office: IdentityService, view: StationV
     masters = await desk.work_masters()
     products = {} if masters is None else masters.work_masters
     in_work = _in_work(desk, known, view, products)
+    written = await desk.shifts()
+    shifts = {} if written is None else written.shifts
+    on, then = shift_at(shifts, now), shift_after(shifts, now)
     tells = known.count > 0 or view.by_order or any(last_operation(each) for each in products.values())
     return FiguresAnswer(
         time=now,
@@ -104,6 +133,8 @@ async def figures_of(desk: OrderService, office: IdentityService, view: StationV
         made=_made(known, due, desk.orders, now) if tells else MadeToday(count=None, planned=None, by_now=None),
         cycle=_cycle(desk, known, in_work),
         availability=_availability(known),
+        shift=None if on is None else _shift(known, on, now, tells=tells),
+        next_shift=None if then is None else ShiftTimes(**_times(then)),
     )
 
 
@@ -151,14 +182,32 @@ def _cycle(desk: OrderService, known: DayFigures, in_work: Sequence[ProductInWor
     return None
 
 
-def _availability(known: DayFigures) -> DayAvailability | None:
+def _availability(known: DayFigures) -> AvailabilityFigures | None:
     share = known.availability
     if share is None or known.since is None:
         return None
-    return DayAvailability(
+    return AvailabilityFigures(
         since=known.since,
         share=share,
         counted=known.counted,
         available=known.available,
         trend=[AvailabilityPoint(time=at, share=then) for at, then in known.trend],
     )
+
+
+def _times(shift: Shift) -> dict[str, Any]:
+    return {"name": shift.name, "title": dict(shift.title), "begins": shift.begin, "ends": shift.end}
+
+
+def _shift(known: DayFigures, shift: Shift, now: float, *, tells: bool) -> ShiftFigures:
+    counted, available = known.seconds_of(shift, now)
+    availability = None
+    if counted > 0:
+        availability = AvailabilityFigures(
+            since=known.counted_from(shift),
+            share=available / counted,
+            counted=counted,
+            available=available,
+            trend=[AvailabilityPoint(time=at, share=share) for at, share in known.trend_of(shift, now)],
+        )
+    return ShiftFigures(**_times(shift), made=known.made_in(shift) if tells else None, availability=availability)

@@ -6,16 +6,17 @@ import asyncio
 import contextlib
 import time
 from collections.abc import Callable, Collection, Sequence
+from typing import Generic
 
 import structlog
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
-from sequence_planner.controller.commands.command import CommandRefused
+from sequence_planner.controller.commands.command import Answer, CommandRefused, Query
 from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, TakeJob
-from sequence_planner.controller.commands.queries import AboutWorkMasters
+from sequence_planner.controller.commands.queries import AboutShifts, AboutWorkMasters
 from sequence_planner.controller.ipc import ControllerClient
-from sequence_planner.controller.views.details import WorkMastersView
+from sequence_planner.controller.views.details import ShiftsView, WorkMastersView
 from sequence_planner.controller.views.station import JobView, StationView
 from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.core.storage_error import StorageError
@@ -184,8 +185,27 @@ def _about(actor: Actor, reason: str | None, job: str, wish: Wish) -> CommandJob
 LOG = structlog.get_logger(__name__)
 LOOK_EVERY = 0.25  # seconds
 LOOK_AT_REST = 1.0  # seconds, while there is no order
-ASK_EVERY = 5.0  # seconds after which it is asked again what jobs consist of
+ASK_EVERY = 5.0  # seconds after which it is asked again what jobs consist of, and when the station is to work
 READ_EVERY = 5.0  # seconds after which orders are read again though nobody has changed one here
+
+
+class _Asked(Generic[Answer]):
+    """What the controller was asked and told last, asked again when that is some time ago."""
+
+    def __init__(self, controller: ControllerClient, query: Query[Answer]) -> None:
+        self._controller = controller
+        self._query = query
+        self._at = float("-inf")  # on the clock of `time.monotonic`
+        self.told: Answer | None = None
+
+    async def refreshed(self) -> Answer | None:
+        """Return what it says, as far as that was heard."""
+        now = time.monotonic()
+        if self._controller.heard and now - self._at > ASK_EVERY:
+            with contextlib.suppress(CommandRefused):
+                self.told = await self._controller.ask(self._query)
+                self._at = now
+        return self.told
 
 
 class OrderService:
@@ -196,8 +216,9 @@ class OrderService:
         self._controller = controller
         self._following = OrderTracker(office.database)
         self._poked = asyncio.Event()
-        self._masters: WorkMastersView | None = None
-        self._asked = self._read = float("-inf")  # on the clock of `time.monotonic`
+        self._masters = _Asked(controller, AboutWorkMasters())
+        self._shifts = _Asked(controller, AboutShifts())
+        self._read = float("-inf")  # on the clock of `time.monotonic`
         self._orders: list[JobOrder] = []
         self._queue = Queue()
         self._times = CycleTimes()
@@ -243,12 +264,11 @@ class OrderService:
 
     async def work_masters(self) -> WorkMastersView | None:
         """Return what jobs of the station consist of, as far as that was heard."""
-        now = time.monotonic()
-        if self._controller.heard and now - self._asked > ASK_EVERY:
-            with contextlib.suppress(CommandRefused):
-                self._masters = await self._controller.ask(AboutWorkMasters())
-                self._asked = now
-        return self._masters
+        return await self._masters.refreshed()
+
+    async def shifts(self) -> ShiftsView | None:
+        """Return when the station is to work, as far as that was heard."""
+        return await self._shifts.refreshed()
 
     async def unknown_work_master(self, name: str) -> OrderRefused | None:
         """Return why nothing of this work master can be ordered; None where it can, or nobody knows now."""
@@ -267,7 +287,7 @@ class OrderService:
         waiting, view, now_queued = [each for each in asked if _may_wait(each)], self._view, self._queue
         if not all(now_queued.knows(each) for each in waiting):
             known = {each.id: each for each in [*self._orders, *waiting]}
-            now_queued = queue(list(known.values()), view, self._masters, self._office.now(), self.sequence)
+            now_queued = queue(list(known.values()), view, self._masters.told, self._office.now(), self.sequence)
         return {each.id: self._waits_for(each, view, now_queued) for each in asked}
 
     def _waits_for(self, order: JobOrder, view: StationView | None, queued: Queue) -> list[Message]:
@@ -285,7 +305,7 @@ class OrderService:
         if not all(each.is_over for each in asked):
             known = {each.id: each for each in [*self._orders, *asked] if not each.is_over}
             in_order = self.sequence(list(known.values()))
-            found = expected(in_order, self._times, self._masters, self._view, self._office.now())
+            found = expected(in_order, self._times, self._masters.told, self._view, self._office.now())
         return {each.id: found.get(each.id, NOBODY_KNOWS) for each in asked}
 
     @property

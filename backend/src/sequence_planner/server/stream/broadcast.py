@@ -30,6 +30,7 @@ from sequence_planner.server.stream.messages import (
     StationRemoval,
     StreamError,
 )
+from sequence_planner.texts.message import Message, Title
 
 # The difference between two views: what changed, and what is gone.
 #
@@ -63,8 +64,8 @@ def changed_entries(old: Mapping[str, BaseModel], new: Mapping[str, BaseModel]) 
 
 
 def _same(old: object, new: object) -> bool:
-    """Return whether both are written as the same JSON, as far as these views go: equal, and of the same types
-    throughout.
+    """Return whether both are written as the same JSON, as far as these views go: equal, and of the same types and the
+    same words throughout.
     """
     return old is new or (old == new and _same_types(old, new))
 
@@ -77,6 +78,10 @@ def _same_types(old: object, new: object) -> bool:
         return False
     if isinstance(old, BaseModel):
         return _same_types(old.__dict__, new.__dict__)
+    if isinstance(old, Message) and isinstance(new, Message):
+        return old.id == new.id and _same(old.arguments, new.arguments)  # equal in English, not yet in what is sent
+    if isinstance(old, Title) and isinstance(new, Title):
+        return old.words == new.words
     if isinstance(old, Mapping) and isinstance(new, Mapping):
         return all(_same_types(value, new[key]) for key, value in old.items())
     if isinstance(old, list | tuple) and isinstance(new, list | tuple):
@@ -197,7 +202,8 @@ class Broadcast:
         if self._view is None:
             lost = Link(kind="link", sequence=self._sequence, controller=ControllerState.LOST)
             return lost.model_dump_json()
-        return Snapshot(kind="snapshot", sequence=self._sequence, view=self._view).model_dump_json()
+        age = self._controller.age
+        return Snapshot(kind="snapshot", sequence=self._sequence, age=age, view=self._view).model_dump_json()
 
 
 # A document for many clients, of which each gets the newest whenever it is ready for one.

@@ -18,11 +18,18 @@ from starlette.types import Message
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.auth.watches import Watch
 from sequence_planner.controller.ipc import ControllerClient
-from sequence_planner.controller.views.station import StationView, TaskView
+from sequence_planner.controller.views.station import (
+    JobStepState,
+    StationStanding,
+    StationView,
+    StepStatus,
+    TaskView,
+)
 from sequence_planner.core.actor import Actor
 from sequence_planner.core.data_models import complained
 from sequence_planner.core.storage_error import StorageError
-from sequence_planner.server.api.watches import WatchSnapshot
+from sequence_planner.execution.vocabulary import JobState
+from sequence_planner.server.api.watches import WatchAlarm, WatchNext, WatchProgress, WatchSnapshot
 from sequence_planner.server.auth import Access, allowed, watch_only
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.interface import interface
@@ -174,6 +181,49 @@ def own_tasks(view: StationView, resource: str) -> dict[str, TaskView]:
     return {name: task for name, task in view.tasks.items() if task.resource == resource}
 
 
+_TO_COME = (StepStatus.NEXT, StepStatus.PLANNED)
+
+
+def watch_alarm(view: StationView) -> WatchAlarm | None:
+    """The alarm that every watch names while help is needed."""
+    if view.named_alarm is None or not (view.failing or view.standing is StationStanding.STOPPED):
+        return None
+    first = view.alarms[view.named_alarm]
+    return WatchAlarm(
+        text=first.text,
+        action=first.action,
+        message=first.messages.text,
+        action_message=first.messages.action,
+        priority=first.priority,
+        state=first.state,
+        since=first.since,
+    )
+
+
+def next_task(view: StationView, resource: str) -> WatchNext | None:
+    """What the plan asks next of a person at `resource`, and about when."""
+    if view.standing not in (StationStanding.WORKING, StationStanding.SILENT):
+        return None
+    for step in view.plan.steps:
+        if step.resource == resource and step.status in _TO_COME and view.abilities[step.ability].human:
+            return WatchNext(ability=step.ability, title=step.title, at=step.expected_start)
+    return None
+
+
+def progress_of(view: StationView) -> WatchProgress | None:
+    """How far the order in work is; where the station works freely, its operations since the first of them began."""
+    for job in view.jobs.values():
+        if job.state is JobState.RUNNING:
+            states = [step.state for step in job.steps.values() if step.state is not JobStepState.SKIPPED]
+            return WatchProgress(done=states.count(JobStepState.COMPLETED), all=len(states))
+    operations = list(view.operations.values())
+    if view.by_order or not operations:
+        return None
+    began = operations[0].active_since if operations[0].active_since is not None else operations[0].began
+    done = [each for each in operations if not each.active and each.ended is not None and each.ended >= (began or 0.0)]
+    return WatchProgress(done=len(done), all=len(operations))
+
+
 class WatchShow:
     """The tasks of each resource, told when they change and each second, and when the controller falls silent."""
 
@@ -202,15 +252,19 @@ class WatchShow:
     def _heard(self, view: StationView) -> None:
         self._is_heard = True
         now = time.monotonic()
+        alarm = watch_alarm(view)
         for resource, latest in self._shown.items():
             if not latest.somebody.is_set():
                 continue
+            to_come = next_task(view, resource)
             matter = (
                 view.mode,
                 view.standing,
                 view.silent,
                 view.failing,
                 view.station.title,
+                alarm,
+                None if to_come is None else to_come.title,
                 own_tasks(view, resource),
             )
             told, due = self._told.get(resource, (None, now))
@@ -225,11 +279,15 @@ class WatchShow:
         return WatchSnapshot(
             kind="watch",
             time=view.time,
+            age=self._controller.age,
             station=view.station.title,
             mode=view.mode,
             standing=view.standing,
             silent=view.silent,
             failing=view.failing,
+            alarm=watch_alarm(view),
+            next=next_task(view, resource),
+            progress=progress_of(view),
             tasks=own_tasks(view, resource),
         ).model_dump_json()
 

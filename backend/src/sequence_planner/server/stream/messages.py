@@ -50,10 +50,15 @@ class StreamPart(DataModel):
 
 
 class Snapshot(StreamPart):
-    """The whole view."""
+    """The whole view.
+
+    `age` is how many seconds ago the server heard the controller's clock move; null where it never did, as of a
+    controller that shows what it knew once more and then says nothing.
+    """
 
     kind: Literal["snapshot"]
     sequence: int
+    age: float | None
     view: StationView
 
 

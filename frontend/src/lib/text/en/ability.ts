@@ -3,7 +3,7 @@ import { count } from '../count.ts';
 /** An ability: its automaton, live, and a trial of it alone. */
 export const ability = {
 	list: 'Abilities',
-	choose: 'Choose an ability to see its automaton.',
+	choose: 'Choose an ability to see its states',
 	unknown: (name: string): string => `The station has no ability ${name}.`,
 	reading: 'Reading the definition.',
 	now: 'now',

@@ -49,6 +49,7 @@ export const account = {
 	control: {
 		label: 'Control',
 		mine: 'In control',
+		mineElsewhere: 'In control elsewhere',
 		held: (name: string): string => `${name} has control`,
 		free: 'Nobody has control',
 		nobody: 'nobody',
@@ -138,12 +139,12 @@ export const account = {
 		on: (standing: string, day: string): string => `${standing} on ${day}`,
 		standings: { valid: 'valid', revoked: 'revoked', expired: 'expired' },
 		scopes: {
-			read: 'reads the station, as a viewer does',
-			audit: 'reads the journal',
-			metrics: 'reads figures for monitoring',
-			'orders-read': 'reads job orders, responses and events',
-			'orders-write': 'gives, changes and commands job orders',
-			webhooks: 'says who is told of events, and where'
+			read: 'read the station, as a viewer does',
+			audit: 'read the journal',
+			metrics: 'read figures for monitoring',
+			'orders-read': 'read job orders, responses and events',
+			'orders-write': 'give, change and command job orders',
+			webhooks: 'say who is told of events, and where'
 		},
 		make: 'Make',
 		makeTitle: 'Make a key',

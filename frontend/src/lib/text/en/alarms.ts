@@ -1,3 +1,5 @@
+import { count } from '../count.ts';
+
 /** Alarms. */
 export const alarms = {
 	title: 'Alarms',
@@ -22,6 +24,7 @@ export const alarms = {
 	none: 'No alarms',
 	noneWhenHeard: 'No alarms when last heard',
 	noneOfThese: 'None of these',
+	othersHidden: 'The filter hides the others.',
 	aside: (n: number): string => `${n} shelved or out of service`,
 	means: 'What it means',
 	todo: 'What to do',
@@ -68,12 +71,14 @@ export const alarms = {
 		span: (minutes: number): string =>
 			minutes < 60 ? `${minutes} minutes` : minutes === 60 ? '1 hour' : `${minutes / 60} hours`,
 		until: (when: string): string => `until about ${when}`,
+		done: (when: string): string => `The alarm is shelved until about ${when}`,
 		back: 'Tell it again'
 	},
 	suppress: {
 		button: 'Take out of service',
 		title: 'Take this alarm out of service?',
 		means: 'Nobody is told of it until an engineer puts it back. Its cause stays as it is.',
+		done: 'The alarm is out of service',
 		back: 'Put back in service'
 	},
 	changed: 'It has changed since this was opened:',
@@ -82,7 +87,7 @@ export const alarms = {
 		resource: (title: string): string => `State of ${title}`,
 		topics: (n: number): string => `All ${n} topics`,
 		topic: (name: string): string => `Topic ${name}`,
-		restart: 'Go to Restart',
+		restart: 'Choose a way back',
 		label: 'Where to look'
 	},
 	filter: {
@@ -108,6 +113,20 @@ export const alarms = {
 		times: (n: number): string => (n === 1 ? 'once' : `${n} times`),
 		notKnown: 'not known'
 	},
+	/** How many came in each hour. */
+	perHour: {
+		title: 'Alarms per hour',
+		span: 'How far back',
+		spans: { 8: '8 h', 24: '24 h' },
+		when: 'Hour',
+		alarms: 'Alarms',
+		hour: (from: string, to: string): string => `${from} to ${to}`,
+		n: (n: number): string => count(n, 'alarm', 'alarms'),
+		label: (n: number, hours: number, worst: number): string =>
+			`${count(n, 'alarm', 'alarms')} in the last ${hours} hours, at most ${worst} in an hour`,
+		level: (n: number): string => `Dotted: ${n} an hour. One person can follow that many for long (ISA-18.2).`,
+		tooMany: 'There were too many alarms to show all of them here. History has the rest.'
+	},
 	earlier: {
 		title: 'Earlier',
 		about: 'Alarms that are over, and of which people took note, the newest first.',
@@ -118,6 +137,7 @@ export const alarms = {
 		lasted: 'Lasted',
 		seen: 'Acknowledged by',
 		none: 'None so far',
+		howYet: 'An alarm that is over and was acknowledged comes here.',
 		older: 'Older',
 		reading: 'Reading',
 		noOlder: 'There is nothing older.',

@@ -45,7 +45,6 @@ export const backups = {
 	noDownload:
 		'A backup has password hashes and who did what, so it cannot be downloaded. Anyone who may read the folder on the machine copies it from there, to a place as closed as the database.',
 	list: 'Backups',
-	nothing: 'There are none.',
 	when: 'When',
 	by: 'By',
 	makers: {

@@ -8,6 +8,12 @@ export const common = {
 	cancel: 'Cancel',
 	close: 'Close',
 	sending: 'Sending',
+	done: 'Done',
+	/** Of a chart. */
+	asTable: 'as table',
+	takeBack: 'Take back',
+	/** Why, in the journal. */
+	takenBack: 'Taken back at once',
 	reason: 'Reason',
 	unknown: 'unknown',
 	yes: 'yes',

@@ -13,11 +13,11 @@ export const deploy = {
 		title: 'The draft',
 		after: (number: number): string => `After its change ${number}`,
 		last: (title: string, by: string, clock: string): string => `${title} (${by}, ${clock})`,
-		same: 'It is what runs.',
+		same: 'The station runs this draft.',
 		differs: (n: number): string => `It differs from what runs in ${count(n, 'file', 'files')}:`,
 		state: { new: 'new', changed: 'changed', removed: 'removed', same: 'the same' },
-		saved: (name: string): string => `It is saved as “${name}”.`,
-		unsaved: 'It is not saved as a revision.',
+		saved: (name: string): string => `Saved as “${name}”.`,
+		unsaved: 'Not saved as a revision.',
 		save: 'Save revision…',
 		deploy: 'Deploy…',
 		compare: 'Compare with what runs'
@@ -25,7 +25,8 @@ export const deploy = {
 
 	revisions: {
 		title: 'Revisions',
-		none: 'No revision has been saved yet.',
+		none: 'No revision has been saved yet',
+		howYet: 'Save the draft as one: it can be compared, deployed and gone back to from here.',
 		unnamedRuns: 'What runs is none of these.',
 		name: 'Revision',
 		message: 'Message',

@@ -1,4 +1,4 @@
-/** The figures of the day, on Operate and on the wall. */
+/** The figures of the day and the shift, on Operate and on the wall. */
 export const figures = {
 	title: 'Figures of the day',
 	unknown: 'Not known yet',
@@ -10,6 +10,8 @@ export const figures = {
 	ready: (time: string): string => `ready ${time}`,
 	since: (time: string): string => `since ${time}`,
 	made: 'Made today',
+	madeInShift: 'Made this shift',
+	today: (count: number, planned: number | null): string => (planned === null ? `${count} today` : `${count} of ${planned} today`),
 	of: (n: number): string => `of ${n}`,
 	madeOf: (count: number, planned: number, due: number): string => `${count} of ${planned} are made, ${due} were due by now`,
 	cycle: 'Cycle time',
@@ -17,7 +19,27 @@ export const figures = {
 	soFar: 'so far',
 	last: 'the last one',
 	trend: (n: number): string => `Cycle times of the last ${n === 1 ? 'product' : `${n} products`}, the newest at the right`,
+	/** Each of the last products. */
+	cycles: {
+		now: 'now',
+		order: 'Order',
+		ended: 'Made at',
+		all: 'each of the last products',
+		product: 'Product',
+		took: 'Took',
+		against: 'Against the median',
+		newest: 'last',
+		last: 'The last one',
+		before: (n: number): string => `${n} before`,
+		said: (which: string, time: string, against: string): string => `${which}: ${time} (${against})`,
+		level: (median: string): string => `Dotted: the median, ${median}.`
+	},
 	available: 'Available today',
+	availableIn: (shift: string): string => `Available · ${shift}`,
+	noShift: 'Available today · no shift now',
+	/** What lies behind the head of a figure. */
+	shiftTimes: (shift: string, begins: string, ends: string): string => `${shift}, ${begins} to ${ends}`,
+	nextShift: (shift: string, begins: string): string => `No shift is on. Next: ${shift}, ${begins}`,
 	availableTrend: (since: string): string => `Availability since ${since}`,
 	wall: {
 		picture: 'What is made',

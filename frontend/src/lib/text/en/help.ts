@@ -10,6 +10,7 @@ export const help: Helped = {
 			['?', 'This help'],
 			['Tab, Shift Tab', 'To the next part of the page, or the one before'],
 			['Arrow keys', 'Within a list, a tree, the time line, the plan or the picture of the station'],
+			['F8', 'To what was done last, while that is told, and how it is taken back'],
 			['Escape', 'Puts a dialog or a menu away; what was typed in a field stays'],
 			['Ctrl Space', 'In a condition: what could stand there'],
 			['F12, Shift F12', 'In a condition: to where a name is declared, and where it is used']
@@ -63,7 +64,7 @@ export const help: Helped = {
 				'Below you see the station and its plan as they were at that moment.',
 				'What differs from now stands beside it. From there you can also try how the work would go on.',
 				'The events say who did what. Press one to go to its moment.',
-				'Take along exports records with the proof that nobody changed them.'
+				'Export saves records with the proof that nobody changed them.'
 			]
 		},
 		orders: {

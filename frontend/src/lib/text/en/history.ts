@@ -19,7 +19,6 @@ export const history = {
 		play: 'Play',
 		stop: 'Stop playing',
 		speed: 'Speed',
-		live: 'live',
 		operations: 'Operations',
 		stopped: (title: string): string => `${title}: called off`,
 		zoom: 'Part of the time line',
@@ -49,6 +48,8 @@ export const history = {
 		outcome: 'Outcome',
 		where: 'From where',
 		empty: 'Nothing of that kind',
+		all: 'Show all',
+		how: 'Choose another filter or another time.',
 		end: 'There is nothing older.',
 		newest: 'To the newest',
 		from: (when: string): string => `From ${when} on`,
@@ -191,7 +192,7 @@ export const history = {
 		act: 'What a person did'
 	},
 	take: {
-		title: 'Take along',
+		title: 'Export',
 		about: 'Each record is a line of JSON with a hash over itself and the one before, so that anyone who has the file can verify it.',
 		everything: 'Export everything',
 		shown: 'Export what the time line shows',
@@ -225,6 +226,8 @@ export const history = {
 	journal: {
 		toHistory: 'How the station was then',
 		title: 'What was done',
+		none: 'Nobody has done anything yet',
+		howYet: 'Everyone who signs in, takes control or changes something stands here: when, from where and why.',
 		caption: 'Journal, the newest first',
 		record: 'Record',
 		records: 'Records',

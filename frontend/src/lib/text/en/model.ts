@@ -9,6 +9,8 @@ export const model = {
 	tree: 'Parts of the model',
 	search: 'Search: name or title',
 	none: 'No part has such a name or title.',
+	noneHow: 'A part of a name or of a title is enough.',
+	showAll: 'Show all parts',
 	form: 'Chosen part',
 	file: 'File',
 	hideFile: 'Hide the file',
@@ -41,6 +43,7 @@ export const model = {
 		specification: 'Specification',
 		work_master: 'Work master',
 		symbol: 'Symbol',
+		shift: 'Shift',
 		message: 'Message definition'
 	},
 	section: {
@@ -68,6 +71,7 @@ export const model = {
 		specifications: 'Specifications',
 		work_masters: 'Work masters',
 		picture: 'Live picture',
+		shifts: 'Shifts',
 		messages: 'Message definitions'
 	},
 	aboutSection: {
@@ -95,6 +99,7 @@ export const model = {
 		specifications: 'What must never be.',
 		work_masters: 'What a job of a MES consists of.',
 		picture: 'The picture of the station on Operate: drawn by hand, or made from the model.',
+		shifts: 'When the station is to work: its availability and what it makes are shown for the shift that is on.',
 		messages: 'The definitions of the messages that the topics carry.'
 	},
 	/** Fields by their keys in the files. */
@@ -365,6 +370,8 @@ export const model = {
 	remove: {
 		title: (name: string): string => `Delete ${name}`,
 		do: 'Delete',
+		notLast: 'Not taken back',
+		useUndo: 'Something else was changed since. Use Undo, which takes that back first.',
 		none: 'Nothing else names it.',
 		places: (n: number): string =>
 			`${count(n, 'place names', 'places name')} it, and will be wrong without it:`
@@ -383,7 +390,8 @@ export const model = {
 	redoWord: 'Redo',
 	changes: {
 		title: 'Last changes',
-		none: 'Nothing was changed yet.',
+		none: 'Nothing was changed yet',
+		how: 'Each change of the draft stands here, with who made it and when.',
 		undone: 'Undone',
 		redone: 'Done again',
 		by: (who: string, when: string): string => `${who}, ${when}`

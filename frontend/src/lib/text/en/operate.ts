@@ -11,7 +11,7 @@ export const operate = {
 		operation: 'Operation',
 		whole: 'All',
 		waiting: 'Waits',
-		doneIn: (seconds: number): string => (seconds < 100 ? `done in ${seconds} s` : `done in ${Math.round(seconds / 60)} min`),
+		plannedFor: (seconds: number): string => (seconds < 100 ? `planned for ${seconds} s` : `planned for ${Math.round(seconds / 60)} min`),
 		since: { broken: (at: string): string => `Broken at ${at}`, none: (at: string): string => `No plan since ${at}` },
 		stopped: 'stopped',
 		after: (title: string): string => `after ${title}`,
@@ -28,6 +28,7 @@ export const operate = {
 		next: 'Next',
 		step: { done: 'done', running: 'running', next: 'next', planned: 'planned' },
 		isNew: 'new',
+		unheard: 'running when last heard',
 		changed: (ago: string): string => `The plan changed ${ago}`,
 		unchanged: 'The plan has not taken the place of another.',
 		dropped: 'Dropped',
@@ -62,6 +63,8 @@ export const operate = {
 		askOf: (title: string): string => `Why? ${title}`,
 		of: (title: string): string => `What ${title} waits for`,
 		nothing: 'Nothing is in its way.',
+		goalHolds: 'Its goal holds now.',
+		undone: 'Once that is no longer so, it waits until all of these are so',
 		again: 'Ask again',
 		asked: (clock: string): string => `As it was at ${clock}`,
 		asking: 'Asking',
@@ -87,18 +90,17 @@ export const operate = {
 			finish: (title: string, running: boolean): string => `the end of ${title}${running ? ', which runs' : ''}`,
 			effect: (title: string, running: boolean): string => `what ${title} does${running ? ', which runs' : ''}`,
 			correction: (): string => 'a correction by a person',
-			force: (): string => 'forcing the output',
-			device: (title: string): string => `somebody at ${title}`,
-			message: (title: string): string => `a message on ${title}`
+			force: (): string => 'forcing the output'
 		} as Readonly<Record<string, (title: string, running: boolean) => string>>,
 		plan: (n: number): string => `A plan is at hand: ${starts(n)}.`
 	},
 	operations: {
 		title: 'Operations',
+		/** Of a word, where several are counted. */
+		plural: (word: string): string => (word.endsWith('s') ? word : `${word}s`),
 		doneOf: (done: number, all: number): string => `${done} of ${all} done`,
 		of: (done: number, all: number): string => `${done} of ${all}`,
-		activeFor: (duration: string): string => `since ${duration},`,
-		stoppedFor: (duration: string): string => `stopped, since ${duration},`,
+		stoppedFor: (duration: string): string => `stopped for ${duration}`,
 		standing: { done: 'done', active: 'active', stopped: 'stopped', waits: 'waits' },
 		completed: (n: number): string => `${n}× completed`,
 		none: 'No operations',
@@ -143,6 +145,8 @@ export const operate = {
 		putBackTitle: (title: string): string => `Put ${title} back into service?`,
 		becauseOf: (why: string): string => `It was taken out because: ${why}`,
 		takeOut: 'Take out of service',
+		isOut: (title: string): string => `${title} is out of service`,
+		isBack: (title: string): string => `${title} is back in service`,
 		takeOutOf: (title: string): string => `Take out of service: ${title}`,
 		takeOutTitle: (title: string): string => `Take ${title} out of service?`,
 		means: {

@@ -24,6 +24,11 @@ export const orders = {
 		}
 	},
 	columns: { stored: 'Not released', waiting: 'Waiting', worked: 'In work', made: 'Made today' },
+	noneYet: {
+		title: 'No orders yet',
+		freely: 'The station works freely: it goes on with the next product by itself. With an order you say what is made and when it is due; a MES can send orders too.',
+		byOrder: 'The station works by order: it makes nothing until there is one. Orders come from a MES, or are made here.'
+	},
 	empty: {
 		stored: 'Orders stand here until somebody allows them to start.',
 		waiting: 'Orders that may start stand here, in the order in which they are to begin.',
@@ -48,7 +53,7 @@ export const orders = {
 	expectedEnd: 'Expected to be ready',
 	operations: 'Operations',
 	steps: { waiting: 'waits', eligible: 'can begin', active: 'running', completed: 'done', skipped: 'not needed' },
-	pauseMeans: 'Of a paused order no operation begins; what runs may finish. To stop the station use Pause or Hold above.',
+	pauseMeans: 'A paused order starts no operation; what runs may finish. To stop the station use Pause or Hold above.',
 	states: {
 		NotAllowedToStart: 'not released',
 		AllowedToStart: 'waiting',

@@ -23,6 +23,8 @@ export const pipelines = {
 	noPipeline: (id: string): string => `There is no pipeline ${id} in the draft.`,
 	gone: 'There is no such part any more.',
 	addTopic: 'Add a topic…',
+	noneYet: 'No pipelines yet',
+	howYet: 'A pipeline makes values of what a device sends, and messages of what the station commands. Add a topic to begin one.',
 	steps: 'Steps',
 	stage: 'stage',
 	chosenPart: 'Chosen part',
@@ -125,7 +127,7 @@ export const pipelines = {
 	examples: {
 		title: 'Examples',
 		running: 'The examples are being run.',
-		none: 'There are no examples yet.',
+		none: 'There are no examples yet. Record what the station hears, or try a message below and keep it.',
 		obstacle: 'The pipeline cannot be run as it is.',
 		counted: (passed: number, failed: number): string =>
 			failed === 0 ? (passed === 1 ? 'The example passes.' : `All ${passed} examples pass.`) : `${failed} of ${passed + failed} examples fail.`,

@@ -4,6 +4,9 @@ import { count } from '../count.ts';
 export const state = {
 	variables: 'Variables',
 	none: 'No variable is like that.',
+	noneHow: (all: number): string => `The search and the filter hide all ${all}. Change them, or show all.`,
+	noneYet: 'No variables yet',
+	howYet: 'Each value that a device sends or gets, and each estimate, stands here once the model declares it.',
 	shown: (n: number, all: number): string =>
 		n === all ? count(all, 'variable', 'variables') : `${n} of ${count(all, 'variable', 'variables')}`,
 	product: 'Product',
@@ -50,6 +53,26 @@ export const state = {
 		'the model': 'the model, at the start',
 		'the journal': 'not known any more',
 		job: (id: string): string => `job ${id}`
+	},
+	/** How a value went. */
+	course: {
+		title: 'How it went',
+		span: 'How far back',
+		spans: { 600: '10 min', 3600: '1 h', 28800: '8 h' },
+		label: (n: number, span: string, now: string, alarms: number): string =>
+			`${n === 0 ? 'No change' : count(n, 'change', 'changes')} in the last ${span};${alarms > 0 ? ` ${count(alarms, 'alarm', 'alarms')};` : ''} ${now} now`,
+		since: (value: string, clock: string): string => `${value}, since ${clock}`,
+		from: 'From',
+		value: 'Value',
+		because: 'What happened',
+		alarm: (text: string): string => `Alarm: ${text}`,
+		did: { corrected: 'corrected', forced: 'forced', 'force-released': 'no longer forced' },
+		acts: {
+			corrected: (value: string): string => `corrected to ${value}`,
+			forced: (value: string): string => `forced to ${value}`,
+			'force-released': (value: string): string => `no longer forced: ${value}`
+		},
+		onlyFrom: (clock: string): string => `Shown from ${clock} on: it changed too often for more.`
 	},
 	changes: (n: number): string => (n === 0 ? 'no change in the last minute' : `${count(n, 'change', 'changes')} in the last minute`),
 	tick: (name: string): string => `Tick ${name}`,
@@ -208,9 +231,9 @@ export const state = {
 		chooseFirst: 'Choose another value.',
 		lookFirst: 'Working out what follows.',
 		reasonFirst: 'Say why.',
-		firstBoth: 'Takes control and enters restart mode first: nothing more starts, and what can be stopped stops.',
+		firstBoth: 'Takes control and enters restart mode first: nothing more starts, and running steps finish.',
 		firstControl: 'Takes control first.',
-		firstRestart: 'Enters restart mode first: nothing more starts, and what can be stopped stops.',
+		firstRestart: 'Enters restart mode first: nothing more starts, and running steps finish.',
 		theirs: (name: string): string => `${name} has control.`,
 		errand: (title: string): string => `“${title}” is carried out now. Wait until it has ended, or stop it.`,
 		done: (changes: string): string => `Corrected: ${changes}`,

@@ -21,9 +21,22 @@ export const watch = {
 	still: 'Nothing moves yet.',
 	recorded: 'Done is recorded.',
 	/** With nothing to do. */
+	progress: (done: number, all: number): string => `${done} of ${all} done`,
 	comes: 'Your next task comes here.',
+	/** What the plan has for somebody next, and in how many seconds. */
+	next: (title: string, seconds: number | null): string =>
+		// What does not break stays on one line of a small face.
+		seconds === null ? `Next: ${title}` : seconds < 1 ? `${title} soon` : `${title} in\u00a0about\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
 	/** Beside what is wrong. */
 	goThere: 'Help is needed at the station.',
+	/** Of an alarm, when it came. */
+	called: (stopped: boolean, clock: string): string => `${stopped ? 'Stopped' : 'Help is needed'} since ${clock}.`,
+	/** That one has seen an alarm; the second where there is room. */
+	seen: 'Seen',
+	iGo: ', I go there',
+	/** Behind an alarm. */
+	taskWaits: (title: string): string => `Your task “${title}” waits.`,
+	toTask: 'To my task',
 	/** Why nothing starts by itself. */
 	standing: {
 		preparing: 'Getting ready',

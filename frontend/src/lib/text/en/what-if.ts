@@ -3,6 +3,7 @@ import { count } from '../count.ts';
 /** What if: simulating the draft of the model. */
 export const whatIf = {
 	title: 'What-if',
+	simulated: 'Simulated. The station is not touched.',
 	role: 'Only engineers simulate. Ask one of them.',
 	from: 'Where it begins',
 	present: 'The station as it is now',

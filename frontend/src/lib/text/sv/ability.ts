@@ -2,7 +2,7 @@ import type { Text } from '../text.svelte.ts';
 
 export const ability: Text['ability'] = {
 	list: 'Förmågor',
-	choose: 'Välj en förmåga för att se dess automat.',
+	choose: 'Välj en förmåga för att se dess tillstånd',
 	unknown: (name) => `Stationen har ingen förmåga ${name}.`,
 	reading: 'Läser definitionen.',
 	now: 'nu',

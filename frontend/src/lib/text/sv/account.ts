@@ -49,6 +49,7 @@ export const account: Text['account'] = {
 	control: {
 		label: 'Kontroll',
 		mine: 'Har kontrollen',
+		mineElsewhere: 'Har kontrollen på annat håll',
 		held: (name) => `${name} har kontrollen`,
 		free: 'Ingen har kontrollen',
 		nobody: 'ingen',
@@ -143,12 +144,12 @@ export const account: Text['account'] = {
 		on: (standing, day) => `${standing} ${day}`,
 		standings: { valid: 'giltig', revoked: 'återkallad', expired: 'utgången' },
 		scopes: {
-			read: 'läser stationen, som en betraktare',
-			audit: 'läser journalen',
-			metrics: 'läser mätvärden för övervakning',
-			'orders-read': 'läser jobborder, svar och händelser',
-			'orders-write': 'lägger, ändrar och styr jobborder',
-			webhooks: 'bestämmer vem som får veta om händelser, och var'
+			read: 'läsa stationen, som en betraktare',
+			audit: 'läsa journalen',
+			metrics: 'läsa mätvärden för övervakning',
+			'orders-read': 'läsa jobborder, svar och händelser',
+			'orders-write': 'lägga, ändra och styra jobborder',
+			webhooks: 'bestämma vem som får veta om händelser, och var'
 		},
 		make: 'Skapa',
 		makeTitle: 'Skapa en nyckel',

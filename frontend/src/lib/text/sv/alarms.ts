@@ -23,6 +23,7 @@ export const alarms: Text['alarms'] = {
 	none: 'Inga larm',
 	noneWhenHeard: 'Inga larm när stationen senast hördes',
 	noneOfThese: 'Inga av dessa',
+	othersHidden: 'Filtret döljer de andra.',
 	aside: (n) => `${n} åt sidan eller ur drift`,
 	means: 'Vad det innebär',
 	todo: 'Vad du ska göra',
@@ -68,12 +69,14 @@ export const alarms: Text['alarms'] = {
 		span: (minutes) =>
 			minutes < 60 ? `${minutes} minuter` : minutes === 60 ? '1 timme' : `${minutes / 60} timmar`,
 		until: (when) => `till ungefär ${when}`,
+		done: (when) => `Larmet är åsidolagt till ungefär ${when}`,
 		back: 'Ta fram igen'
 	},
 	suppress: {
 		button: 'Ta ur drift',
 		title: 'Ta larmet ur drift?',
 		means: 'Ingen får veta av det förrän en ingenjör sätter det i drift igen. Orsaken är kvar.',
+		done: 'Larmet är ur drift',
 		back: 'Sätt i drift igen'
 	},
 	changed: 'Det har ändrats sedan rutan öppnades:',
@@ -82,7 +85,7 @@ export const alarms: Text['alarms'] = {
 		resource: (title) => `Tillstånd för ${title}`,
 		topics: (n) => `Alla ${n} topics`,
 		topic: (name) => `Topic ${name}`,
-		restart: 'Till Omstart',
+		restart: 'Välj en väg tillbaka',
 		label: 'Var man kan titta'
 	},
 	filter: {
@@ -108,6 +111,18 @@ export const alarms: Text['alarms'] = {
 		times: (n) => (n === 1 ? 'en gång' : `${n} gånger`),
 		notKnown: 'inte känt'
 	},
+	perHour: {
+		title: 'Larm per timme',
+		span: 'Hur långt tillbaka',
+		spans: { 8: '8 h', 24: '24 h' },
+		when: 'Timme',
+		alarms: 'Larm',
+		hour: (from, to) => `${from} till ${to}`,
+		n: (n) => `${n} larm`,
+		label: (n, hours, worst) => `${n} larm de senaste ${hours} timmarna, som mest ${worst} på en timme`,
+		level: (n) => `Prickat: ${n} i timmen. Så många hinner en person följa i längden (ISA-18.2).`,
+		tooMany: 'Det var för många larm för att visa alla här. Resten finns i Historik.'
+	},
 	earlier: {
 		title: 'Tidigare',
 		about: 'Larm som är över och som människor har tagit del av, det senaste först.',
@@ -118,6 +133,7 @@ export const alarms: Text['alarms'] = {
 		lasted: 'Varade',
 		seen: 'Kvitterat av',
 		none: 'Inga än',
+		howYet: 'Ett larm som är över och har kvitterats kommer hit.',
 		older: 'Äldre',
 		reading: 'Läser',
 		noOlder: 'Det finns inget äldre.',

@@ -46,7 +46,6 @@ export const backups: Text['backups'] = {
 	noDownload:
 		'En säkerhetskopia har lösenordshashar och vem som gjort vad, så den kan inte laddas ner. Den som får läsa mappen på maskinen kopierar den därifrån, till en plats lika sluten som databasen.',
 	list: 'Säkerhetskopior',
-	nothing: 'Det finns inga.',
 	when: 'När',
 	by: 'Av',
 	makers: {

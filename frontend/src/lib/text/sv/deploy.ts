@@ -13,11 +13,11 @@ export const deploy: Text['deploy'] = {
 		title: 'Utkastet',
 		after: (number) => `Efter ändring ${number}`,
 		last: (title, by, clock) => `${title} (${by}, ${clock})`,
-		same: 'Det är det som körs.',
+		same: 'Stationen kör detta utkast.',
 		differs: (n) => `Det skiljer sig från det som körs i ${count(n, 'fil', 'filer')}:`,
 		state: { new: 'ny', changed: 'ändrad', removed: 'borttagen', same: 'likadan' },
-		saved: (name) => `Det är sparat som ”${name}”.`,
-		unsaved: 'Det är inte sparat som revision.',
+		saved: (name) => `Sparat som ”${name}”.`,
+		unsaved: 'Inte sparat som revision.',
 		save: 'Spara revision …',
 		deploy: 'Driftsätt …',
 		compare: 'Jämför med det som körs'
@@ -25,7 +25,8 @@ export const deploy: Text['deploy'] = {
 
 	revisions: {
 		title: 'Revisioner',
-		none: 'Ingen revision har sparats än.',
+		none: 'Ingen revision har sparats än',
+		howYet: 'Spara utkastet som en: den kan jämföras, driftsättas och återgås till härifrån.',
 		unnamedRuns: 'Det som körs är ingen av dem.',
 		name: 'Revision',
 		message: 'Meddelande',

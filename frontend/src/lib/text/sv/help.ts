@@ -9,6 +9,7 @@ export const help: Helped = {
 			['?', 'Den här hjälpen'],
 			['Tab, Skift Tab', 'Till sidans nästa del, eller den förra'],
 			['Piltangenter', 'Inom en lista, ett träd, tidslinjen, planen eller bilden av stationen'],
+			['F8', 'Till det som gjordes senast, medan det visas, och hur det tas tillbaka'],
 			['Escape', 'Lägger undan en dialog eller en meny; det som skrivits i ett fält är kvar'],
 			['Ctrl Mellanslag', 'I ett villkor: vad som kan stå där'],
 			['F12, Skift F12', 'I ett villkor: dit ett namn deklareras, och var det används']
@@ -62,7 +63,7 @@ export const help: Helped = {
 				'Nedanför ser du stationen och dess plan som de var då.',
 				'Bredvid står vad som skiljer sig från nu. Därifrån kan du också pröva hur arbetet skulle gå vidare.',
 				'Händelserna säger vem som gjorde vad. Tryck på en för att gå till dess ögonblick.',
-				'Ta med exporterar poster med bevis för att ingen har ändrat dem.'
+				'Exportera sparar poster med bevis för att ingen har ändrat dem.'
 			]
 		},
 		orders: {

@@ -19,7 +19,6 @@ export const history: Text['history'] = {
 		play: 'Spela upp',
 		stop: 'Sluta spela upp',
 		speed: 'Hastighet',
-		live: 'direkt',
 		operations: 'Operationer',
 		stopped: (title) => `${title}: avbruten`,
 		zoom: 'Del av tidslinjen',
@@ -49,6 +48,8 @@ export const history: Text['history'] = {
 		outcome: 'Utfall',
 		where: 'Varifrån',
 		empty: 'Inget av det slaget',
+		all: 'Visa alla',
+		how: 'Välj ett annat filter eller en annan tid.',
 		end: 'Det finns inget äldre.',
 		newest: 'Till det nyaste',
 		from: (when) => `Från ${when} och bakåt`,
@@ -191,7 +192,7 @@ export const history: Text['history'] = {
 		act: 'Vad en människa gjorde'
 	},
 	take: {
-		title: 'Ta med',
+		title: 'Exportera',
 		about: 'Varje post är en rad JSON med en hash över sig själv och den föregående, så att den som har filen kan verifiera den.',
 		everything: 'Exportera allt',
 		shown: 'Exportera vad tidslinjen visar',
@@ -224,6 +225,8 @@ export const history: Text['history'] = {
 	journal: {
 		toHistory: 'Hur stationen var då',
 		title: 'Vad som gjordes',
+		none: 'Ingen har gjort något än',
+		howYet: 'Den som loggar in, tar kontroll eller ändrar något står här: när, varifrån och varför.',
 		caption: 'Journal, det nyaste först',
 		record: 'Post',
 		records: 'Poster',

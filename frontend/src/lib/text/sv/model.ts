@@ -10,6 +10,8 @@ export const model: Text['model'] = {
 	tree: 'Modellens delar',
 	search: 'Sök: namn eller titel',
 	none: 'Ingen del har ett sådant namn eller en sådan titel.',
+	noneHow: 'En del av ett namn eller en titel räcker.',
+	showAll: 'Visa alla delar',
 	form: 'Vald del',
 	file: 'Fil',
 	hideFile: 'Dölj filen',
@@ -40,6 +42,7 @@ export const model: Text['model'] = {
 		specification: 'Specifikation',
 		work_master: 'Arbetsmall',
 		symbol: 'Symbol',
+		shift: 'Skift',
 		message: 'Meddelandedefinition'
 	},
 	section: {
@@ -67,6 +70,7 @@ export const model: Text['model'] = {
 		specifications: 'Specifikationer',
 		work_masters: 'Arbetsmallar',
 		picture: 'Levande bild',
+		shifts: 'Skift',
 		messages: 'Meddelandedefinitioner'
 	},
 	aboutSection: {
@@ -94,6 +98,7 @@ export const model: Text['model'] = {
 		specifications: 'Vad som aldrig får inträffa.',
 		work_masters: 'Vad ett jobb från ett MES består av.',
 		picture: 'Bilden av stationen på Drift: ritad för hand, eller gjord av modellen.',
+		shifts: 'När stationen ska arbeta: tillgängligheten och det som görs visas för det skift som pågår.',
 		messages: 'Definitionerna av de meddelanden som topics bär.'
 	},
 	field: {
@@ -357,6 +362,8 @@ export const model: Text['model'] = {
 	remove: {
 		title: (name) => `Ta bort ${name}`,
 		do: 'Ta bort',
+		notLast: 'Inte tillbakataget',
+		useUndo: 'Något annat har ändrats sedan dess. Använd Ångra, som tar tillbaka det först.',
 		none: 'Inget annat nämner den.',
 		places: (n) => `${count(n, 'ställe', 'ställen')} nämner den och blir fel utan den:`
 	},
@@ -374,7 +381,8 @@ export const model: Text['model'] = {
 	redoWord: 'Gör om',
 	changes: {
 		title: 'Senaste ändringar',
-		none: 'Inget har ändrats än.',
+		none: 'Inget har ändrats än',
+		how: 'Varje ändring av utkastet står här, med vem som gjorde den och när.',
 		undone: 'Ångrat',
 		redone: 'Gjort om',
 		by: (who, when) => `${who}, ${when}`

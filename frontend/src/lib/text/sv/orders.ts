@@ -24,6 +24,11 @@ export const orders: Text['orders'] = {
 		}
 	},
 	columns: { stored: 'Inte släppta', waiting: 'Väntar', worked: 'I arbete', made: 'Tillverkat i dag' },
+	noneYet: {
+		title: 'Inga order än',
+		freely: 'Stationen arbetar fritt: den fortsätter själv med nästa produkt. Med en order säger du vad som ska göras och när det ska vara klart; ett MES kan också skicka order.',
+		byOrder: 'Stationen arbetar efter order: den gör inget förrän det finns en. Order kommer från ett MES, eller görs här.'
+	},
 	empty: {
 		stored: 'Här står order tills någon låter dem börja.',
 		waiting: 'Här står order som får börja, i den ordning de ska börja.',

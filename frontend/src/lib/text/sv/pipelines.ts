@@ -25,6 +25,8 @@ export const pipelines: Text['pipelines'] = {
 	noPipeline: (id) => `Det finns ingen pipeline ${id} i utkastet.`,
 	gone: 'Den delen finns inte längre.',
 	addTopic: 'Lägg till en topic…',
+	noneYet: 'Inga pipelines än',
+	howYet: 'En pipeline gör värden av det som en enhet skickar, och meddelanden av det som stationen beordrar. Lägg till en topic för att börja med en.',
 	steps: 'Steg',
 	stage: 'steg',
 	chosenPart: 'Vald del',
@@ -127,7 +129,7 @@ export const pipelines: Text['pipelines'] = {
 	examples: {
 		title: 'Exempel',
 		running: 'Exemplen körs.',
-		none: 'Det finns inga exempel än.',
+		none: 'Det finns inga exempel än. Spela in det som stationen hör, eller pröva ett meddelande nedan och behåll det.',
 		obstacle: 'Pipelinen kan inte köras som den är.',
 		counted: (passed, failed) =>
 			failed === 0 ? (passed === 1 ? 'Exemplet stämmer.' : `Alla ${passed} exempel stämmer.`) : `${failed} av ${passed + failed} exempel stämmer inte.`,

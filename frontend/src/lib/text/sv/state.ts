@@ -5,6 +5,9 @@ const antal = (n: number, en: string, flera: string): string => `${n} ${n === 1 
 export const state: Text['state'] = {
 	variables: 'Variabler',
 	none: 'Ingen variabel är sådan.',
+	noneHow: (all) => `Sökningen och filtret döljer alla ${all}. Ändra dem, eller visa alla.`,
+	noneYet: 'Inga variabler än',
+	howYet: 'Varje värde som en enhet skickar eller får, och varje uppskattning, står här när modellen har den.',
 	shown: (n, all) => (n === all ? antal(all, 'variabel', 'variabler') : `${n} av ${antal(all, 'variabel', 'variabler')}`),
 	product: 'Produkten',
 	columns: {
@@ -50,6 +53,25 @@ export const state: Text['state'] = {
 		'the model': 'modellen, vid början',
 		'the journal': 'inte känt längre',
 		job: (id) => `jobb ${id}`
+	},
+	course: {
+		title: 'Hur det gick',
+		span: 'Hur långt tillbaka',
+		spans: { 600: '10 min', 3600: '1 h', 28800: '8 h' },
+		label: (n, span, now, alarms) =>
+			`${n === 0 ? 'Ingen ändring' : antal(n, 'ändring', 'ändringar')} de senaste ${span};${alarms > 0 ? ` ${alarms} larm;` : ''} ${now} nu`,
+		since: (value, clock) => `${value}, sedan ${clock}`,
+		from: 'Från',
+		value: 'Värde',
+		because: 'Vad som hände',
+		alarm: (text) => `Larm: ${text}`,
+		did: { corrected: 'rättat', forced: 'tvingat', 'force-released': 'inte längre tvingat' },
+		acts: {
+			corrected: (value) => `rättat till ${value}`,
+			forced: (value) => `tvingat till ${value}`,
+			'force-released': (value) => `inte längre tvingat: ${value}`
+		},
+		onlyFrom: (clock) => `Visas från ${clock}: det ändrades för ofta för mer.`
 	},
 	changes: (n) => (n === 0 ? 'ingen ändring den senaste minuten' : `${antal(n, 'ändring', 'ändringar')} den senaste minuten`),
 	tick: (name) => `Markera ${name}`,
@@ -208,9 +230,9 @@ export const state: Text['state'] = {
 		chooseFirst: 'Välj ett annat värde.',
 		lookFirst: 'Räknar ut vad som följer.',
 		reasonFirst: 'Säg varför.',
-		firstBoth: 'Tar först kontrollen och går till omstartsläge: inget mer startar, och det som kan stoppas stoppar.',
+		firstBoth: 'Tar först kontrollen och går till omstartsläge: inget mer startar, och det som pågår blir klart.',
 		firstControl: 'Tar först kontrollen.',
-		firstRestart: 'Går först till omstartsläge: inget mer startar, och det som kan stoppas stoppar.',
+		firstRestart: 'Går först till omstartsläge: inget mer startar, och det som pågår blir klart.',
 		theirs: (name) => `${name} har kontrollen.`,
 		errand: (title) => `”${title}” utförs nu. Vänta tills det är slut, eller stoppa det.`,
 		done: (changes) => `Rättat: ${changes}`,

@@ -17,8 +17,16 @@ export const watch: Text['watch'] = {
 	nothingMoves: 'Inget rör sig än. Klart antecknas.',
 	still: 'Inget rör sig än.',
 	recorded: 'Klart antecknas.',
+	progress: (done, all) => `${done} av ${all} klara`,
 	comes: 'Din nästa uppgift kommer hit.',
+	next: (title, seconds) =>
+		seconds === null ? `Sedan: ${title}` : seconds < 1 ? `${title} strax` : `${title} om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
 	goThere: 'Hjälp behövs vid stationen.',
+	called: (stopped, clock) => `${stopped ? 'Står stilla' : 'Hjälp behövs'} sedan ${clock}.`,
+	seen: 'Sett',
+	iGo: ', jag går dit',
+	taskWaits: (title) => `Din uppgift ”${title}” väntar.`,
+	toTask: 'Till min uppgift',
 	standing: {
 		preparing: 'Förbereder',
 		waiting: 'Produktionen är inte startad',

@@ -3,6 +3,7 @@ import { count } from '../count.ts';
 /** Tänk om: simulering av modellens utkast. */
 export const whatIf = {
 	title: 'Tänk om',
+	simulated: 'Simulerat. Stationen berörs inte.',
 	role: 'Bara ingenjörer simulerar. Fråga en av dem.',
 	from: 'Var det börjar',
 	present: 'Stationen som den är nu',

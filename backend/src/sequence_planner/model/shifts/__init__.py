@@ -1,0 +1,1 @@
+"""The shifts of a station, as `shifts.yaml` has them."""

@@ -1,0 +1,140 @@
+import type { Locator, Page } from '@playwright/test';
+import { examine } from '../../station/barriers.ts';
+import { Drafting } from '../../station/drafting.ts';
+import { INA, VERA } from '../../station/station.ts';
+import { expect, test } from '../../station/test.ts';
+
+test.use({ shared: null, byItself: false, devices: true, people: 'everybody', copied: 'bolt_tightening' });
+
+const STATE = '/pipelines?of=%2Fur10%2Fstate';
+const box = (page: Page, kind: string, name: string): Locator => page.locator('.svelte-flow__node').filter({ hasText: kind }).filter({ hasText: name });
+const steps = (page: Page): Locator => page.getByRole('list', { name: 'Steps' });
+const stage = (page: Page, kind: string): Locator => steps(page).locator('.stage').filter({ hasText: kind });
+const part = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
+const field = (page: Page, name: string): Locator => part(page).locator(`[data-path="${name}"]`);
+const dialog = (page: Page): Locator => page.getByRole('dialog');
+const examples = (page: Page): Locator => page.getByRole('region', { name: 'Examples' });
+
+test('the graph is live; a stage is added where it fits, set right, proven by an example, and taken back', async ({
+	browse,
+	complaints
+}) => {
+	test.setTimeout(200_000);
+	const page = await browse(INA, STATE);
+	await expect(box(page, 'Topic', '/ur10/state')).toBeVisible({ timeout: 30_000 });
+	await expect(box(page, 'Stage', 'discretise')).toContainText('joint_positions → pose');
+	await expect(box(page, 'Variable', 'robot.previous_pose')).toBeVisible();
+	await expect(page.locator('.svelte-flow__edge')).toHaveCount(5);
+	await expect(page.locator('[data-wire]').filter({ hasText: /[1-9][\d.]*\/s/ })).toBeVisible();
+	await expect(page.locator('[data-wire]').filter({ hasText: 'pose = home' })).toBeVisible();
+	await examine(page, 'pipelines');
+	await page.setViewportSize({ width: 1440, height: 900 });
+
+	// A record shows all its fields, with their types and what they are now.
+	await page.locator('[data-wire]').filter({ hasText: 'pose = home' }).click();
+	await expect(part(page).locator('[data-field="pose"]')).toContainText('home');
+	await expect(part(page).locator('[data-field="joint_positions"]')).toContainText('real[6]');
+	await part(page).getByRole('button', { name: 'Add a stage here…' }).click();
+	const constant = dialog(page).locator('[data-kind="constant"]');
+	await expect(constant).toContainText('is for outgoing topics');
+	await expect(constant.getByRole('button')).toHaveAttribute('aria-disabled', 'true');
+	await dialog(page).getByRole('button', { name: 'debounce' }).click();
+	await expect(dialog(page)).toBeHidden();
+	await expect(part(page).getByRole('heading', { name: 'debounce' })).toBeVisible();
+	await expect(box(page, 'Stage', 'debounce')).toBeVisible();
+	await expect(stage(page, 'debounce').locator('+ .edge')).toContainText('only in the draft');
+
+	// What is wrong is said in the field, and where records meet it; what comes behind it is not guessed.
+	await field(page, 'seconds').getByRole('textbox').fill('-1');
+	await expect(field(page, 'seconds')).toContainText('The number is too small.');
+	await field(page, 'seconds').getByRole('textbox').fill('0.2');
+	await field(page, 'fields').locator('input').first().fill('mooving');
+	await expect(stage(page, 'debounce')).toContainText('did you mean `moving`?');
+	await expect(page.locator('.svelte-flow__edge').locator('.wrong')).toHaveCount(1);
+	await expect(stage(page, 'remember')).toContainText('Nobody can say whether it fits');
+	await expect(page.getByRole('link', { name: /^\/ur10\/state/ })).toContainText('1 error');
+	await stage(page, 'remember').getByRole('link').click();
+	await page.getByRole('region', { name: 'Problems' }).getByRole('button', { name: /robot\.yaml:\d+/ }).first().click();
+	await expect(field(page, 'fields').locator('input').first()).toBeFocused();
+	await field(page, 'fields').locator('input').first().fill('moving');
+	await expect(stage(page, 'debounce')).not.toContainText('did you mean');
+
+	// What the station hears becomes an example, which is run as the draft is edited.
+	await examples(page).getByRole('button', { name: 'Record the last message as an example…' }).click();
+	await dialog(page).getByLabel('What it is an example of').fill('at home');
+	await dialog(page).getByRole('button', { name: 'Record', exact: true }).click();
+	await expect(examples(page).locator('[data-example="at home"]')).toHaveAttribute('data-standing', 'passed');
+	const close = dialog(page).getByRole('button', { name: 'Close' });
+	if (await close.isVisible()) await close.click();
+	await steps(page).locator('[data-stage="2"]').click();
+	await field(page, 'except').getByRole('button', { name: /^Add an entry/ }).click();
+	await field(page, 'except').locator('input').nth(1).fill('home');
+	await expect(examples(page).locator('[data-example="at home"]')).toHaveAttribute('data-standing', 'failed');
+	await expect(examples(page).locator('[data-right="false"]').first()).toContainText('home');
+	await page.getByRole('button', { name: /^Undo/ }).click();
+	await expect(examples(page).locator('[data-example="at home"]')).toHaveAttribute('data-standing', 'passed');
+
+	// A message of one's own is shown behind every stage.
+	await examples(page).getByLabel('Message, as JSON').fill('{"joint_positions": [0.6, -1.2, 1.4, -1.77, -1.57, 0.6]}');
+	await examples(page).getByRole('button', { name: 'Try', exact: true }).click();
+	await expect(page.locator('[data-wire]').filter({ hasText: 'pose = above_engine' })).toBeVisible();
+	await page.getByRole('button', { name: 'Show what passes now' }).first().click();
+	await expect(page.locator('[data-wire]').filter({ hasText: 'pose = home' })).toBeVisible();
+	expect(complaints).toEqual([]);
+});
+
+test('a pipeline is edited by keyboard alone; a viewer sees it all and can edit nothing @long', async ({ browse }) => {
+	const page = await browse(INA, STATE);
+	await expect(steps(page)).toBeVisible({ timeout: 30_000 });
+	await steps(page).getByRole('button', { name: 'Add a stage at record 3' }).press('Enter');
+	await expect(dialog(page).getByRole('heading')).toBeFocused();
+	await dialog(page).getByRole('button', { name: 'limit' }).press('Enter');
+	await expect(part(page).getByRole('heading', { name: 'limit' })).toBeVisible();
+	await steps(page).getByRole('button', { name: 'Move stage 3, limit, up' }).press('Enter');
+	await expect(steps(page).locator('[data-stage="1"][aria-current="true"]')).toContainText('limit');
+	await steps(page).locator('[data-stage="1"]').press('Enter');
+	await expect(part(page).getByRole('heading', { name: 'limit' })).toBeFocused();
+	await steps(page).getByRole('button', { name: 'Remove stage 2, limit' }).press('Enter');
+	await expect(stage(page, 'limit')).toHaveCount(0);
+	await page.keyboard.press('Control+z');
+	await expect(stage(page, 'limit')).toHaveCount(1);
+
+	// A field is connected with what it can become, and not with what it cannot.
+	await steps(page).locator('[data-edge="0"]').press('Enter');
+	await expect(part(page).getByRole('heading', { name: 'Record 1' })).toBeFocused();
+	await part(page).getByRole('button', { name: 'Make something of moving' }).press('Enter');
+	await expect(dialog(page).locator('[data-fits="false"]').first()).toContainText('Not here:');
+	await page.keyboard.press('Escape');
+	await expect(dialog(page)).toBeHidden();
+
+	const other = await browse(VERA, STATE);
+	await expect(steps(other).locator('[data-stage="2"]')).toBeVisible({ timeout: 30_000 });
+	await expect(other.getByText('You can look at the model.')).toBeVisible();
+	await steps(other).locator('[data-stage="0"]').click();
+	await expect(field(other, 'tolerance').getByRole('textbox')).toHaveAttribute('readonly');
+	for (const name of [/^Undo/, /^Add a/, /^Remove/, /^Move/, /^Record the/])
+		await expect(other.getByRole('button', { name })).toHaveCount(0);
+	await expect(examples(other).getByRole('button', { name: 'Try', exact: true })).toBeVisible();
+});
+
+test('a topic of the network is added to a resource @long', async ({ browse, station }) => {
+	const draft = await Drafting.of(station);
+	const { body } = await draft.ask('GET', 'model/files');
+	const { text = '' } = (body['files'] as Record<string, { text: string }>)['resources/operator.yaml'] ?? {};
+	const [topic = ''] = /^topics:\n(?: {2}.*\n)+/m.exec(text) ?? [];
+	expect(topic).toContain('/operator/task');
+	await draft.change('no task', ['resources/operator.yaml', topic, '']);
+
+	const page = await browse(INA, '/pipelines');
+	await page.getByRole('button', { name: 'Add a topic…' }).click();
+	await dialog(page).getByLabel('Search').fill('operator');
+	await dialog(page).getByRole('radio', { name: '/operator/task' }).check();
+	await dialog(page).getByLabel('Resource that it belongs to').selectOption({ label: 'Operator with watch' });
+	await dialog(page).getByLabel('Direction').selectOption('out');
+	await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
+	await expect(page.getByRole('heading', { name: '/operator/task' }).first()).toBeVisible({ timeout: 60_000 });
+	await part(page).getByRole('link', { name: 'On the ROS network' }).click();
+	await expect(page.getByRole('heading', { name: 'Topic /operator/task' })).toBeVisible();
+	await page.getByRole('link', { name: 'Show its pipeline' }).click();
+	await expect(steps(page)).toContainText('To the message');
+});

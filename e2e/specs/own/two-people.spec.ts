@@ -1,0 +1,130 @@
+/** People who sign in with a provider, and what needs two of them. */
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { examine } from '../../station/barriers.ts';
+import { CLIENT, Providing, SECRET } from '../../station/providing.ts';
+import { signOut, takeControl, variable } from '../../station/seen.ts';
+import { ADA, ADAM, EVA, ROOT, Station, freePort } from '../../station/station.ts';
+import { test as base, expect } from '../../station/test.ts';
+import type { Page } from '@playwright/test';
+
+const OTTO = { preferred_username: 'Otto', groups: ['station-operators'] };
+const NILS = { preferred_username: 'Nils', groups: ['sales'] };
+const DUAL = ['    type: bolt_state\n', '    type: bolt_state\n    approval: dual\n'] as const;
+
+/** One station for all: to start it takes longer than the tests. Its bolts ask for two people. */
+const test = base.extend<object, { provided: { station: Station } }>({
+	provided: [
+		async ({}, use, info) => {
+			const folder = mkdtempSync(join(tmpdir(), 'dual-'));
+			const model = join(folder, 'bolt_tightening');
+			cpSync(join(ROOT, 'models/bolt_tightening'), model, { recursive: true });
+			const file = join(model, 'station.yaml');
+			const text = readFileSync(file, 'utf8');
+			expect(text).toContain(DUAL[0]);
+			writeFileSync(file, text.replace(...DUAL));
+			const port = await freePort();
+			const station = await Station.start({
+				byItself: false,
+				devices: true,
+				people: [ADA, EVA, ADAM],
+				model,
+				logs: join(import.meta.dirname, `../../artefacts/logs/two-people-${info.workerIndex}`),
+				environment: {
+					SEQUENCE_PLANNER_OIDC_ISSUER: `http://127.0.0.1:${port}`,
+					SEQUENCE_PLANNER_OIDC_CLIENT: CLIENT,
+					SEQUENCE_PLANNER_OIDC_CLIENT_SECRET: SECRET,
+					SEQUENCE_PLANNER_OIDC_TITLE: 'Works ID',
+					SEQUENCE_PLANNER_OIDC_ROLE: 'operator=station-operators'
+				}
+			});
+			const provider = await Providing.start(port, station.url, { otto: OTTO, nils: NILS });
+			await use({ station });
+			await provider.stop();
+			await station.stop();
+			rmSync(folder, { recursive: true });
+		},
+		{ scope: 'worker', timeout: 90_000 }
+	],
+	station: async ({ provided }, use) => {
+		await use(provided.station);
+	}
+});
+
+/** At the provider: says who one is. */
+async function beAtProvider(page: Page, login: string): Promise<void> {
+	await page.getByRole('button', { name: 'Sign in with Works ID' }).click();
+	await page.locator('input[name="login"]').fill(login);
+	await page.locator('input[name="password"]').fill('any');
+	await page.locator('button[type="submit"]').click();
+}
+
+test('who signs in with the provider comes to the page that was asked for, and signs out of both @long', async ({
+	browse,
+	station
+}) => {
+	const otto = await browse(null, '/journal');
+	await expect(otto).toHaveURL('/sign-in?to=%2Fjournal');
+	await examine(otto, 'sign-in-provider');
+	await beAtProvider(otto, 'otto');
+	await expect(otto).toHaveURL('/journal');
+	await expect(otto.getByTestId('who')).toContainText('Otto');
+	await otto.goto('/account');
+	await expect(otto.getByText('You sign in with Works ID, and have no password here.')).toBeVisible();
+	await expect(otto.getByLabel('Present password')).toHaveCount(0);
+
+	await otto.goto('/journal');
+	await signOut(otto);
+	await expect(otto.getByRole('heading', { name: 'Sign in' })).toBeVisible();
+	await otto.getByRole('link', { name: 'Sign out of Works ID as well' }).click();
+	await otto.locator('button[name="logout"]').click();
+	await expect(otto).toHaveURL(`${station.url}/sign-in`);
+	await expect(otto.getByRole('button', { name: 'Sign in with Works ID' })).toBeVisible();
+
+	const ada = await browse(ADA, '/users');
+	await examine(ada, 'people-provided');
+	const row = ada.locator('[data-person="Otto"]');
+	await expect(row).toContainText('signs in with http');
+	await expect(row.getByRole('button', { name: 'New password for Otto' })).toHaveCount(0);
+});
+
+test('who has no role is told so where they sign in, and an answer that nobody waits for is not taken', async ({
+	browse
+}) => {
+	const nils = await browse(null, '/sign-in');
+	await beAtProvider(nils, 'nils');
+	await expect(nils.getByRole('alert').first()).toContainText('in none of the groups that may use this station');
+	await expect(nils).toHaveURL('/sign-in/provider');
+	await examine(nils, 'provider-refused');
+	await nils.goto('/sign-in/provider?code=stolen&state=forged');
+	await expect(nils.getByRole('alert').first()).toContainText('was not begun in this browser');
+	expect(await nils.evaluate(() => location.search)).toBe('');
+	await nils.goto('/sign-in/provider');
+	await expect(nils).toHaveURL('/sign-in');
+});
+
+test('what asks for two people is asked for by one and done by another', async ({ browse }) => {
+	const [eva, adam] = [await browse(EVA, '/state?kind=estimated'), await browse(ADAM, '/')];
+	await takeControl(eva);
+	const bolts = 'bolts[bolt_pair_1]';
+	await eva.locator(`[data-row="${bolts}"]`).getByRole('button', { name: /^Correct…/ }).click();
+	const dialog = eva.getByRole('dialog');
+	await dialog.getByRole('radio', { name: 'placed' }).check();
+	await expect(dialog.getByTestId('follows')).toBeVisible({ timeout: 30_000 });
+	await dialog.getByLabel('Reason').fill('seen with my own eyes');
+	await expect(dialog.getByText('A second person has to approve this.')).toBeVisible();
+	await dialog.getByRole('button', { name: 'Ask a second person…' }).click();
+	await dialog.getByRole('button', { name: 'Yes, ask' }).click();
+	await expect(eva.locator('[data-approval="waiting"]')).toContainText('You have asked a second person');
+
+	const waits = adam.locator('[data-approval="waiting"]');
+	await expect(waits).toContainText('Eva asks a second person');
+	await adam.getByRole('button', { name: 'Look and decide…' }).click();
+	await expect(adam.getByTestId('approve').getByTestId('follows')).toBeVisible({ timeout: 30_000 });
+	await examine(adam, 'approve');
+	await adam.setViewportSize({ width: 1440, height: 900 });
+	await adam.getByRole('button', { name: 'Approve', exact: true }).click();
+	await expect(eva.locator('[data-approval="approved"]')).toContainText('approved and done');
+	await expect(variable(eva, bolts)).toHaveAttribute('data-value', 'placed');
+});
