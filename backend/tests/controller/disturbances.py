@@ -9,7 +9,7 @@ import asyncio
 import random
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -41,8 +41,6 @@ SPEED = 2.0  # of the devices
 CALM = 0.6  # seconds between two disturbances, on average
 AWAY = 2.5  # seconds for which a resource is away, at most
 IDENTITY = StationIdentity(name="truck", title="Truck", description="", transport="memory", emulated=True)
-
-Clock = Callable[[], float]
 
 
 @dataclass
@@ -143,15 +141,15 @@ class Trouble:
 
 
 @contextmanager
-def watched(into: Disturbed, clock: Clock) -> Iterator[None]:
+def watched(into: Disturbed) -> Iterator[None]:
     """Take note of every tick and every plan adopted; AssertionError for a plan that does not replay."""
     step, adopt = Controller._step, Executor.adopt
 
     def timed(self: Controller, moment: Timestamp) -> None:
-        before, began = self.execution.ticks, clock()
+        before, began = self.execution.ticks, time.perf_counter()
         step(self, moment)
         if self.execution.ticks > before:
-            into.ticks.append((clock() - began) * 1000)
+            into.ticks.append((time.perf_counter() - began) * 1000)
 
     def replayed(self: Executor, request: PlanRequest, answer: PlanAnswer) -> bool:
         adopted = adopt(self, request, answer)
@@ -168,13 +166,13 @@ def watched(into: Disturbed, clock: Clock) -> Iterator[None]:
         yield
 
 
-async def disturbed(seconds: float, seed: str, clock: Clock = time.perf_counter) -> Disturbed:
-    """The station under disturbances for so long. Ticks are timed by `clock`, in seconds."""
+async def disturbed(seconds: float, seed: str) -> Disturbed:
+    """The station under disturbances for so long."""
     with journal() as database:
-        return await _disturbed(seconds, seed, clock, database)
+        return await _disturbed(seconds, seed, database)
 
 
-async def _disturbed(seconds: float, seed: str, clock: Clock, database: Database) -> Disturbed:
+async def _disturbed(seconds: float, seed: str, database: Database) -> Disturbed:
     seen = Disturbed()
     chance = random.Random(seed)
     station, supervisor, _ = truck_engine()
@@ -184,7 +182,7 @@ async def _disturbed(seconds: float, seed: str, clock: Clock, database: Database
     controller = build_controller(IDENTITY, station, supervisor, transport, database)
     controller.take_command()
     trouble = Trouble(controller, devices, chance, seen.seen)
-    with watched(seen, clock):
+    with watched(seen):
         living = [asyncio.create_task(devices.live()), asyncio.create_task(controller.run())]
         try:
             await asyncio.sleep(1.0)
