@@ -54,6 +54,8 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	await expect(stage(page, 'remember')).toContainText('Nobody can say whether it fits');
 	await expect(page.getByRole('link', { name: /^\/ur10\/state/ })).toContainText('1 error');
 	await stage(page, 'remember').getByRole('link').click();
+	await stage(page, 'remember').getByRole('link').click(); // which leads to where one is already
+	await expect(part(page).getByRole('heading', { name: 'remember' })).toBeFocused();
 	await page.getByRole('region', { name: 'Problems' }).getByRole('button', { name: /robot\.yaml:\d+/ }).first().click();
 	await expect(field(page, 'fields').locator('input').first()).toBeFocused();
 	await field(page, 'fields').locator('input').first().fill('moving');

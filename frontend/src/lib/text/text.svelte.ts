@@ -33,6 +33,7 @@ const REFUSALS: Readonly<Record<Exclude<Language, 'en'>, () => Promise<{ default
 };
 
 let sources: Sources = { en: () => front, sv: async () => (await import('./sv-front.ts')).front };
+const furnished = new Set<Sources>();
 let texts = $state.raw<Front>(front);
 let chosen = $state<Language>('en');
 /** Numbers what was asked to be shown, so that texts that were overtaken are not shown. */
@@ -69,8 +70,16 @@ export async function showKept(): Promise<void> {
 	await show(keptLanguage()).catch(() => (number === asked ? show('en') : undefined));
 }
 
-/** From now on the rooms of `more` are there. */
-export async function furnish(more: Readonly<Record<Language, () => OfStation | Promise<OfStation>>>): Promise<void> {
+/** Where texts with the rooms of a station's pages are read from. */
+export type StationSources = Readonly<Record<Language, () => OfStation | Promise<OfStation>>>;
+
+/**
+ * From now on the rooms of `more` are there. Said once more, it changes nothing: where all of a page is loaded again, as by
+ * a link to the page itself, the station's texts would otherwise take the place of the engineers' while their page is shown.
+ */
+export async function furnish(more: StationSources): Promise<void> {
+	if (furnished.has(more)) return;
+	furnished.add(more);
 	sources = more;
 	await showKept();
 }
