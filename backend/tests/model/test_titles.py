@@ -67,6 +67,18 @@ def test_titles_are_told(titled: Path, name: str, value: str, sentence: dict[str
     assert sentences_of(ground(load_station(titled))).tell_value(name, value).words == sentence
 
 
+def test_it_is_told_what_a_person_does_so_that_a_measured_variable_gets_a_value(press: Path) -> None:
+    said = sentences_of(ground(load_station(press)))
+    assert said.tell_by_hand("arm.held", "bare") is None
+    by_hand = "{bare: {en: Turn the key., sv: Vrid om nyckeln.}}"
+    replace(press, "resources/arm.yaml", "held: {type: grip", f"held: {{by_hand: {by_hand}, type: grip")
+    said = sentences_of(ground(load_station(press)))
+    told = said.tell_by_hand("arm.held", "bare")
+    assert told is not None
+    assert told.words == {"en": "Turn the key.", "sv": "Vrid om nyckeln."}
+    assert said.tell_by_hand("arm.at", "home") is None
+
+
 def test_a_value_has_its_title_in_the_titles_of_abilities(press: Path) -> None:
     replace(
         press,
@@ -178,4 +190,31 @@ def test_what_is_wrong_with_the_title_of_a_part_is_told_where_it_is(press: Path,
 )  # fmt: skip
 def test_what_is_wrong_with_a_title_is_told_where_it_is(press: Path, old: str, new: str, message: str) -> None:
     [place] = replace(press, STATION, old, new)
+    assert findings(press) == [f"{place}: {message}"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "held: {type: grip",
+            "held: {by_hand: {‹bear: Turn the key.}, type: grip",
+            "`bear` is no value of `arm.held`, which ranges over {bare, big, small}; did you mean `bare`?",
+        ),
+        (
+            "held: {type: grip",
+            'held: {by_hand: {bare: ‹"Turn {it}."}, type: grip',
+            "`{it}` stands for no parameter here",
+        ),
+        (
+            "target: {type: spot}",
+            "target: {type: spot, by_hand: {‹home: Push it home.}}",
+            "`by_hand` is for what is measured: nobody at the station gives `arm.target` a value",
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_with_what_a_person_does_is_told_where_it_is(
+    press: Path, old: str, new: str, message: str
+) -> None:
+    [place] = replace(press, "resources/arm.yaml", old, new)
     assert findings(press) == [f"{place}: {message}"]

@@ -69,7 +69,11 @@ class Operator:
         """Whether the first advice that leaves out nothing is to take over."""
         answer = self.station.browser.get("recovery/proposals", timeout=30)
         offers = [offer for offer in answer.json().get("offers", ()) if not offer["left_out"]]
-        return bool(offers) and [(each["name"], each["then"]) for each in offers[0]["physical"]] == [(TAKE_OVER, True)]
+        acts = offers[0]["physical"] if offers else []
+        if [(each["name"], each["then"]) for each in acts] != [(TAKE_OVER, True)]:
+            return False
+        assert "key" in acts[0]["by_hand"]["arguments"]["how"]["words"]["en"], "it is told how that is done"
+        return True
 
     def goes_on(self) -> None:
         """As soon as the station allows that."""

@@ -28,7 +28,7 @@ from sequence_planner.pipelines.graph import StationPipelines
 
 # The sections that declare names for something longer, each with what one of it is.
 _SECTIONS = {"sets": "set", "relations": "relation", "maps": "map", "predicates": "predicate"}
-_FOR_PEOPLE = frozenset({"title", "description", "consequence", "action", "task", "instruction"})
+_FOR_PEOPLE = frozenset({"title", "description", "consequence", "action", "task", "instruction", "by_hand"})
 _PACKAGES = "packages"
 _NAMES = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*")
 _COUNTING = re.compile(r"\bat\s+(?:least|most)\b")

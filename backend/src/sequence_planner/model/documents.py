@@ -173,6 +173,8 @@ class VariableDocument(DocumentPart):
     """How people are told its value, such as `the robot is at {value}`; without it `TITLE is {value}`."""
     titles: ValueTitles = Field(default_factory=dict)
     """Words for its values, in the place of those of its enumeration: `{true: in place, false: away}`."""
+    by_hand: ValueTitles = Field(default_factory=dict)
+    """What a person does at the station so that a measured variable gets a value: `{open: Turn the handle up.}`."""
 
 
 class StartDocument(DocumentPart):

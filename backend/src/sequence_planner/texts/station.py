@@ -159,6 +159,7 @@ STATION: Final[dict[str, str]] = {
     "offer.see-to-so": "see to it that {changes}, so that {records}",
     "offer.see-to-so-first": "See to it that {changes}, so that {records}",
     "offer.so": "{condition}",
+    "offer.by-hand": "{how}",
     "offer.is": "{name} is {value}",
     "offer.counts-as": "{name} counts as {value}",
     "offer.correct": "correct {changes}",

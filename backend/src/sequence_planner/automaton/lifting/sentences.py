@@ -39,7 +39,7 @@ from sequence_planner.language.syntax import (
     conjunction,
 )
 from sequence_planner.language.types import EnumerationType, Value
-from sequence_planner.texts.grammar import GRAMMARS, Clause, Grammar
+from sequence_planner.texts.grammar import ENGLISH, GRAMMARS, Clause, Grammar
 from sequence_planner.texts.message import Message, Sentence, Wording, message
 from sequence_planner.texts.names import within_sentence
 
@@ -176,6 +176,12 @@ class Sentences:
         type_ = self._automaton.types[variable]
         words = {each.language: self._names.words(variable, type_, each).get(value, str(value)) for each in GRAMMARS}
         return Sentence(words, print_value(value))
+
+    def tell_by_hand(self, variable: str, value: Value) -> Sentence | None:
+        """What a person does so that a variable gets a value, where the model says so."""
+        words = {each.language: self._names.by_hand(variable, value, each) for each in GRAMMARS}
+        said = {language: text for language, text in words.items() if text is not None}
+        return Sentence(said, said[ENGLISH.language]) if ENGLISH.language in said else None
 
     def _predicates(self) -> Iterator[tuple[NormalForm, SaidPredicate]]:
         """The predicates with a title for all values of their parameters, by what they mean."""

@@ -182,6 +182,11 @@ class SpokenNames:
         entries = {grammar.language: self.entries(variable, grammar) for grammar in GRAMMARS}
         return {value: {name: each[value] for name, each in entries.items()} for value in entries[ENGLISH.language]}
 
+    def by_hand(self, variable: str, value: Value, grammar: Grammar) -> str | None:
+        """What a person does so that a variable gets a value, where the model says so."""
+        said = in_language(self.titles(variable).by_hand.get(value, {}), grammar.language)
+        return None if said is None else self.filled(said, self._called(variable), grammar)
+
     def spoken_title(self, variable: str, grammar: Grammar) -> str:
         """What a variable is called that is told apart from its value: a statement in quotes."""
         subject = self.subject(variable, grammar)

@@ -38,19 +38,20 @@ class TitleReader:
         return Titles(dict(self._variables()), self._values(), self._sets(), dict(self._predicates()))
 
     def _variables(self) -> Iterator[tuple[str, VariableTitles]]:
-        sections: list[tuple[str | None, Mapping[SourceText, documents.VariableDocument]]]
-        sections = [(None, self._station.station.estimated)]
+        sections: list[tuple[str | None, bool, Mapping[SourceText, documents.VariableDocument]]]
+        sections = [(None, False, self._station.station.estimated)]
         for resource, whole in self._station.resources.items():
-            sections += [(resource, getattr(whole, kind.value)) for kind in _KINDS]
-        for owner, section in sections:
+            sections += [(resource, kind is Kind.MEASURED, getattr(whole, kind.value)) for kind in _KINDS]
+        for owner, is_measured, section in sections:
             for name, document in section.items():
                 full = str(name) if owner is None else f"{owner}.{name}"
-                if document.title is not None or document.phrase is not None or document.titles:
+                if document.title is not None or document.phrase is not None or document.titles or document.by_hand:
                     self._check_words(document.title, document.each)
                     self._check_words(document.phrase, {*document.each, VALUE})
                     self._check_phrase(document.phrase)
                     values = self._read_values(document.titles, self._types.get(full), full)
-                    yield full, VariableTitles(words_of(document.title), words_of(document.phrase), values)
+                    by_hand = self._read_by_hand(document, self._types.get(full), full, is_measured)
+                    yield full, VariableTitles(words_of(document.title), words_of(document.phrase), values, by_hand)
 
     def _values(self) -> dict[EnumerationType, Mapping[Value, Words]]:
         """The titles of each enumeration's values: its own, then those of what it includes."""
@@ -106,21 +107,43 @@ class TitleReader:
         """The words for values of `type_`, each of which has others in each language."""
         if type_ is None:
             return {}
-        domain = {_written(type_, value): value for value in type_.domain}
         found: dict[Value, Words] = {}
         told: dict[tuple[str, str], SourceText] = {}
-        for key, text in titles.items():
-            if str(key) not in domain:
-                near = suggestion(str(key), domain)
-                self._findings.add(key, f"`{key}` is no value of `{owner}`, which ranges over {type_}{near}")
-                continue
-            found[domain[str(key)]] = words_of(text)
+        for key, value, text in self._by_value(titles, type_, owner):
+            found[value] = words_of(text)
             for language, said in by_language(text).items():
                 before = told.setdefault((language, said.strip().casefold()), key)
                 if before is not key:
                     message = f"`{said}` is what `{before}` is called already: nobody could tell them apart"
                     self._findings.add(said, f"{message}; write other words for one of them")
         return found
+
+    def _read_by_hand(
+        self, document: documents.VariableDocument, type_: Type | None, owner: str, is_measured: bool
+    ) -> dict[Value, Words]:
+        """What a person does so that a variable gets a value; one that is not measured has no value of the station."""
+        if document.by_hand and not is_measured:
+            message = f"`by_hand` is for what is measured: nobody at the station gives `{owner}` a value"
+            self._findings.add(next(iter(document.by_hand)), message)
+        if type_ is None:
+            return {}
+        found: dict[Value, Words] = {}
+        for _, value, text in self._by_value(document.by_hand, type_, owner):
+            self._check_words(text, document.each)
+            found[value] = words_of(text)
+        return found
+
+    def _by_value(
+        self, texts: documents.ValueTitles, type_: Type, owner: str
+    ) -> Iterator[tuple[SourceText, Value, fields.Words]]:
+        """The texts with their values; what is no value of `type_` is noted."""
+        domain = {_written(type_, value): value for value in type_.domain}
+        for key, text in texts.items():
+            if str(key) in domain:
+                yield key, domain[str(key)], text
+            else:
+                near = suggestion(str(key), domain)
+                self._findings.add(key, f"`{key}` is no value of `{owner}`, which ranges over {type_}{near}")
 
     def _check_phrase(self, phrase: fields.Words | None) -> None:
         for said in by_language(phrase).values():

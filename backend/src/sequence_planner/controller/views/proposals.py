@@ -11,12 +11,15 @@ from sequence_planner.texts.message import Message
 
 
 class ValueChangeView(View):
-    """A variable that gets another value; `now` is null where it is unknown. `so` says in words that it has it."""
+    """A variable that gets another value; `now` is null where it is unknown. `so` says in words that it has it, and
+    `by_hand` what a person does at the station for that, where the model says so.
+    """
 
     name: str
     now: ShownValue | None
     then: ShownValue
     so: Message
+    by_hand: Message | None = None
 
 
 class PreviewStepView(View):

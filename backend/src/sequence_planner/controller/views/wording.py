@@ -247,9 +247,14 @@ def _step(automaton: Automaton, tick: int, name: str, times: tuple[float, float]
 
 def _changes(automaton: Automaton, changes: Sequence[ValueChange]) -> list[ValueChangeView]:
     return [
-        ValueChangeView(name=change.name, now=change.old, then=change.new, so=so)
+        ValueChangeView(name=change.name, now=change.old, then=change.new, so=so, by_hand=_by_hand(automaton, change))
         for change, so in zip(changes, _so(automaton, changes), strict=True)
     ]
+
+
+def _by_hand(automaton: Automaton, change: ValueChange) -> Message | None:
+    how = sentences_of(automaton).tell_by_hand(change.name, change.new)
+    return None if how is None else message("offer.by-hand", how=how)
 
 
 # Why an offer cannot be made, or not be taken.

@@ -315,6 +315,9 @@ class _Walk:
             around = at.within(at.owner, TextContext(resource, part.full, parameters(entry(document, "for"))))
             for key in ("title", "phrase"):
                 self._words(entry(document, key), around.to(key))
+            self._value_titles(enumeration, entry(document, "by_hand"), at.to("by_hand"))
+            for value, text in pairs(entry(document, "by_hand")):
+                self._words(text, around.to("by_hand", value))
 
     def _ability(self, resource: str, name: SourceText, document: object, where: Where) -> None:
         part = ModelPart("ability", resource, str(name))

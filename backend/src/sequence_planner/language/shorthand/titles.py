@@ -22,11 +22,14 @@ def in_language(words: Words, language: str) -> str | None:
 
 
 class VariableTitles(Immutable):
-    """What is written of a variable: its title, the phrase that says its value, and words for values of its own."""
+    """What is written of a variable: its title, the phrase that says its value, words for values of its own, and what a
+    person does at the station so that it gets a value.
+    """
 
     title: Mapping[str, str] = {}
     phrase: Mapping[str, str] = {}
     values: Mapping[Value, Words] = {}
+    by_hand: Mapping[Value, Words] = {}
 
 
 class Titles(Immutable):
