@@ -48,7 +48,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 
 	await test.step('what cannot be is not sent, and what was typed stays', async () => {
 		await newOrder();
-		await expect(form.getByLabel('Work master')).toHaveValue('truck_engine');
+		await expect(form.getByLabel('What is made')).toHaveValue('truck_engine');
 		await form.getByLabel('Description').fill('Engine 4711');
 		await form.getByLabel('Priority').fill('-3');
 		await expect(form.getByRole('button', { name: 'Store' })).toHaveAttribute('aria-disabled', 'true');
@@ -173,7 +173,7 @@ test('another system is told of orders: made by an administrator, signed, seen t
 		const eva = await browse(EVA, '/orders');
 		await eva.getByRole('button', { name: 'New order' }).click();
 		await eva.getByRole('dialog', { name: 'New order' }).getByLabel('Description').fill('Told');
-		await eva.getByRole('checkbox', { name: 'It may start at once' }).uncheck();
+		await eva.getByRole('checkbox', { name: /^Release it/ }).uncheck();
 		await eva.getByRole('button', { name: 'Store' }).click();
 		await expect.poll(() => heard.map(({ kind }) => kind), { timeout: 15_000 }).toContain('job-order-stored');
 		expect(heard[0]?.signature).toMatch(/^v1,/);

@@ -17,7 +17,7 @@ export const account = {
 	roles: {
 		viewer: { name: 'viewer', may: 'looks, and acts on nothing' },
 		operator: { name: 'operator', may: 'runs the station, does tasks and pairs watches' },
-		engineer: { name: 'engineer', may: 'runs the station and attaches to its ROS graph' },
+		engineer: { name: 'engineer', may: 'does all that an operator does, and changes the model and deploys it' },
 		administrator: { name: 'administrator', may: 'does all that an engineer does, and decides who may do what' }
 	},
 	roleNeeded: {
@@ -65,7 +65,6 @@ export const account = {
 		theySee: 'They see at once that you took it.',
 		written: 'It is written in the journal.',
 		nothingMoves: 'Nothing moves by it: what runs goes on.',
-		optional: '(if you like)',
 		moved: (name: string): string => `Meanwhile control is with ${name}. Close this and look again.`,
 		over: 'Take over'
 	},

@@ -15,6 +15,9 @@ export const common = {
 	/** Why, in the journal. */
 	takenBack: 'Taken back at once',
 	reason: 'Reason',
+	/** Of a field. */
+	needed: '(needed)',
+	optional: '(optional)',
 	unknown: 'unknown',
 	yes: 'yes',
 	no: 'no',

@@ -44,7 +44,6 @@ export const deploy = {
 		name: 'Name',
 		nameHint: 'Short, and of no other revision: up to 100 characters.',
 		message: 'Message',
-		optional: '(optional)',
 		word: 'Save',
 		done: (name: string): string => `“${name}” is saved.`,
 		wrong: {

@@ -32,6 +32,7 @@ export const mimic = {
 		values: 'Values',
 		noValues: 'It has no values.',
 		abilities: 'Abilities',
+		others: (n: number): string => (n === 1 ? '1 more that waits' : `${n} more that wait`),
 		states: { running: 'runs', ready: 'can start', waits: 'waits', unknown: 'unknown' },
 		moreValues: (n: number): string => `${n} more on State`,
 		links: 'More about it',

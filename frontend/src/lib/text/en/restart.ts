@@ -154,7 +154,7 @@ export const restart = {
 		noneFits: 'None of these fits…',
 		gone: 'The way that you had chosen is no longer offered.',
 		choose: 'Choose a way to see what happens then.',
-		least: 'Least effort',
+		least: 'Recommended',
 		during: 'While something is carried out nothing else is offered.',
 		operator: 'An operator is shown the ways back.',
 		incomplete: 'The search ended early; there may be more ways.',

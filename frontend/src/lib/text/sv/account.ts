@@ -17,7 +17,7 @@ export const account: Text['account'] = {
 	roles: {
 		viewer: { name: 'betraktare', may: 'ser på, och gör inget' },
 		operator: { name: 'operatör', may: 'kör stationen, utför uppgifter och parar ihop klockor' },
-		engineer: { name: 'ingenjör', may: 'kör stationen och ansluter till dess ROS-graf' },
+		engineer: { name: 'ingenjör', may: 'gör allt som en operatör gör, och ändrar modellen och driftsätter den' },
 		administrator: { name: 'administratör', may: 'gör allt som en ingenjör gör, och bestämmer vem som får göra vad' }
 	},
 	roleNeeded: {
@@ -65,7 +65,6 @@ export const account: Text['account'] = {
 		theySee: 'Det syns genast där att du tog den.',
 		written: 'Det skrivs i journalen.',
 		nothingMoves: 'Inget rör sig av det: det som pågår fortsätter.',
-		optional: '(om du vill)',
 		moved: (name) => `Under tiden har ${name} fått kontrollen. Stäng och se efter igen.`,
 		over: 'Ta över'
 	},

@@ -14,6 +14,8 @@ export const common: Text['common'] = {
 	takeBack: 'Ta tillbaka',
 	takenBack: 'Genast tillbakataget',
 	reason: 'Skäl',
+	needed: '(måste anges)',
+	optional: '(om du vill)',
 	unknown: 'okänt',
 	yes: 'ja',
 	no: 'nej',

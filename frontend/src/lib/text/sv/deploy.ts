@@ -44,7 +44,6 @@ export const deploy: Text['deploy'] = {
 		name: 'Namn',
 		nameHint: 'Kort, och inte en annan revisions: högst 100 tecken.',
 		message: 'Meddelande',
-		optional: '(om du vill)',
 		word: 'Spara',
 		done: (name) => `”${name}” är sparad.`,
 		wrong: {

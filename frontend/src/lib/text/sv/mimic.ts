@@ -32,6 +32,7 @@ export const mimic = {
 		values: 'Värden',
 		noValues: 'Den har inga värden.',
 		abilities: 'Förmågor',
+		others: (n: number): string => (n === 1 ? '1 till som väntar' : `${n} till som väntar`),
 		states: { running: 'körs', ready: 'kan starta', waits: 'väntar', unknown: 'okänt' },
 		moreValues: (n: number): string => `${n} till på Tillstånd`,
 		links: 'Mer om den',

@@ -152,7 +152,7 @@ export const restart: Text['restart'] = {
 		noneFits: 'Inget av detta passar…',
 		gone: 'Vägen som du hade valt erbjuds inte längre.',
 		choose: 'Välj en väg för att se vad som händer då.',
-		least: 'Minst besvär',
+		least: 'Rekommenderas',
 		during: 'Medan något utförs erbjuds inget annat.',
 		operator: 'En operatör får se vägarna tillbaka.',
 		incomplete: 'Tiden räckte inte till att söka allt: det kan finnas andra vägar.',
