@@ -120,7 +120,7 @@ test.describe('where people are known', () => {
 			await eva.getByRole('button', { name: 'New order' }).click();
 			await form.getByLabel('Description').fill(description);
 			await form.getByLabel('Priority').fill(priority);
-			await form.getByRole('button', { name: 'Store' }).click();
+			await form.getByRole('button', { name: 'Add order' }).click();
 			await eva.locator('[data-order]').filter({ hasText: description }).waitFor();
 		}
 		await eva.waitForTimeout(12_000); // until their order is computed

@@ -41,7 +41,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		if (!(await form.isVisible())) await newOrder();
 		await form.getByLabel('Description').fill(description);
 		await form.getByLabel('Priority').fill(priority);
-		await form.getByRole('button', { name: 'Store' }).click();
+		await form.getByRole('button', { name: 'Add order' }).click();
 		await expect(row(description)).toBeVisible();
 		await expect(form).toHaveCount(0);
 	};
@@ -51,7 +51,7 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await expect(form.getByLabel('What is made')).toHaveValue('truck_engine');
 		await form.getByLabel('Description').fill('Engine 4711');
 		await form.getByLabel('Priority').fill('-3');
-		await expect(form.getByRole('button', { name: 'Store' })).toHaveAttribute('aria-disabled', 'true');
+		await expect(form.getByRole('button', { name: 'Add order' })).toHaveAttribute('aria-disabled', 'true');
 		await form.getByLabel('Priority').press('Enter');
 		await expect(form.getByLabel('Description')).toHaveValue('Engine 4711');
 		await expect(eva.locator('[data-order]')).toHaveCount(0);
@@ -174,7 +174,7 @@ test('another system is told of orders: made by an administrator, signed, seen t
 		await eva.getByRole('button', { name: 'New order' }).click();
 		await eva.getByRole('dialog', { name: 'New order' }).getByLabel('Description').fill('Told');
 		await eva.getByRole('checkbox', { name: /^Release it/ }).uncheck();
-		await eva.getByRole('button', { name: 'Store' }).click();
+		await eva.getByRole('button', { name: 'Add order' }).click();
 		await expect.poll(() => heard.map(({ kind }) => kind), { timeout: 15_000 }).toContain('job-order-stored');
 		expect(heard[0]?.signature).toMatch(/^v1,/);
 		await expect(ada.locator('[data-webhook="MES"]')).toContainText('all is delivered');
