@@ -49,7 +49,9 @@ export class StationProcess {
 
 	/** Signals the process among those it has started that runs the command `part`. */
 	signalPart(part: string, name: NodeJS.Signals): void {
-		const found = this.#tree.slice(1).filter((each) => wordsOf(each).includes(part));
+		// Its name comes before its command; the one that starts the others is called "fork server".
+		const commandOf = (words: readonly string[]): string | undefined => words[words.findIndex((word) => word.endsWith('sequence-planner')) + 1];
+		const found = this.#tree.slice(1).filter((each) => commandOf(wordsOf(each)) === part);
 		const [oldest] = found.sort((one, other) => Number(one.started) - Number(other.started));
 		if (oldest === undefined) throw new Error(`no process is the ${part}`);
 		signal([oldest], name);
