@@ -18,6 +18,7 @@ from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Plan, PlanAnswer, PlanRequest
+from sequence_planner.texts.message import Sentence
 from support.people import ADAM, EVA
 
 from .corrected import WHY, Station, what_is_never_together
@@ -58,7 +59,10 @@ def test_a_preview_says_what_follows_and_changes_nothing() -> None:
     [change] = shown.changes
     assert (change.name, change.now, change.then) == (BOLT, "empty", "placed")
     assert change.belief.writer == "the model"
-    assert "robot.pose == home" in change.related
+    place = change.related.index("robot.pose == home")
+    said = change.related_messages[place].arguments["condition"]
+    assert isinstance(said, Sentence)
+    assert said.words["en"] == "the robot is at home"
     assert shown.safe
     assert shown.safe_now
     assert "nutrunner.run_nut" in shown.startable

@@ -162,6 +162,10 @@ CORRECTION = CorrectionPreview(
             then="placed",
             belief=BeliefView(writer="the journal", at=900.0, evidence=[], unconfirmed_since=900.0),
             related=["robot.pose == home", "operator.acknowledged is unknown"],
+            related_messages=[
+                message("value.unknown", name="the pose"),
+                message("value.unknown", name="the acknowledgement"),
+            ],
         )
     ],
     safe=True,

@@ -131,6 +131,7 @@ test('an operation is reset by a plan that is looked at first, and refused once 
 	await main.getByRole('button', { name: 'Leave restart mode and continue' }).click();
 	expect(pair).toContain('place_bolt_pair');
 	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
+	await operate.getByRole('button', { name: 'Release control' }).click();
 });
 
 interface Place {

@@ -162,21 +162,29 @@ class Corrections:
     def _changed(self, name: str, value: Value) -> CorrectedView:
         now = self._execution.state[name]
         assert now is not None
+        related = list(self._related(name))
         return CorrectedView(
-            name=name, now=now, then=value, belief=self._beliefs.of(name), related=list(self._related(name))
+            name=name,
+            now=now,
+            then=value,
+            belief=self._beliefs.of(name),
+            related=[written for written, _ in related],
+            related_messages=[said for _, said in related],
         )
 
-    def _related(self, name: str) -> Iterator[str]:
-        """Yield what is measured that abilities look at before they write the estimate."""
+    def _related(self, name: str) -> Iterator[tuple[str, Message]]:
+        """Yield what is measured that abilities look at before they write the estimate: as written, and in words."""
         automaton, state = self._execution.automaton, self._execution.state
         guards = [guard for ability in automaton.abilities.values() for guard in looked_at(ability, name)]
         read = read_variables(automaton, guards)
         for measured in [each for each in automaton.names(Kind.MEASURED) if each in read][:MOST_RELATED]:
-            value = state[measured]
+            value, sentences = state[measured], sentences_of(automaton)
             if value is None:
-                yield message("value.unknown", name=measured)
+                said = message("value.unknown", name=sentences.call_variable(measured))
+                yield message("value.unknown", name=measured), said
             else:
-                yield sentences_of(automaton).write_value(measured, value)
+                told = message("offer.so", condition=sentences.tell_value(measured, value))
+                yield sentences.write_value(measured, value), told
 
     def check(self, command: CorrectEstimates | DecideOutputs) -> None:
         """Raises `CommandRefused` when it could not be carried out now."""

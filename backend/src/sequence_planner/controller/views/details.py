@@ -13,13 +13,16 @@ from sequence_planner.texts.message import Message
 
 
 class CorrectedView(View):
-    """An estimate and the value that it is to have. `related` is what is measured that bears on it, as it is now."""
+    """An estimate and the value that it is to have. `related` is what is measured that bears on it, as it is now, and
+    `related_messages` is that in words.
+    """
 
     name: str
     now: Value
     then: Value
     belief: BeliefView
     related: list[str]
+    related_messages: list[Message]
 
 
 class CorrectionPreview(View):
