@@ -121,6 +121,13 @@ test.describe('every page', () => {
 	}
 });
 
+test('History tells what was done in the language of the page, though it was recorded in English', async ({ operate, watch, browse }) => {
+	await restsOnPerson(operate, watch);
+	const page = await browse(null, '/history', { ...DESK, locale: 'sv-SE' });
+	await expect(page.locator('main')).toContainText('Sätt i skruvpar', { timeout: 30_000 });
+	await expect(page.locator('main')).not.toContainText('Place bolt pair');
+});
+
 test('the theme that was chosen is kept', async ({ operate }) => {
 	const ground = (): Promise<string> =>
 		operate.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);

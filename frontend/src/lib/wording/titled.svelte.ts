@@ -10,6 +10,11 @@ export function tellTitles(known: PartNames | null): void {
 	names = known;
 }
 
+/** The titles as they are known: what is made of a document that is not followed is made again when they are others. */
+export function titlesNow(): Titles {
+	return titles;
+}
+
 /** A document in the language of the page. Whoever reads it where it is derived gets another one with another language. */
 export function titled<Value>(document: Value): Value {
 	return titles.in(document);

@@ -9,7 +9,8 @@ const NAMES: PartNames = {
 	resources: { robot: { en: 'Robot', sv: 'Roboten' }, tool: { en: 'Tool', sv: 'Verktyget' }, other: { en: 'Tool', sv: 'Redskapet' } },
 	abilities: { 'robot.move(home)': { en: 'Move home', sv: 'Kör hem' } },
 	tasks: { 'robot.move(home)': { en: 'Push the arm home.', sv: 'För armen hem.' } },
-	operations: { tighten: { en: 'Tighten', sv: 'Dra åt' } }
+	operations: { tighten: { en: 'Tighten', sv: 'Dra åt' } },
+	work_masters: { engine: { en: 'An engine', sv: 'En motor' } }
 };
 const swedish = (): Titles => new Titles(NAMES, 'sv');
 
@@ -20,6 +21,7 @@ test('a title is told in the language where it and the name beside or above it a
 		operations: { tighten: { title: 'Tighten' } },
 		plan: { steps: [{ ability: 'robot.move(home)', title: 'Move home', resource: 'robot' }] },
 		tasks: { 'a-1': { ability: 'robot.move(home)', title: 'Move home', text: 'Push the arm home.', movers: [{ name: 'tool', title: 'Tool', moves: ['Move home', 'Tool', 'Fan'] }] } },
+		in_work: [{ job: null, work_master: 'engine', title: 'An engine' }],
 		silent: ['Robot']
 	};
 	expect(swedish().in(view)).toEqual({
@@ -30,6 +32,7 @@ test('a title is told in the language where it and the name beside or above it a
 		tasks: {
 			'a-1': { ability: 'robot.move(home)', title: 'Kör hem', text: 'För armen hem.', movers: [{ name: 'tool', title: 'Verktyget', moves: ['Kör hem', 'Tool', 'Fan'] }] }
 		},
+		in_work: [{ job: null, work_master: 'engine', title: 'En motor' }],
 		silent: ['Roboten']
 	});
 });

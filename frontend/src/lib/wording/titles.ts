@@ -14,7 +14,7 @@ export type PartNames = Pick<Names, 'station' | 'resources' | 'abilities' | 'tas
 /** Lists of the titles of parts, without names. */
 const LISTS: ReadonlySet<string> = new Set(['silent', 'failing', 'next_moves', 'moves', 'lacks', 'by']);
 /** Under which names stand in documents, other than as the key of what has the title. */
-const NAMES = ['name', 'ability', 'operation'] as const;
+const NAMES = ['name', 'ability', 'operation', 'work_master'] as const;
 const STATION = 'station';
 /** These have names of another kind, and a station may have thousands. */
 const UNTITLED = 'variables';
