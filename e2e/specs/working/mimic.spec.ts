@@ -70,7 +70,7 @@ test('the picture is one stop of the Tab key, and shows a thing with Enter @them
 
 	await operate.getByRole('button', { name: 'in words' }).click();
 	const words = operate.getByRole('table', { name: /^Live picture of/ });
-	await expect(words.getByRole('row', { name: /^Cover plate/ })).toContainText('bolt pair 1');
+	await expect(words.getByRole('row', { name: /^Cover plate/ })).toContainText('Bolt pair 1: ');
 	expect(await findings(operate)).toEqual([]);
 	await operate.getByRole('button', { name: 'in words' }).click();
 });

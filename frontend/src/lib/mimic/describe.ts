@@ -7,7 +7,8 @@ import { told } from '#lib/text/message.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { capital } from '#lib/wording/capital.ts';
 import { inSentence } from '#lib/wording/names.svelte.ts';
-import { plain, valueText, variableName } from '#lib/wording/values.ts';
+import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
+import { plain, valueText } from '#lib/wording/values.ts';
 import { holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 
 export interface Now {
@@ -57,7 +58,7 @@ export function nowOf(symbol: MimicSymbol, view: StationView, found: Found, lang
 	if (key === undefined) return { text: resource === null || symbol.parts.length > 0 ? '' : texts.rests, tone };
 	const value = valueOf(variables, key);
 	const told = value === null ? say().common.unknown : valueText(value);
-	return { text: capital(texts.is(variableName(key, resource), told)), tone: value === null ? 'doubt' : tone };
+	return { text: capital(texts.is(nameOfVariable(key, resource), told)), tone: value === null ? 'doubt' : tone };
 }
 
 function whereNow(track: MimicTrack, view: StationView, active: boolean, language: string): Now {

@@ -2,7 +2,7 @@
 import type { Mimic, MimicSymbol, Priority, StationView } from '#lib/contract.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
-import { variableName } from '#lib/wording/values.ts';
+import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
 import { keysOf, nameOf, nowOf, partValue, type Now } from './describe.ts';
 import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
 
@@ -41,12 +41,12 @@ function details(symbol: MimicSymbol, view: StationView, language: string): stri
 	if (symbol.level !== null && level !== null)
 		found.push(
 			texts.is(
-				variableName(symbol.level.variable, symbol.resource),
+				nameOfVariable(symbol.level.variable, symbol.resource),
 				texts.of(Number(valueOf(variables, symbol.level.variable)), symbol.level.highest)
 			)
 		);
 	for (const part of symbol.parts) {
-		const name = inLanguage(part.title, language) || variableName(part.variable, null);
+		const name = inLanguage(part.title, language) || nameOfVariable(part.variable, null);
 		found.push(texts.is(name, partValue(part, variables, language)));
 	}
 	return found;

@@ -1,6 +1,7 @@
 /** What is said of a station in the language of the page, made of the messages with which the controller tells it. */
 import type { Alarm, Argument, Item, Message } from '#lib/contract.ts';
 import { language, say } from '#lib/text/text.svelte.ts';
+import { titledAlone } from '#lib/wording/titled.svelte.ts';
 
 /** `{name}`, or `{name|waits|wait}` for what is said of one and of several. */
 const PLACE = /\{(\w+)(?:\|([^|}]*)\|([^|}]*))?\}/g;
@@ -75,7 +76,8 @@ function isOne(argument: Argument): boolean {
 }
 
 function worded(argument: Argument, catalogue: Catalogue): string | null {
-	if (typeof argument === 'string') return argument;
+	// A title in what was recorded is in English alone.
+	if (typeof argument === 'string') return titledAlone(argument);
 	if (typeof argument === 'number') return String(argument);
 	if (Array.isArray(argument)) return listed(argument, catalogue);
 	if ('words' in argument) return argument.words[catalogue.language] ?? argument.words['en'] ?? Object.values(argument.words)[0] ?? '';

@@ -15,6 +15,11 @@ export function titlesNow(): Titles {
 	return titles;
 }
 
+/** A title that stands alone in the language of the page. */
+export function titledAlone(text: string): string {
+	return titles.alone(text);
+}
+
 /** A document in the language of the page. Whoever reads it where it is derived gets another one with another language. */
 export function titled<Value>(document: Value): Value {
 	return titles.in(document);

@@ -50,6 +50,11 @@ export class Titles {
 		}
 	}
 
+	/** A title that stands alone, as in what was recorded; itself where it is none, or parts that have it are called otherwise. */
+	alone(text: string): string {
+		return this.#alone.get(text) ?? text;
+	}
+
 	/** A document of the server with titles in the language. What has none keeps its identity, and so does what was made once. */
 	in<Value>(value: Value): Value {
 		return this.#in(value, '') as Value;
@@ -70,7 +75,7 @@ export class Titles {
 	#list(list: readonly unknown[], key: string): readonly unknown[] {
 		let made: unknown[] | null = null;
 		for (const [index, each] of list.entries()) {
-			const next = typeof each === 'string' && LISTS.has(key) ? (this.#alone.get(each) ?? each) : this.#in(each, '');
+			const next = typeof each === 'string' && LISTS.has(key) ? this.alone(each) : this.#in(each, '');
 			if (next !== each) (made ??= [...list])[index] = next;
 		}
 		return made ?? list;
