@@ -6,6 +6,7 @@ import { runs } from '#lib/resource/running.ts';
 import { told } from '#lib/text/message.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { capital } from '#lib/wording/capital.ts';
+import { listed } from '#lib/wording/listed.ts';
 import { inSentence } from '#lib/wording/names.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';
@@ -159,7 +160,7 @@ export function happening(view: StationView): string {
 	if (running.length === 0) {
 		// What a condition is called is told, never how it is written.
 		const waits = next === undefined ? '' : told(next.sentence, '');
-		if (view.silent.length > 0) return texts.unheard(view.silent.join(', '));
+		if (view.silent.length > 0) return texts.unheard(listed(view.silent), view.silent.length);
 		return waits === '' ? texts.nothingMoves : texts.nothingMovesAnd(waits);
 	}
 	const then = next === undefined ? null : inSentence(next.title);

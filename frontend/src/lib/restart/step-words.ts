@@ -3,6 +3,7 @@ import type { AdviceAnswer, StationView } from '#lib/contract.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told, wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { listed } from '#lib/wording/listed.ts';
 import { modeMeaning } from '#lib/wording/station.ts';
 import { clockText } from '#lib/wording/time.ts';
 import { sayActs } from './act-words.ts';
@@ -54,7 +55,7 @@ function happened(view: StationView): string {
 	const moving = Object.values(view.abilities).filter(runs).map(({ resource }) => resourceTitle(view, resource));
 	const said = [first ? ended(firstOf(wordsOf(first[1]).text)) : modeMeaning(view)];
 	if (moving.length > 0) said.push(texts.moving([...new Set(moving)].join(', ')));
-	if (view.silent.length > 0) said.push(texts.unheard(view.silent.join(', ')));
+	if (view.silent.length > 0) said.push(texts.unheard(listed(view.silent), view.silent.length));
 	return said.length > 1 ? said.join(' ') : `${said.join('')} ${texts.still}`;
 }
 

@@ -1,6 +1,7 @@
 /** What somebody who is asked for something has to know of the station first. */
 import type { Priority, Standing, StationView, WatchSnapshot } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { listed } from '#lib/wording/listed.ts';
 
 /** How much of somebody's attention it wants. */
 export type Tone = 'plain' | 'medium' | 'high';
@@ -13,8 +14,8 @@ export function whyItStands(standing: Standing): string {
 /** What is not as it should be: why the station stands, or which devices it does not hear, or which of the others do not work. */
 export function stateText(standing: Standing, silent: readonly string[], failing: readonly string[]): string {
 	if (whyItStands(standing)) return whyItStands(standing);
-	if (silent.length > 0) return say().watch.silent(silent.join(', '));
-	return failing.length > 0 ? say().watch.failing(failing.join(', ')) : '';
+	if (silent.length > 0) return say().watch.silent(listed(silent));
+	return failing.length > 0 ? say().watch.failing(listed(failing)) : '';
 }
 
 /** How much attention that wants: somebody's help, as urgently as the alarm of it says, or that one keeps clear. */

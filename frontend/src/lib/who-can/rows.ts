@@ -2,6 +2,7 @@
 import { isOver } from '#lib/alarm/priority.ts';
 import type { Alarm, WhoCan } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { listed } from '#lib/wording/listed.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import type { Row } from './who-can-rows.svelte';
 
@@ -31,7 +32,7 @@ function split<T extends Told>(every: readonly T[], said: (each: T) => string): 
 
 export const whoCanText = {
 	/** What each lacks that nobody can do. */
-	nobody: ({ nobody }: WhoCan): Rows => split(nobody, ({ lacks }) => say().operate.whoCan.lacks(lacks.join(', '))),
+	nobody: ({ nobody }: WhoCan): Rows => split(nobody, ({ lacks }) => say().operate.whoCan.lacks(listed(lacks))),
 
 	/** By whom the others can be done, and what has to be so first. */
 	others: ({ others }: WhoCan): Rows =>

@@ -9,6 +9,7 @@ export const figures = {
 	noProduct: 'No product',
 	ready: (time: string): string => `ready ${time}`,
 	since: (time: string): string => `since ${time}`,
+	paused: 'order paused',
 	made: 'Made today',
 	madeInShift: 'Made this shift',
 	today: (count: number, planned: number | null): string => (planned === null ? `${count} today` : `${count} of ${planned} today`),

@@ -11,7 +11,7 @@ export const mimic = {
 	towards: (stop: string): string => `→ ${stop}`,
 	atWork: (stop: string, work: string): string => `${stop} · ${work}`,
 	nothingMoves: 'Nothing moves',
-	unheard: (names: string): string => `Nobody knows whether ${names} moves`,
+	unheard: (names: string, n: number): string => `Nobody knows whether ${names} ${n === 1 ? 'moves' : 'move'}`,
 	nothingMovesAnd: (waits: string): string => `Nothing moves: ${waits}`,
 	then: (now: string, next: string): string => `${now}, then ${next}`,
 	andMore: (named: string, more: number): string => `${named} and ${more} more`,

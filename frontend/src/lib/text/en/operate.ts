@@ -164,7 +164,13 @@ export const operate = {
 		goesOn: 'by what is already under way',
 		once: (what: string): string => `as soon as ${what}`,
 		later: (n: number): string => (n === 1 ? '1 that comes later' : `${n} that come later`),
-		absent: { silent: 'is not heard', 'out of service': 'is out of service' } as Readonly<Record<string, string>>
+		/** How many of each there are, where it is not told in full. */
+		counts: (nobody: number, others: number): string =>
+			[nobody > 0 ? `${nobody} cannot be done now` : '', others > 0 ? `${others} can still be done` : ''].filter(Boolean).join(' · '),
+		absent: {
+			silent: (n: number): string => (n === 1 ? 'is not heard' : 'are not heard'),
+			'out of service': (n: number): string => (n === 1 ? 'is out of service' : 'are out of service')
+		} as Readonly<Record<string, (n: number) => string>>
 	},
 	topics: {
 		title: 'Topics',

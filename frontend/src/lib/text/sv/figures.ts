@@ -10,6 +10,7 @@ export const figures: Text['figures'] = {
 	noProduct: 'Ingen produkt',
 	ready: (time) => `klar ${time}`,
 	since: (time) => `sedan ${time}`,
+	paused: 'ordern pausad',
 	made: 'Gjort i dag',
 	madeInShift: 'Gjort under skiftet',
 	today: (count, planned) => (planned === null ? `${count} i dag` : `${count} av ${planned} i dag`),

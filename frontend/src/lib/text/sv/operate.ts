@@ -162,7 +162,9 @@ export const operate: Text['operate'] = {
 		goesOn: 'av det som redan pågår',
 		once: (what) => `så snart ${what}`,
 		later: (n) => (n === 1 ? '1 som kommer senare' : `${n} som kommer senare`),
-		absent: { silent: 'hörs inte', 'out of service': 'är ur drift' }
+		counts: (nobody, others) =>
+			[nobody > 0 ? `${nobody} kan inte göras nu` : '', others > 0 ? `${others} kan fortfarande göras` : ''].filter(Boolean).join(' · '),
+		absent: { silent: () => 'hörs inte', 'out of service': () => 'är ur drift' }
 	},
 	topics: {
 		title: 'Topics',

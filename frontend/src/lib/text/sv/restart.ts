@@ -148,7 +148,7 @@ export const restart: Text['restart'] = {
 		kept: 'Stationen har ändrats.',
 		retry: 'Inget svar: det efterfrågas igen av sig självt.',
 		lookAgain: 'Sök igen',
-		found: (seconds) => `Alla vägar söktes på ${seconds} s; det finns inga andra.`,
+		found: 'Alla vägar söktes; det finns inga andra.',
 		noneFits: 'Inget av detta passar…',
 		gone: 'Vägen som du hade valt erbjuds inte längre.',
 		choose: 'Välj en väg för att se vad som händer då.',
