@@ -9,8 +9,10 @@ import pytest
 from pydantic import TypeAdapter
 
 from editor.shorthand import SHORTHAND
+from sequence_planner.automaton.findings import title_of
 from sequence_planner.automaton.grounding import ground
 from sequence_planner.automaton.lifting.sentences import sentences_of
+from sequence_planner.language.types import EnumerationType
 from sequence_planner.model.loader import load_station
 from sequence_planner.texts.message import Message, Title, message
 
@@ -109,6 +111,24 @@ def test_a_part_has_its_title_in_each_language_with_what_its_parameters_are_call
     assert pickle.loads(pickle.dumps(title)).words == SAID
     flag = sentences_of(ground(load_station(spoken))).tell_value("arm.move(out).executing", True)
     assert flag.words["sv"].startswith("”Kör till utgången”")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("move", "home", "Move: home"),
+        ("go_to_spot", "spot_3", "Go to spot 3"),
+        ("place_bolt_pair", "bolt_pair_3", "Place bolt pair 3"),
+        ("open", "open", "Open"),
+    ],
+)
+def test_one_of_several_without_a_title_is_told_from_the_others(name: str, value: str, told: str) -> None:
+    of = EnumerationType((value,))
+    title = title_of(None, name, {"one": (value, of)})
+    assert title == name.replace("_", " "), "what is recorded keeps the letters of the name"
+    assert isinstance(title, Title)
+    assert title.words == {"": title, "en": told, "sv": told}
+    assert not isinstance(title_of(None, name, {}), Title)
 
 
 def test_a_message_tells_a_title_in_the_language_of_who_reads_it(spoken: Path) -> None:

@@ -12,6 +12,7 @@ from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.fields import Words, WordsDocument, by_language, main_text
 from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.texts.message import Title
+from sequence_planner.texts.names import in_words
 
 # What each parameter is: its value, and the enumeration it is of.
 Binding = Mapping[str, tuple[str, EnumerationType]]
@@ -86,10 +87,30 @@ def with_values(text: str, binding: Binding) -> str:
 def title_of(text: Words | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
     """The title of a part, or its name in plain words; with it what it is in other languages, where those are given."""
     told = readable(main_text(text), name, binding, titles)
+    if text is None and name and binding:
+        languages = WordsDocument.model_fields
+        return Title(told, {"": told} | {each: _spoken(name, binding, titles, each) for each in languages})
     if not isinstance(text, WordsDocument):
         return told
     said = by_language(text).items()
     return Title(told, {language: readable(each, name, binding, titles, language) for language, each in said})
+
+
+def _spoken(name: str, binding: Binding, titles: Titles, language: str) -> str:
+    """The name of one of several in plain words with its arguments, by which people tell it from the others.
+
+    What the name ends with and an argument begins with is said once: `place_bolt_pair(bolt_pair_3)` is
+    `Place bolt pair 3`, and `move_to_position(home)` is `Move to position: home`.
+    """
+    words = in_words(name).split()
+    called = [
+        in_language(titles.of_value(type_, value), language) or in_words(value) for value, type_ in binding.values()
+    ]
+    first, *others = called
+    rest = first.split()
+    shared = next((n for n in range(min(len(words), len(rest)), 0, -1) if words[-n:] == rest[:n]), 0)
+    told = " ".join([*words, *rest[shared:]]) if shared else f"{' '.join(words)}: {first}"
+    return ", ".join([told[:1].upper() + told[1:], *others])
 
 
 def own_title(text: Words | None, name: str) -> str:

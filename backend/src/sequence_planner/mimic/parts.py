@@ -14,6 +14,9 @@ from sequence_planner.model.mimic.documents import Look
 MOST_PARTS: Final = 240  # of one variable: more could not be told apart
 
 
+_BELOW_RING: Final = 17  # units: around what is worked on there is a ring
+
+
 def label_place(
     marks: Sequence[tuple[float, float]], size: float, side: Literal["below", "right"]
 ) -> tuple[float, float]:
@@ -21,7 +24,7 @@ def label_place(
     x, y = (sum(each) / len(marks) for each in zip(*marks, strict=True))
     if side == "right":
         return max(each for each, _ in marks) + size * 0.9, y
-    return x, y + (size * 1.4 if len(marks) == 1 else 4)
+    return x, y + (max(size * 1.4, size / 2 + _BELOW_RING) if len(marks) == 1 else 4)
 
 
 def looks_of(of: Type) -> dict[str, Look]:

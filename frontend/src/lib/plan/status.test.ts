@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import type { Operation } from '#lib/contract.ts';
+import type { Job, Operation } from '#lib/contract.ts';
 import { alarm, PLAN, step, view } from '#lib/testing/view.ts';
 import { isUnheard, nothingNext } from './status.ts';
 
@@ -14,6 +14,7 @@ test.each([
 	['followed', view()],
 	['planning', view({ plan: idle, operations: { a: active } })],
 	['idle', view({ plan: idle, operations: { a: { ...active, active: false } } })],
+	['order', view({ plan: idle, jobs: { a: { state: 'paused' } as Job } })],
 	['none', view({ mode: 'restart', plan: { ...PLAN, status: 'none' } })]
 ])('no next start is said as %s, and never as nothing to plan while something is active', (said, station) => {
 	expect(nothingNext(station)).toBe(said);

@@ -20,7 +20,8 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 	if (plan.steps.some((step) => step.status === 'running')) return 'waits';
 	if (plan.status === 'followed') return 'followed';
 	// What is active is planned for as soon as the controller comes to it.
-	return Object.values(view.operations).some((operation) => operation.active) ? 'planning' : 'idle';
+	if (Object.values(view.operations).some((operation) => operation.active)) return 'planning';
+	return Object.values(view.jobs).some(({ state }) => state === 'paused') ? 'order' : 'idle';
 }
 
 /** Kinds of alarms that tell that a device does not do what it should. */

@@ -83,3 +83,20 @@ test('change by change the same is told as of the whole at once', () => {
 		})
 	);
 });
+
+test('what has no title is called by its name, as a heading, and one of several is told from the others', () => {
+	const name = 'operator.place_pair(pair_3)';
+	const known = { ...NONE, abilities: { [name]: { '': 'place pair', en: 'Place pair 3', sv: 'Place pair 3' } } };
+	const view = {
+		station: { name: 'bolt_station', title: 'bolt_station' },
+		resources: { smart_tool: { title: 'smart tool' }, robot: { title: 'the robot' } },
+		plan: { steps: [{ ability: name, title: 'place pair' }] },
+		operations: { bring_kit: { title: 'bring kit' } }
+	};
+	expect(new Titles(known, 'en').in(view)).toEqual({
+		station: { name: 'bolt_station', title: 'Bolt station' },
+		resources: { smart_tool: { title: 'Smart tool' }, robot: { title: 'the robot' } },
+		plan: { steps: [{ ability: name, title: 'Place pair 3' }] },
+		operations: { bring_kit: { title: 'Bring kit' } }
+	});
+});

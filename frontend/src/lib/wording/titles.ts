@@ -6,6 +6,7 @@
  * what was recorded of another model, stays as it is.
  */
 import type { Names } from '#lib/contract.ts';
+import { capital } from './capital.ts';
 
 type Words = Readonly<Record<string, string>>;
 /** Parts that have titles by language. */
@@ -18,6 +19,12 @@ const NAMES = ['name', 'ability', 'operation', 'work_master'] as const;
 const STATION = 'station';
 /** These have names of another kind, and a station may have thousands. */
 const UNTITLED = 'variables';
+
+/** Whether a title is no title, but what the part is called in the model: `robot`, `place bolt pair` or `bolt_tightening`. */
+function isNameOf(text: string, name: string): boolean {
+	const own = name.replace(/[[(].*$/, '').split('.').at(-1) ?? '';
+	return text === own || text === own.replaceAll('_', ' ');
+}
 
 /** What a document was before it had titles in a language. */
 const written = new WeakMap<object, object>();
@@ -40,7 +47,8 @@ export class Titles {
 
 	#learn(into: Map<string, Map<string, string>>, parts: Readonly<Record<string, Words>>, language: string): void {
 		for (const [name, words] of Object.entries(parts)) {
-			const told = words['en'] ?? Object.values(words)[0];
+			// What has no title of its own is told by its name, and has words to be told apart.
+			const told = words[''] ?? words['en'] ?? Object.values(words)[0];
 			const title = words[language] ?? told;
 			if (told === undefined || title === undefined) continue;
 			const known = into.get(name) ?? new Map<string, string>();
@@ -63,7 +71,6 @@ export class Titles {
 	#in(value: unknown, key: string): unknown {
 		if (typeof value !== 'object' || value === null) return value;
 		const plain = written.get(value) ?? value;
-		if (this.#alone.size === 0) return plain;
 		const before = this.#made.get(plain);
 		if (before !== undefined) return before;
 		const made = Array.isArray(plain) ? this.#list(plain, key) : this.#object(plain as Readonly<Record<string, unknown>>, key);
@@ -99,6 +106,7 @@ export class Titles {
 		for (const name of [...NAMES.map((each) => from[each]), key, STATION in from ? STATION : null]) {
 			const title = typeof name === 'string' ? this.#parts.get(name)?.get(text) : undefined;
 			if (title !== undefined) return title;
+			if (typeof name === 'string' && isNameOf(text, name)) return capital(text.replaceAll('_', ' '));
 		}
 		return text;
 	}

@@ -84,6 +84,7 @@ export const frame = {
 	/** What is said in the place of the next start where there is none. */
 	nothingNext: {
 		idle: 'nothing to plan',
+		order: 'the order is paused; it is resumed under Orders',
 		planning: 'a plan is being looked for',
 		followed: 'nothing more to start',
 		waits: 'waits for the running steps',

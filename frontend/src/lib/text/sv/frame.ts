@@ -78,6 +78,7 @@ export const frame: Text['frame'] = {
 	mayStart: 'får starta nu',
 	nothingNext: {
 		idle: 'inget att planera',
+		order: 'ordern är pausad; den återupptas under Order',
 		planning: 'en plan söks',
 		followed: 'inget mer att starta',
 		waits: 'väntar på stegen som pågår',
