@@ -39,7 +39,12 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	await expect(tightened).not.toHaveCount(6);
 	await expect(operate.getByTestId('who-can')).toHaveCount(0);
 	await station.fault('robot offline');
+	const panel = operate.getByRole('region', { name: 'Who can do what' });
+	// The operations stay in sight below it.
+	await expect(panel).toContainText('cannot be done now');
 	const said = operate.getByTestId('who-can');
+	await expect(said).toBeHidden();
+	await panel.getByRole('heading').click();
 	await expect(said).toBeVisible();
 	// Why it is so is said once, by the alarm above it.
 	await expect(operate.getByTestId('restart-notice').getByRole('heading', { level: 2 })).toContainText(ROBOT, { timeout: 30_000 });
