@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Job, StationView } from '#lib/contract.ts';
 import { alarm, operation, PLAN, step, view } from '#lib/testing/view.ts';
-import { standingsOf } from './standing.ts';
+import { standingsOf, stoppedTone } from './standing.ts';
 
 const standings = (over: Partial<StationView>): Record<string, string> => Object.fromEntries(standingsOf(view(over)));
 
@@ -41,4 +41,7 @@ test('one of which a step comes to no end has stopped, until that is over', () =
 	expect(at({ ...overdue, ended: 150 })).toEqual({ tighten: 'active', place: 'active' });
 	expect(at({ ...overdue, since: 99 })).toEqual({ tighten: 'active', place: 'active' });
 	expect(at({ ...overdue, kind: 'silent' })).toEqual({ tighten: 'active', place: 'active' });
+	// It is as urgent as the alarm that says so.
+	const tone = (priority: 'high' | 'medium'): string | null => stoppedTone(view({ plan: { ...PLAN, steps }, alarms: { overdue: { ...overdue, priority } } }));
+	expect([tone('medium'), tone('high'), stoppedTone(view())]).toEqual(['medium', 'high', null]);
 });

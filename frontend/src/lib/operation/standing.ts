@@ -1,5 +1,5 @@
 /** How far operations are. */
-import type { Operation, PlanStep, StationView } from '#lib/contract.ts';
+import type { Operation, PlanStep, Priority, StationView } from '#lib/contract.ts';
 import { stoppedBy } from '#lib/plan/status.ts';
 import { askedFor } from './asked.ts';
 
@@ -19,6 +19,12 @@ export function standingsOf(view: StationView): Map<string, OperationStanding> {
 			return [name, done ? 'done' : 'waits'];
 		})
 	);
+}
+
+/** How urgent it is that steps came to no end: the most urgent alarm that says so; null where all go on. */
+export function stoppedTone({ plan, alarms }: StationView): Priority | null {
+	const all = plan.steps.map((step) => stoppedBy(step, plan.steps, alarms));
+	return (['high', 'medium', 'low'] as const).find((priority) => all.includes(priority)) ?? null;
 }
 
 /** Whether what the plan does for an operation is done with this step too. */
