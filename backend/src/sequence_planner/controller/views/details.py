@@ -74,7 +74,8 @@ class NamesView(View):
     """What all variables are called. `values` has each set of words once: by value, and then by language.
 
     The others are the titles of the station and of its parts by language, of those parts that have them by language;
-    `tasks` what is asked of people, by ability.
+    `tasks` what is asked of people, by ability. One of several without a title has words to be told apart;
+    what stands for it elsewhere is under no language.
     """
 
     variables: dict[str, VariableNameView]
