@@ -40,14 +40,13 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	await expect(operate.getByTestId('who-can')).toHaveCount(0);
 	await station.fault('robot offline');
 	const panel = operate.getByRole('region', { name: 'Who can do what' });
-	// The operations stay in sight below it.
+	// Why it is so is said once, by the alarm above it; the operations stay in sight below it.
+	await expect(operate.getByTestId('restart-notice').getByRole('heading', { level: 2 })).toContainText(ROBOT, { timeout: 30_000 });
 	await expect(panel).toContainText('cannot be done now');
 	const said = operate.getByTestId('who-can');
 	await expect(said).toBeHidden();
 	await panel.getByRole('heading').click();
 	await expect(said).toBeVisible();
-	// Why it is so is said once, by the alarm above it.
-	await expect(operate.getByTestId('restart-notice').getByRole('heading', { level: 2 })).toContainText(ROBOT, { timeout: 30_000 });
 	await expect(said.locator('[data-absent="robot"]')).toHaveCount(0);
 	await expect(operate.getByTestId('mode')).not.toHaveClass(/\bwell\b/);
 	await expect(group(operate, 'nobody')).toContainText(`needs ${ROBOT}`);
