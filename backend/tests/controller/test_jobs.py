@@ -215,7 +215,7 @@ def test_a_job_is_paused_and_goes_on(on: Bench) -> None:
     assert len(on.records) == records, "to repeat it changes nothing"
     on.tick()
     assert on.execution.active == {"sweep"}
-    assert (on.jobs["a"].state, on.jobs["a"].waits_for) == ("paused", ["the job to be resumed"])
+    assert (on.jobs["a"].state, on.jobs["a"].waits_for) == ("paused", ["somebody to resume it"])
     on.correct({"content": "full"})
     on.ticks()
     assert on.steps("a")["fill_it"] == "waiting"
@@ -343,7 +343,7 @@ def test_why_an_operation_is_not_active(on: Bench) -> None:
     on.tick()
     assert why("fill_it") == "another job that asks for it: for Job a it is completed"
     on.tell("a", "pause")
-    assert why("check_it") == "Job a to be resumed"
+    assert why("check_it") == "somebody to resume Job a"
     on.tell("a", "stop")
     assert why("check_it") == "another job that asks for it: Job a is being stopped"
 

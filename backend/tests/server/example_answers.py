@@ -94,7 +94,9 @@ OFFER = OfferView(
     in_service=[],
     assumed=[],
     corrections=[
-        ValueChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed", so=as_it_was("pair 1 is placed"))
+        ValueChangeView(
+            name="bolts[bolt_pair_1]", now="empty", then="placed", so=as_it_was("pair 1 is placed"), by_hand=None
+        )
     ],
     errand=PLAN,
     ends="robot.pose == home",

@@ -85,24 +85,30 @@ def with_values(text: str, binding: Binding) -> str:
 
 
 def title_of(text: Words | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
-    """The title of a part, or its name in plain words; with it what it is in other languages, where those are given."""
+    """The title of a part, or its name in plain words; with it what it is in other languages, where those are given.
+
+    Of several parts in one whose title names none of the parameters, people are told the arguments behind it.
+    """
     told = readable(main_text(text), name, binding, titles)
-    if text is None and name and binding:
-        languages = WordsDocument.model_fields
-        return Title(told, {"": told} | {each: _spoken(name, binding, titles, each) for each in languages})
+    said = by_language(text)
+    if name and binding and not any(f"{{{each}}}" in words for words in said.values() for each in binding):
+        spoken = {
+            each: _spoken(said.get(each) or main_text(text) or in_words(name), binding, titles, each)
+            for each in WordsDocument.model_fields
+        }
+        return Title(told, {"": told} | spoken)
     if not isinstance(text, WordsDocument):
         return told
-    said = by_language(text).items()
-    return Title(told, {language: readable(each, name, binding, titles, language) for language, each in said})
+    return Title(told, {language: readable(each, name, binding, titles, language) for language, each in said.items()})
 
 
-def _spoken(name: str, binding: Binding, titles: Titles, language: str) -> str:
-    """The name of one of several in plain words with its arguments, by which people tell it from the others.
+def _spoken(title: str, binding: Binding, titles: Titles, language: str) -> str:
+    """A title, or a name in plain words, of one of several with its arguments, which tell it from the others.
 
-    What the name ends with and an argument begins with is said once: `place_bolt_pair(bolt_pair_3)` is
+    What it ends with and an argument begins with is said once: `place_bolt_pair(bolt_pair_3)` is
     `Place bolt pair 3`, and `move_to_position(home)` is `Move to position: home`.
     """
-    words = in_words(name).split()
+    words = title.split()
     called = [
         in_language(titles.of_value(type_, value), language) or in_words(value) for value, type_ in binding.values()
     ]

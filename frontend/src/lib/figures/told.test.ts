@@ -48,7 +48,7 @@ test('a share is told as people of the language write it', () => {
 });
 
 const EARLY = { name: 'early', title: { en: 'Early shift', sv: 'Förmiddag' }, begins: 0, begins_at: AT, ends: 28_800, ends_at: AT };
-const DAY = { since: 10, since_at: AT, share: 0.5, counted: 4, available: 2, trend: [] };
+const DAY = { since: 10, since_at: AT, share: 0.5, counted: 400, available: 200, trend: [] };
 
 test('the availability is that of the shift that is on, be it known or not', () => {
 	const trend = [{ time: 600, time_at: AT, share: 1 }];
@@ -68,4 +68,5 @@ test('outside of a shift it is that of the day, and it is said that there is non
 	expect(found.figure?.share).toBe(0.5);
 	expect(worked(figures({ availability: DAY }), 100)).toMatchObject({ head: 'Available today', times: null });
 	expect(worked(null, 100).figure).toBeNull();
+	expect(worked(figures({ availability: { ...DAY, counted: 2 } }), 100).figure, 'of two seconds it says nothing').toBeNull();
 });

@@ -71,20 +71,23 @@ export interface Worked {
 	readonly figure: { readonly since: number; readonly share: number; readonly trend: readonly number[] } | null;
 }
 
+/** Seconds: of fewer a share says nothing. */
+const LEAST = 15;
+
 /** The availability of the shift that is on, or else of the day; times are told as seen `now`. */
 export function worked(figures: Figures | null, now: number): Worked {
 	const texts = say().figures;
 	const title = (shift: NonNullable<Figures['next_shift']>): string => inLanguage(shift.title, language());
 	const [on, next] = [figures?.shift, figures?.next_shift];
 	const found = on ? on.availability : figures?.availability;
-	const figure = found && { since: found.since, share: found.share, trend: [...found.trend.map(({ share }) => share), found.share] };
+	const figure = found && found.counted >= LEAST && { since: found.since, share: found.share, trend: [...found.trend.map(({ share }) => share), found.share] };
 	if (on) {
 		const times = texts.shiftTimes(title(on), clockText(on.begins, now), clockText(on.ends, now));
-		return { head: texts.availableIn(title(on)), times, figure: figure ?? null };
+		return { head: texts.availableIn(title(on)), times, figure: figure || null };
 	}
 	return {
 		head: next ? texts.noShift : texts.available,
 		times: next ? texts.nextShift(title(next), clockText(next.begins, now)) : null,
-		figure: figure ?? null
+		figure: figure || null
 	};
 }

@@ -5,7 +5,7 @@ import { choiceOf, waysOf, type Choice } from './choice.ts';
 
 const MOVE = offer({ id: 'life-1', kind: 'restart', title: 'Move to the pose above the engine', errand: preview('move') });
 const RUN = offer({ id: 'life-2', kind: 'restart', title: 'Run the nutrunner', errand: preview('run') });
-const SAYS = offer({ id: 'life-3', corrections: [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } }] });
+const SAYS = offer({ id: 'life-3', corrections: [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null }] });
 
 function ways(...offers: WayOffer[]): ReturnType<typeof waysOf> {
 	const answer: AdviceAnswer = { revision: 7, offers, if_checked: [], reasons: null, complete: true, seconds: 0 };

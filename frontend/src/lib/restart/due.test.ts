@@ -27,7 +27,7 @@ describe('ways back are asked for', () => {
 	});
 
 	test('so too where only corrections were found in it, and now and then after that', () => {
-		const guesses = { ...answer, offers: [offer({ corrections: [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } }] })] };
+		const guesses = { ...answer, offers: [offer({ corrections: [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null }] })] };
 		const short = { ...guesses, complete: false };
 		expect(isDue(asked({ answer: short, times: 1 }), 7)).toBe(true);
 		expect(isDue(asked({ answer: short, times: 3 }), 7)).toBe(false);

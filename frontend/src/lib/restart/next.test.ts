@@ -70,7 +70,7 @@ describe('what a person does next', () => {
 	});
 
 	test('is to look, where all that is left is said and not done', () => {
-		const corrections = [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } }];
+		const corrections = [{ name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null }];
 		expect(next({ mode: 'restart' }, advice(offer({ kind: 'correction', corrections })))).toBe('check');
 		const tight = offer({ kind: 'correction', corrections, claims: ['tighten'], only_if_checked: true });
 		expect(next({ mode: 'restart' }, advice(tight))).toBe('check');

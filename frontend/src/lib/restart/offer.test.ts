@@ -5,7 +5,7 @@ import { en } from '#lib/text/en.ts';
 import { asksForHands, canBeTaken, goesOn, goesOnMeanwhile, mayBeWanted, onlySays } from './offer.ts';
 import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, timeWords } from './offer-words.ts';
 
-const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } } };
+const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null };
 
 test('an offer is to be taken, done by hand, or nothing but going on: one of these', () => {
 	const asked = (each: ReturnType<typeof offer>): boolean[] => [asksForHands(each), canBeTaken(each), goesOn(each)];
@@ -52,7 +52,7 @@ test('whoever is to go in holds the station first, where it would go on by itsel
 	expect(goesOnMeanwhile(hands, { ...works, mode: 'hold' })).toBe(false);
 	expect(goesOnMeanwhile(hands, { ...works, mode: 'restart' })).toBe(false);
 	expect(goesOnMeanwhile(hands, { ...works, production: 'waiting' })).toBe(false);
-	expect(goesOnMeanwhile(offer({ online: ['robot'] }), works)).toBe(false);
+	expect(goesOnMeanwhile(offer({ online: ['robot'] }), works)).toBe(true);
 });
 
 test('who says too early that it is done hears what is not so yet', () => {

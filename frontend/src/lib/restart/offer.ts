@@ -7,8 +7,8 @@ export function asksForHands(offer: WayOffer): boolean {
 }
 
 /** Whether the station goes on by itself as soon as a person has done it: whoever goes in holds it first. */
-export function goesOnMeanwhile({ physical }: WayOffer, { mode, production }: Pick<StationView, 'mode' | 'production'>): boolean {
-	return physical.length > 0 && mode === 'automatic' && production === 'started';
+export function goesOnMeanwhile({ physical, online }: WayOffer, { mode, production }: Pick<StationView, 'mode' | 'production'>): boolean {
+	return physical.length + online.length > 0 && mode === 'automatic' && production === 'started';
 }
 
 /** Whether there is something to be taken: starts, a wait, or corrections. */

@@ -1,6 +1,7 @@
 /** What is said of who can do what: of operations that are active, and of those that come later. */
 import { isOver } from '#lib/alarm/priority.ts';
 import type { Alarm, WhoCan } from '#lib/contract.ts';
+import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { listed } from '#lib/wording/listed.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
@@ -36,10 +37,10 @@ export const whoCanText = {
 
 	/** By whom the others can be done, and what has to be so first. */
 	others: ({ others }: WhoCan): Rows =>
-		split(others, ({ by, once }) => {
+		split(others, ({ by, once, once_message }) => {
 			const texts = say().operate.whoCan;
 			const first = Object.entries(once).map(([name, value]) => `${inSentence(nameOf(name, null))}: ${valueOf(name, value)}`);
 			const whom = by.length > 0 ? texts.by(by.join(', ')) : first.length > 0 ? '' : texts.goesOn;
-			return [whom, first.length > 0 ? texts.once(first.join(', ')) : ''].filter((each) => each !== '').join(', ');
+			return [whom, first.length > 0 ? texts.once(told(once_message, first.join(', '))) : ''].filter((each) => each !== '').join(', ');
 		})
 };

@@ -16,12 +16,14 @@ from functools import partial
 import structlog
 
 from sequence_planner.automaton.automaton import Automaton, State
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.views.station import AbsenceReason, AbsenceView, DoableView, NobodyView, WhoCanView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.planning.heuristic.still_possible import Absent, Remaining
+from sequence_planner.texts.message import message
 
 # It is looked at at once when something else is absent or active, else so seldom that it takes a twentieth of a core.
 _SHARE = 20.0
@@ -105,12 +107,18 @@ class _Look:
 
     def _doable(self, now: Remaining, name: str) -> DoableView:
         doing = now.doing(self.automaton.operations[name], name in self.active)
+        once = {each: value for each, value in doing.once if self.state[each] != value}
+        said = sentences_of(self.automaton)
+        condition = said.tell_values(
+            once.items(), " and ".join(said.write_value(each, value) for each, value in once.items())
+        )
         return DoableView(
             operation=name,
             title=self.automaton.operations[name].title,
             active=name in self.active,
             by=[self.automaton.resources[each] for each in doing.by],
-            once={each: value for each, value in doing.once if self.state[each] != value},
+            once=once,
+            once_message=message("waits.condition", condition=condition) if once else None,
         )
 
     def _absences(self) -> Iterator[AbsenceView]:

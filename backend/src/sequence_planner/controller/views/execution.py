@@ -27,11 +27,13 @@ def packml(execution: Executor) -> PackML:
     """The state of PackML that fits; `docs/control.md` says what it is made of."""
     if execution.production is not Production.STARTED:
         return PackML.IDLE
-    moves = bool(execution.running())
+    running = execution.running()
     if execution.mode is Mode.AUTOMATIC:
+        abilities, silent = execution.automaton.abilities, execution.conduct.silent
+        works = any(abilities[name].resource not in silent for name in running)
         followed = execution.plan.status is PlanStatus.FOLLOWED and bool(execution.plan.order.goals)
-        return PackML.EXECUTE if moves or followed else PackML.SUSPENDED
-    moves = moves or execution.operator_plan is not None
+        return PackML.EXECUTE if works or followed else PackML.SUSPENDED
+    moves = bool(running) or execution.operator_plan is not None
     if execution.mode is Mode.RESTART:
         return PackML.CLEARING if moves else PackML.ABORTED
     during, after = _ENDING[execution.mode]

@@ -19,7 +19,7 @@ class ValueChangeView(View):
     now: ShownValue | None
     then: ShownValue
     so: Message
-    by_hand: Message | None = None
+    by_hand: Message | None
 
 
 class PreviewStepView(View):

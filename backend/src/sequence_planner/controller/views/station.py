@@ -373,7 +373,7 @@ class DoableView(View):
     """An operation that may still be completed, as far as is known without a search.
 
     `by` are the titles of the resources that would start something for it. `once` is what somebody has to see to
-    first, by the names of variables.
+    first, by the names of variables; `once_message` says that it is so, in words.
     """
 
     operation: str
@@ -381,6 +381,7 @@ class DoableView(View):
     active: bool
     by: list[str]
     once: dict[str, Value]
+    once_message: Message | None
 
 
 class WhoCanView(View):

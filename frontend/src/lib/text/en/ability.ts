@@ -126,7 +126,7 @@ export const ability = {
 			unseen: 'The station does not run with emulated devices.',
 			sure: 'I have looked: the device may move.',
 			confirm: 'Confirm that the device may move.',
-			reason: 'Reason (may be left out)'
+			reason: 'Reason'
 		},
 		course: 'The last trial',
 		by: (who: string, why: string): string => (why === '' ? `by ${who}` : `by ${who}: ${why}`),

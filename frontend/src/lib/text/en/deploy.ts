@@ -150,7 +150,7 @@ export const deploy = {
 		missing: 'missing',
 		need: {
 			saved: 'The draft is saved as a revision.',
-			other: 'It is another one than what runs.',
+			other: 'It differs from what runs.',
 			checked: 'It is checked, without errors and with a supervisor.',
 			standing: 'Nothing starts by itself: the station is paused, held, in restart, or waits for its start; and no plan of a person is on its way.',
 			control: 'You have control.',

@@ -212,7 +212,7 @@ export const operate = {
 		next: 'Next for you:',
 	},
 	problem: {
-		more: 'More about it (if you like)',
+		more: 'More about it',
 		title: (task: string): string => `What keeps you from “${task}”?`,
 		means: 'Somebody comes. The task stays yours; nothing stops.',
 		tell: 'Tell the station'

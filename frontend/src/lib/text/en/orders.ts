@@ -13,7 +13,7 @@ export const orders = {
 			means: 'Operations of work masters run for an order alone.',
 			title: 'Let the station work by order?',
 			word: 'Work by order',
-			follows: 'Operations of work masters become active only for an order from then on. What is active for nobody is put aside.'
+			follows: 'Operations of work masters become active only for an order from then on. Operations that are active without an order stop being active.'
 		},
 		freely: {
 			name: 'Freely',

@@ -220,7 +220,7 @@ export const restart = {
 			out: (title: string): string => `${title} is still out of service`,
 			other: (so: string, now: string): string => `it is not so yet that ${so} ${now}`
 		},
-		holdFirst: 'Press Hold first, then go in. The station goes on by itself as soon as this is so.',
+		holdFirst: 'Press Hold before you go in: the station goes on by itself as soon as this is so. The ways are looked for again then.',
 		goOn: 'Nothing has to be carried out.'
 	},
 	plan: {

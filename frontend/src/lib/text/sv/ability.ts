@@ -125,7 +125,7 @@ export const ability: Text['ability'] = {
 			unseen: 'Stationen körs inte med emulerade enheter.',
 			sure: 'Jag har sett efter: enheten får röra sig.',
 			confirm: 'Bekräfta att enheten får röra sig.',
-			reason: 'Skäl (kan utelämnas)'
+			reason: 'Skäl'
 		},
 		course: 'Det senaste provet',
 		by: (who, why) => (why === '' ? `av ${who}` : `av ${who}: ${why}`),

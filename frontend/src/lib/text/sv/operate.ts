@@ -205,7 +205,7 @@ export const operate: Text['operate'] = {
 		next: 'Nästa för dig:',
 	},
 	problem: {
-		more: 'Mer om det (om du vill)',
+		more: 'Mer om det',
 		title: (task) => `Vad hindrar ”${task}”?`,
 		means: 'Det ger ett larm, så att någon kommer. Inget stannar av det, och uppgiften är kvar.',
 		tell: 'Säg till stationen'

@@ -217,7 +217,7 @@ export const restart: Text['restart'] = {
 			out: (title) => `${title} är fortfarande ur drift`,
 			other: (so, now) => `det är inte så än att ${so} ${now}`
 		},
-		holdFirst: 'Tryck Stanna först, gå sedan in. Stationen fortsätter av sig själv så snart det är så.',
+		holdFirst: 'Tryck Stanna innan du går in: stationen fortsätter av sig själv så snart det är så. Vägarna söks då på nytt.',
 		goOn: 'Inget behöver utföras.'
 	},
 	plan: {
