@@ -72,7 +72,13 @@ function state(view: StationView, now: number): string {
 	if (questions > 0) return texts.questions(questions);
 	if (view.unconfirmed) return texts.confirm;
 	const said = view.last_correction;
-	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(view, said)) : say().restart.believed.agree;
+	return said?.undoable ? texts.said(said.by, clockText(said.at, now), correctedText(view, said)) : agreeText(view);
+}
+
+/** What is not heard says nothing against the state. */
+export function agreeText(view: Pick<StationView, 'resources'>): string {
+	const texts = say().restart.believed;
+	return Object.values(view.resources).some(({ online }) => !online) ? texts.agreeHeard : texts.agree;
 }
 
 function ways(view: StationView, advice: AdviceAnswer | null, now: number): string {

@@ -106,6 +106,7 @@ export const restart = {
 	believed: {
 		title: 'Believed and measured',
 		agree: 'The state fits every measurement.',
+		agreeHeard: 'The state fits all that is heard.',
 		ask: (so: string): string => `Is it true that ${so}?`,
 		askAll: 'Is all of this true?',
 		seen: 'Seen at the station',

@@ -104,6 +104,7 @@ export const restart: Text['restart'] = {
 	believed: {
 		title: 'Antaget och uppmätt',
 		agree: 'Tillståndet stämmer med alla mätningar.',
+		agreeHeard: 'Tillståndet stämmer med allt som hörs.',
 		ask: (so) => `Stämmer det att ${so}?`,
 		askAll: 'Stämmer allt detta?',
 		seen: 'Sett vid stationen',
