@@ -79,8 +79,7 @@ export const operate = {
 			plan: 'Plan',
 			order: 'Order'
 		} as Readonly<Record<string, string>>,
-		itIs: (value: string): string => `It is ${value}`,
-		itIsSince: (value: string, ago: string): string => `It is ${value}, since ${ago}`,
+		since: (value: string, time: string): string => `${value}, since ${time}`,
 		heardOn: (topic: string): string => `heard on ${topic}`,
 		notConfirmed: 'not confirmed',
 		changers: 'Could be changed by',

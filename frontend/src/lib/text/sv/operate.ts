@@ -78,8 +78,7 @@ export const operate: Text['operate'] = {
 			plan: 'Plan',
 			order: 'Order'
 		},
-		itIs: (value) => `Det är ${value}`,
-		itIsSince: (value, ago) => `Det är ${value}, sedan ${ago}`,
+		since: (value, time) => `${value}, sedan ${time}`,
 		heardOn: (topic) => `hörs på ${topic}`,
 		notConfirmed: 'inte bekräftat',
 		changers: 'Kan ändras av',
