@@ -80,7 +80,7 @@ export const restart = {
 		outside: 'Outside the safe states',
 		violated: 'Violated:',
 		threatened: 'Could come about without any start:',
-		safe: 'In the nearest safe state:',
+		safe: 'How the nearest safe state differs',
 		instead: (name: string, safe: string, now: string): string => `${name} is ${safe}, not ${now}`,
 		corrected: (by: string, at: string, what: string): string => `Corrected by ${by} at ${at}: ${what}`,
 		history: 'See in History',

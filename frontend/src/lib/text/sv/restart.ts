@@ -78,7 +78,7 @@ export const restart: Text['restart'] = {
 		outside: 'Utanför de säkra tillstånden',
 		violated: 'Bryts:',
 		threatened: 'Kan brytas utan att något startas:',
-		safe: 'I närmaste säkra tillstånd:',
+		safe: 'Hur det närmaste säkra tillståndet skiljer sig',
 		instead: (name, safe, now) => `${name} är ${safe}, inte ${now}`,
 		corrected: (by, at, what) => `Rättat av ${by} ${at}: ${what}`,
 		history: 'Se i Historik',
