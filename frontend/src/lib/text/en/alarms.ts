@@ -108,7 +108,7 @@ export const alarms = {
 		course: (each: string): string => `Alarms in each ten minutes of the last hour: ${each}`,
 		floodBegins: 'A flood begins at 10 in 10 min.',
 		atLeast: (n: number): string => `at least ${n}`,
-		flood: 'More than 10 in 10 minutes is a flood: more than one person can follow.',
+		flood: 'A flood: more than one person can follow.',
 		frequent: 'Most frequent',
 		times: (n: number): string => (n === 1 ? 'once' : `${n} times`),
 		notKnown: 'not known'
