@@ -108,7 +108,7 @@ export const alarms = {
 		course: (each: string): string => `Alarms in each ten minutes of the last hour: ${each}`,
 		floodBegins: 'A flood begins at 10 in 10 min.',
 		atLeast: (n: number): string => `at least ${n}`,
-		flood: 'A flood: more than one person can follow.',
+		flood: 'Too many for one person.',
 		frequent: 'Most frequent',
 		times: (n: number): string => (n === 1 ? 'once' : `${n} times`),
 		notKnown: 'not known'
