@@ -55,6 +55,8 @@ export function nowOf(symbol: MimicSymbol, view: StationView, found: Found, lang
 	const said = saidOf(symbol.texts, variables, language);
 	if (active && running[0] !== undefined && (said === '' || symbol.active.length === 0)) return { text: running[0].title, tone };
 	if (said !== '') return { text: said, tone };
+	// What a device of a person last measured says nothing of the person.
+	if (symbol.symbol === 'person' && !active) return { text: texts.free, tone };
 	const key = found.keys.get(resource ?? '');
 	if (key === undefined) return { text: resource === null || symbol.parts.length > 0 ? '' : texts.rests, tone };
 	const value = valueOf(variables, key);

@@ -10,6 +10,8 @@ export const mimic = {
 	looks: { empty: 'empty', placed: 'placed', done: 'done', doubt: 'unknown' },
 	towards: (stop: string): string => `→ ${stop}`,
 	atWork: (stop: string, work: string): string => `${stop} · ${work}`,
+	/** Of a person whom nothing is asked of. */
+	free: 'Nothing to do',
 	nothingMoves: 'Nothing moves',
 	unheard: (names: string, n: number): string => `Nobody knows whether ${names} ${n === 1 ? 'moves' : 'move'}`,
 	nothingMovesAnd: (waits: string): string => `Nothing moves: ${waits}`,

@@ -10,6 +10,7 @@ export const mimic = {
 	looks: { empty: 'tom', placed: 'placerad', done: 'klar', doubt: 'okänd' },
 	towards: (stop: string): string => `→ ${stop}`,
 	atWork: (stop: string, work: string): string => `${stop} · ${work}`,
+	free: 'Inget att göra',
 	nothingMoves: 'Inget rör sig',
 	unheard: (names: string): string => `Ingen vet om ${names} rör sig`,
 	nothingMovesAnd: (waits: string): string => `Inget rör sig: ${waits}`,
