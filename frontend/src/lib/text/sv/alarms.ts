@@ -106,7 +106,7 @@ export const alarms: Text['alarms'] = {
 		course: (each) => `Larm i var tionde minut den senaste timmen: ${each}`,
 		floodBegins: 'En larmskur börjar vid 10 på 10 min.',
 		atLeast: (n) => `minst ${n}`,
-		flood: 'Fler än en människa hinner följa.',
+		flood: 'För många för en person.',
 		frequent: 'Vanligast',
 		times: (n) => (n === 1 ? 'en gång' : `${n} gånger`),
 		notKnown: 'inte känt'
