@@ -50,7 +50,8 @@ def times() -> CycleTimes:
 
 
 def made(work_master: str, seconds: float, **more: object) -> dict[str, Any]:
-    return {"work_master": work_master, "outcome": "completed", "began": 100.0, "ended": 100.0 + seconds, **more}
+    times = {"began": 100.0, "ended": 100.0 + seconds}
+    return {"work_master": work_master, "outcome": "completed", "operations": [], **times, **more}
 
 
 def order(number: int, work_master: str = "engine", **more: object) -> JobOrder:
@@ -100,6 +101,15 @@ def test_it_takes_as_long_as_the_median_of_what_was_completed() -> None:
     known.add_response(made("engine", 1.0, began=None))
     known.add_response(made("engine", -50.0))
     assert known.seconds("engine") == 420.0
+
+
+def test_an_order_of_which_most_was_done_before_it_began_tells_nothing() -> None:
+    found, done = {"started": None, "ended": 100.0}, {"started": 110.0, "ended": 120.0}
+    known = CycleTimes()
+    known.add_response(made("engine", 36.0, operations=[found, found, done]))
+    assert known.seconds("engine") is None
+    known.add_response(made("engine", 90.0, operations=[found, done]))
+    assert known.seconds("engine") == 90.0
 
 
 def test_it_follows_the_pace_of_the_last_ones() -> None:

@@ -59,8 +59,13 @@ class CycleTimes:
         self._number = last
 
     def add_response(self, made: Mapping[str, Any]) -> None:
-        """Take in a response. One with a clock that was set back meanwhile tells nothing."""
+        """Take in a response. One with a clock that was set back meanwhile tells nothing, and neither does one of which
+        most was done before it began.
+        """
         began, ended = made["began"], made["ended"]
+        found_done = [each for each in made["operations"] if each["started"] is None and each["ended"] is not None]
+        if 2 * len(found_done) > len(made["operations"]):
+            return
         if made["outcome"] == JobOutcome.COMPLETED.value and began is not None and ended > began:
             self._seconds[made["work_master"]].append(ended - began)
 
