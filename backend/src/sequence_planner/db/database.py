@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from sqlalchemy import Connection, Engine, text
+from sqlalchemy import Connection, Engine, event, text
 from sqlalchemy.exc import (
     DataError,
     DBAPIError,
@@ -110,8 +110,12 @@ class Database:
             connection.execute(text("UPDATE alembic_version SET version_num = version_num"))
 
     def close(self) -> None:
-        """End all connections."""
+        """End all connections; one that is in use ends when it is given back."""
+        pool = self._engine.pool
         self._engine.dispose()
+        # It comes back to a pool that nobody has any more, and would stay open until it is collected.
+        event.listen(pool, "checkin", lambda _, record: record.invalidate())
+        pool.dispose()
 
     @contextmanager
     def _told(self, *, everything: bool = False) -> Iterator[None]:
