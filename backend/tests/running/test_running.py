@@ -123,7 +123,8 @@ def test_devices_that_were_killed_leave_unknown_values_and_come_back_to_work(
     os.kill(at_work.child("emulate"), signal.SIGKILL)
     until(lambda: at_work.value("robot.pose") is None)
     assert at_work.get("variables", "state")["robot.pose"]["awaits"] == "/ur10/state"
-    assert at_work.get("resources")["robot"]["awaited_topics"] == ["/ur10/state", "/ur10/planning_scene/state"]
+    topics = ["/ur10/state", "/ur10/planning_scene/state"]
+    until(lambda: at_work.get("resources")["robot"]["awaited_topics"] == topics)
     assert at_work.get("resources")["operator"]["online"]
     until(lambda: "No message any more on /smart_nutrunner/state" in str(at_work.get("alarms")))
     before = done_so_far(at_work)

@@ -199,6 +199,7 @@ test('what was typed and not written is kept, said, and found again', async ({ b
 	await expect(page.getByText('Not written yet')).toBeVisible();
 	await page.unroute('**/api/v1/model/changes');
 	await page.getByRole('button', { name: /^Go to robot\b/ }).click();
+	await expect(form(page).getByRole('heading', { name: 'robot' })).toBeVisible();
 	await expect(title).toHaveValue('Kept');
 	await form(page).getByRole('button', { name: 'Try again' }).click();
 	await expect(file(page)).toContainText('title: Kept');

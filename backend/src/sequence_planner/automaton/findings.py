@@ -84,14 +84,16 @@ def with_values(text: str, binding: Binding) -> str:
     return str(text)
 
 
-def title_of(text: Words | None, name: str, binding: Binding, titles: Titles = NO_TITLES) -> str:
+def title_of(text: Words | None, name: str, binding: Binding, titles: Titles = NO_TITLES, *, apart: bool = True) -> str:
     """The title of a part, or its name in plain words; with it what it is in other languages, where those are given.
 
-    Of several parts in one whose title names none of the parameters, people are told the arguments behind it.
+    Of several parts in one whose title names none of the parameters, people are told the arguments behind it, unless a
+    title is not to tell them `apart`.
     """
     told = readable(main_text(text), name, binding, titles)
     said = by_language(text)
-    if name and binding and not any(f"{{{each}}}" in words for words in said.values() for each in binding):
+    names_one = any(f"{{{each}}}" in words for words in said.values() for each in binding)
+    if name and binding and not names_one and (apart or not said):
         spoken = {
             each: _spoken(said.get(each) or main_text(text) or in_words(name), binding, titles, each)
             for each in WordsDocument.model_fields

@@ -598,7 +598,7 @@ def ground_specifications(
         meaning.declarations.check_parameters(document.parameters, *(f"{name}." for name in document.zone or ()))
         for binding in meaning.declarations.bindings(document.parameters):
             full = instance_name(name, binding)
-            title = title_of(document.title, name, binding, meaning.declarations.titles)
+            title = title_of(document.title, name, binding, meaning.declarations.titles, apart=False)
             for words, forbidden in _parts(meaning, document, binding, known):
                 part = f"{full}: {words}" if words else full
                 specifications[part] = Specification(part, followed_by(title, words), simplify(forbidden))
