@@ -2,6 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
+import { write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bolt_tightening' });
@@ -91,7 +92,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await cell(page, 'parameters', 'Parameters, value 1').fill('named_pose');
 	await cell(page, 'parameters', 'Parameters, value 1').press('Tab');
 	await expect(file(page)).toContainText('to: named_pose');
-	await expression(page, 'When').fill('pose in at_engine and adjacent(pose, to)');
+	await write(expression(page, 'When'), 'pose in at_engine and adjacent(pose, to)');
 	await page.keyboard.press('Escape');
 	await sound(page, 'pose in at_engine and adjacent(pose, to)');
 

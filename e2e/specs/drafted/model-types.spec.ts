@@ -2,6 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
+import { write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'robots drafted', byItself: false, people: 'everybody', copied: 'robots_with_buffer' });
@@ -40,10 +41,10 @@ test('an instance shows what it has of its type, changes it, and is reset; the t
 	// The type: a parameter is a value there, and a wrong name is underlined behind it.
 	await page.goto(at(TYPE, 'abilities', 'move_to'));
 	const executing = expression(page, 'Executing');
-	await executing.fill('target == stop and at != conveyor and att != stop');
+	await write(executing, 'target == stop and at != conveyor and att != stop');
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'executing').locator('.cm-lintRange-error')).toHaveText('att');
-	await executing.fill('target == stop and at != stop');
+	await write(executing, 'target == stop and at != stop');
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'executing').locator('.cm-lintRange-error')).toHaveCount(0);
 	await expect(file(page)).toContainText('executing: target == stop and at != stop');
