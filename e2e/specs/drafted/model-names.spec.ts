@@ -49,6 +49,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await add(page, 'Set: Sets', 'at_engine', { Of: 'named_pose', 'Values, with commas between': 'above_engine, bolt_pair_1' });
 	await expect(field(page, 'of').getByRole('combobox')).toHaveValue('named_pose');
 	await field(page, 'values').getByRole('button', { name: 'Add an entry: Values' }).click();
+	await expect(cell(page, 'values', 'Values, 3')).toBeFocused();
 	await cell(page, 'values', 'Values, 3').fill('bolt_pair_22');
 	await cell(page, 'values', 'Values, 3').press('Tab');
 	// What is wrong is said at the field.
@@ -65,6 +66,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	});
 	await field(page, 'symmetric').getByRole('checkbox').check();
 	await field(page, 'pairs').getByRole('button', { name: 'Add an entry: Pairs' }).click();
+	await expect(cell(page, 'pairs', 'Pairs, name 2')).toBeFocused();
 	await cell(page, 'pairs', 'Pairs, name 2').fill('above_engine');
 	await cell(page, 'pairs', 'Pairs, value 2').fill('bolt_pair_1, bolt_pair_2');
 	await cell(page, 'pairs', 'Pairs, value 2').press('Tab');
@@ -88,6 +90,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await expect(form(page).getByRole('heading').first()).toContainText('robot');
 	await add(page, 'Predicate: Predicates of robot', 'can_go');
 	await form(page).getByRole('button', { name: 'Add an entry: Parameters' }).click();
+	await expect(cell(page, 'parameters', 'Parameters, name 1')).toBeFocused();
 	await cell(page, 'parameters', 'Parameters, name 1').fill('to');
 	await cell(page, 'parameters', 'Parameters, value 1').fill('named_pose');
 	await cell(page, 'parameters', 'Parameters, value 1').press('Tab');
@@ -100,11 +103,11 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await page.goto(at(ROBOT, 'abilities', 'move_to_previous'));
 	const enabled = expression(page, 'Enabled');
 	await expect(enabled).toContainText('moving');
-	await enabled.fill('can_goo(home) and pose == pose_of[bolt_pair_1] and pose in at_engine');
+	await write(enabled, 'can_goo(home) and pose == pose_of[bolt_pair_1] and pose in at_engine');
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error').first()).toHaveText(/can_goo/);
 	await expect(field(page, 'enabled')).toContainText('did you mean `can_go`?');
-	await enabled.fill('can_go(home) and pose == pose_of[bolt_pair_1] and pose in at_engine');
+	await write(enabled, 'can_go(home) and pose == pose_of[bolt_pair_1] and pose in at_engine');
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error')).toHaveCount(0);
 	await expect(file(page)).toContainText('can_go(home)');
@@ -145,6 +148,7 @@ test('an enumeration comes to include others and to have an order', async ({ bro
 	await expect(file(page)).toContainText('ordered: true');
 	await sound(page, 'ordered: true');
 	await field(page, 'includes').getByRole('button', { name: 'Add an entry: Includes' }).click();
+	await expect(cell(page, 'includes', 'Includes, 1')).toBeFocused();
 	await cell(page, 'includes', 'Includes, 1').fill('bolt_par');
 	await cell(page, 'includes', 'Includes, 1').press('Tab');
 	await expect(field(page, 'includes')).toContainText('did you mean `bolt_pair`?');

@@ -106,7 +106,7 @@ test('names are completed and explained, and a condition is formatted, by keyboa
 	const page = await browse(INA, at(ROBOT, 'abilities', 'move_to_previous'));
 	await ready(page);
 	const enabled = expression(page, 'Enabled');
-	await enabled.fill('prev');
+	await write(enabled, 'prev');
 	await expect(page.locator('.cm-tooltip-autocomplete [aria-selected="true"]')).toContainText('previous_pose');
 	// A list that has only just come up is not taken from, or who types on would take what they have not seen.
 	await page.waitForTimeout(200);
