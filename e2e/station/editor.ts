@@ -1,5 +1,13 @@
-/** The editors of the page Model. */
-import type { Locator } from '@playwright/test';
+/** The page Model: the form of the chosen part, its file, what is wrong, and its editors. */
+import type { Locator, Page } from '@playwright/test';
+
+export const form = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
+export const field = (page: Page, name: string): Locator => form(page).locator(`[data-path="${name}"]`).first();
+/** The editor of a condition or an action. */
+export const expression = (page: Page, label: string): Locator =>
+	form(page).getByRole('textbox', { name: label, exact: true }).and(page.locator('.cm-content'));
+export const file = (page: Page): Locator => page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
+export const problems = (page: Page): Locator => page.getByRole('region', { name: 'Problems' });
 
 /**
  * Writes a text into an editor in the place of what is there, with keys that it knows. `fill` selects what is there behind

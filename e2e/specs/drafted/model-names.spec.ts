@@ -2,7 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
-import { write } from '../../station/editor.ts';
+import { expression, field, file, form, problems, write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bolt_tightening' });
@@ -10,14 +10,8 @@ test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bol
 const STATION = 'station.yaml';
 const ROBOT = 'resources/robot.yaml';
 const at = (...steps: string[]): string => `/model?${new URLSearchParams({ entry: steps.join('#') })}`;
-const form = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
-const field = (page: Page, name: string): Locator => form(page).locator(`[data-path="${name}"]`).first();
 /** What is written at a place of a field, by its label. */
 const cell = (page: Page, name: string, label: string): Locator => field(page, name).locator(`input[aria-label="${label}"]`);
-const expression = (page: Page, label: string): Locator =>
-	form(page).getByRole('textbox', { name: label, exact: true }).and(page.locator('.cm-content'));
-const file = (page: Page): Locator => page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
-const problems = (page: Page): Locator => page.getByRole('region', { name: 'Problems' });
 const dialog = (page: Page): Locator => page.getByRole('dialog');
 
 async function add(page: Page, what: string, name: string, given: Readonly<Record<string, string>> = {}): Promise<void> {

@@ -2,7 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
-import { write } from '../../station/editor.ts';
+import { expression, field, file, form, problems, write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'robots drafted', byItself: false, people: 'everybody', copied: 'robots_with_buffer' });
@@ -11,12 +11,6 @@ const ROBOT = 'resources/robot_1.yaml';
 const TYPE = 'types/robot.yaml';
 const at = (...steps: string[]): string => `/model?${new URLSearchParams({ entry: steps.join('#') })}`;
 const row = (page: Page, ...steps: string[]): Locator => page.locator(`[role="treeitem"][data-id="${steps.join('#')}"]`);
-const form = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
-const field = (page: Page, name: string): Locator => form(page).locator(`[data-path="${name}"]`).first();
-const expression = (page: Page, label: string): Locator =>
-	form(page).getByRole('textbox', { name: label, exact: true }).and(page.locator('.cm-content'));
-const file = (page: Page): Locator => page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
-const problems = (page: Page): Locator => page.getByRole('region', { name: 'Problems' });
 const dialog = (page: Page): Locator => page.getByRole('dialog');
 
 test('an instance shows what it has of its type, changes it, and is reset; the type is written in with its own names', async ({

@@ -1,7 +1,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { picture } from '../../station/seen.ts';
-import { write } from '../../station/editor.ts';
+import { expression, field, file, form, problems, write } from '../../station/editor.ts';
 import { INA, IVO, VERA } from '../../station/station.ts';
 import { expect, test } from '../../station/test.ts';
 
@@ -10,13 +10,6 @@ test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bol
 const ROBOT = 'resources/robot.yaml';
 const at = (...steps: string[]): string => `/model?${new URLSearchParams({ entry: steps.join('#') })}`;
 const row = (page: Page, ...steps: string[]): Locator => page.locator(`[role="treeitem"][data-id="${steps.join('#')}"]`);
-const form = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
-const field = (page: Page, name: string): Locator => form(page).locator(`[data-path="${name}"]`).first();
-/** The editor of a condition or an action. */
-const expression = (page: Page, label: string): Locator =>
-	form(page).getByRole('textbox', { name: label, exact: true }).and(page.locator('.cm-content'));
-const file = (page: Page): Locator => page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
-const problems = (page: Page): Locator => page.getByRole('region', { name: 'Problems' });
 const changes = (page: Page): Locator => page.getByRole('region', { name: 'Last changes' });
 const dialog = (page: Page): Locator => page.getByRole('dialog');
 

@@ -22,8 +22,9 @@ from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.types import Value
 from sequence_planner.planning.heuristic.still_possible import Absent, Remaining
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import Message, message
 
 # It is looked at at once when something else is absent or active, else so seldom that it takes a twentieth of a core.
 _SHARE = 20.0
@@ -108,18 +109,20 @@ class _Look:
     def _doable(self, now: Remaining, name: str) -> DoableView:
         doing = now.doing(self.automaton.operations[name], name in self.active)
         once = {each: value for each, value in doing.once if self.state[each] != value}
-        said = sentences_of(self.automaton)
-        condition = said.tell_values(
-            once.items(), " and ".join(said.write_value(each, value) for each, value in once.items())
-        )
         return DoableView(
             operation=name,
             title=self.automaton.operations[name].title,
             active=name in self.active,
             by=[self.automaton.resources[each] for each in doing.by],
             once=once,
-            once_message=message("waits.condition", condition=condition) if once else None,
+            once_message=self._said(once) if once else None,
         )
+
+    def _said(self, values: Mapping[str, Value]) -> Message:
+        """That variables have these values, in words."""
+        said = sentences_of(self.automaton)
+        written = " and ".join(said.write_value(each, value) for each, value in values.items())
+        return message("waits.condition", condition=said.tell_values(values.items(), written))
 
     def _absences(self) -> Iterator[AbsenceView]:
         for of, names in (("resource", self.absent.resources), ("ability", self.absent.abilities)):
