@@ -80,6 +80,9 @@ e2e: install page e2e/node_modules/done.stamp chromium
 
 pictures: install page e2e/node_modules/done.stamp chromium ## Take the pictures of the screens that the documentation shows
 	cd e2e && npx playwright test --config pictures/pictures.config.ts
+	@# None in docs/screens is to be larger than 150 kB.
+	@if command -v pngquant >/dev/null; then pngquant --force --skip-if-larger --ext .png 96 docs/screens/*.png; \
+	else echo "The pictures in docs/screens are not reduced: pngquant is not installed"; fi
 
 figures: install page e2e/node_modules/done.stamp chromium ## Measure the pages in Chromium beside a busy station
 	cd e2e && npx playwright test --config figures/figures.config.ts

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.cli.analysing import Limits
 from sequence_planner.cli.model.check import check_model
 from sequence_planner.model.loader import load_station

@@ -21,7 +21,7 @@ from sequence_planner.db.database import Database
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.recorder import RunRecorder, model_digest
 from sequence_planner.execution.record.replay import replay
-from sequence_planner.history.simulation import SimulatedStation
+from sequence_planner.history.simulated_station import SimulatedStation
 from sequence_planner.journal.full_run import WholeRun
 from sequence_planner.journal.writer import RunWriter
 from sequence_planner.planning.planner import Planner

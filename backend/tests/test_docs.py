@@ -8,13 +8,9 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
-from sequence_planner.language.resolver import (
-    NameScope,
-    resolve_assignments,
-    resolve_formula,
-    resolve_predicate,
-)
+from sequence_planner.language.resolver import resolve_assignments, resolve_formula, resolve_predicate
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.documents import (

@@ -44,6 +44,7 @@ def test_every_kind_of_warning_is_described() -> None:
     files = [
         *(SOURCES / "analysis" / "checks").glob("*.py"),
         SOURCES / "analysis" / "written.py",
+        SOURCES / "scenarios" / "suspicions.py",
         SOURCES / "cli" / "model" / "check.py",
     ]
     kinds = {kind for file in files for kind in KINDS.findall(file.read_text(encoding="utf-8"))}

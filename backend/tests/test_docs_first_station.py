@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervisor import Supervision
@@ -51,7 +49,7 @@ def test_the_guard_shown_is_the_one_that_is_added() -> None:
     automaton: Automaton = prepare_station(SINGLE_BOLT).automaton
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
     reached = supervision.reachable(supervised=True)
-    guard = supervision.plant.where(resolve_predicate(parse(shown.strip()), NameScope(automaton.types)))
+    guard = supervision.plant.where(automaton.read_condition(shown.strip()))
     allowed, disallowed = (reached & states for states in supervision.guard(ability))
     assert (allowed | disallowed).satisfiable()
     assert allowed == (allowed | disallowed) & guard

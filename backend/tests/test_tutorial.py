@@ -13,8 +13,6 @@ from typer.testing import CliRunner
 from sequence_planner.cli.main import app
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.execution.vocabulary import PlanStatus
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.station import prepare_station, read_station
 from sequence_planner.synthesis.supervisor import Supervision, synthesise
 from sequence_planner.synthesis.transition_relation import Plant
@@ -74,7 +72,7 @@ def assert_guards(station: Path, guards: list[Block]) -> None:
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
     reached = supervision.reachable(supervised=True)
     for guard in guards:
-        shown = supervision.plant.where(resolve_predicate(parse(guard.content.strip()), NameScope(automaton.types)))
+        shown = supervision.plant.where(automaton.read_condition(guard.content.strip()))
         allowed, disallowed = (reached & states for states in supervision.guard(guard.label))
         assert (allowed | disallowed).satisfiable(), f"{guard.label} never has a choice"
         assert allowed == (allowed | disallowed) & shown, guard.label
@@ -163,7 +161,7 @@ def test_the_guard_of_the_first_robot_alone_goes_with_the_second(tmp_path: Path)
 def test_without_the_specification_both_robots_come_to_the_buffer(tmp_path: Path) -> None:
     automaton = prepare_station(station_after(4, tmp_path)).automaton
     supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
-    both = resolve_predicate(parse("robot_1.at == buffer and robot_2.at == buffer"), NameScope(automaton.types))
+    both = automaton.read_condition("robot_1.at == buffer and robot_2.at == buffer")
     assert (supervision.reachable(supervised=True) & supervision.plant.where(both)).satisfiable()
 
 

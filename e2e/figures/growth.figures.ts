@@ -23,7 +23,7 @@ const PAGES = [
 	['/', LIVE],
 	['/state', LIVE],
 	['/model', { selector: '[role="treeitem"]', text: 'agv_1' }],
-	['/station', { selector: 'main', text: 'robot_1' }]
+	['/model?view=graph', { selector: '[data-layer]', text: 'robot_1' }]
 ] as const;
 const VISITS = 5;
 const SECONDS = 20;

@@ -89,11 +89,11 @@ test('the screens of engineers', async ({ operate, watch, browse }) => {
 	await restsOnPerson(operate, watch);
 	for (const [name, address, settled] of [
 		['model', '/model?entry=resources%2Frobot.yaml%23abilities%23move_to_position', '[role="tree"]'],
-		['ability', '/abilities?name=robot.move_to_position(home)', '[data-testid="automaton"]'],
+		['ability', '/model?ability=robot.move_to_position(home)&panel=runs', '[data-testid="by-itself"]'],
 		['pipelines', '/pipelines?of=%2Fur10%2Fstate', '.svelte-flow__node'],
-		['station', '/station?thing=operation%3Aprepare_planning_scene', '[data-tied="near"]'],
-		['check', '/check', '[data-testid="check"][data-verdict="good"]'],
-		['deploy', '/deploy', '[data-testid="draft"][data-verdict="good"]']
+		['station', '/model?view=graph&thing=operation%3Aprepare_planning_scene', '[data-tied="near"]'],
+		['check', '/model?panel=guards', '[data-guard]'],
+		['review', '/review', '[data-testid="draft"][data-verdict="good"]']
 	] as const) {
 		const page = await browse(null, address);
 		await page.locator(settled).first().waitFor({ timeout: 60_000 });
@@ -102,10 +102,12 @@ test('the screens of engineers', async ({ operate, watch, browse }) => {
 		await page.close();
 	}
 
-	const page = await browse(null, '/what-if');
-	await page.getByLabel('For how many seconds').fill('30');
-	await page.getByRole('button', { name: 'Simulate' }).click();
-	await page.getByRole('heading', { name: 'What would happen' }).waitFor({ timeout: 60_000 });
+	const page = await browse(null, '/what-if?simulation');
+	await page.getByRole('combobox', { name: 'Speed' }).selectOption('10×', { timeout: 60_000 });
+	await page.getByRole('button', { name: 'Play' }).click();
+	const seconds = async (): Promise<number> => Number(await page.getByTestId('simulated-time').getAttribute('data-seconds'));
+	await expect.poll(seconds, { timeout: 60_000 }).toBeGreaterThan(20);
+	await page.getByRole('button', { name: 'Stop the clock' }).click();
 	await take(page, 'what-if');
 });
 

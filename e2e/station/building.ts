@@ -6,6 +6,9 @@ import type { Added, Field } from './single-bolt.ts';
 /** Milliseconds in which a change is written to the draft, beside its check. */
 const WRITTEN = 20_000;
 
+/** Milliseconds in which the editor of a field is there. */
+const LOADED = 700;
+
 /** The fields of the dialog in which something is chosen; in the others it is written. */
 const CHOICES = new Set(['Direction', 'What it says']);
 
@@ -81,8 +84,35 @@ export class Builder {
 		for (const field of fields) await this.#fill(field, within);
 	}
 
+	/** What leads to a field: the field itself, or the button that adds something to it. */
+	#way(field: Field, label: string): Locator {
+		switch (field.as) {
+			case 'condition':
+				return this.editor(label);
+			case 'yaml':
+				return this.button(`Add ${label} as YAML`);
+			case 'seconds':
+				return this.textbox(`${label}, From`);
+			case 'list':
+			case 'names':
+				return this.button(`Add an entry: ${label}`);
+			case 'part':
+				return this.button(`Add: ${label}`);
+			default:
+				return this.textbox(label);
+		}
+	}
+
+	/** Opens what is behind *More*, where a field is not seen without that. */
+	async #reveal(way: Locator): Promise<void> {
+		const isSeen = (): Promise<boolean> => way.waitFor({ timeout: LOADED }).then(() => true, () => false);
+		const more = this.form.locator('details.rest:not([open]) > summary');
+		while (!(await isSeen()) && (await more.count()) > 0) await this.hand.press(more.first());
+	}
+
 	async #fill(field: Field, within: string): Promise<void> {
 		const label = within + field.label;
+		await this.#reveal(this.#way(field, label));
 		switch (field.as) {
 			case 'text':
 				await this.hand.write(this.textbox(label), field.text);
@@ -131,6 +161,7 @@ export class Builder {
 	/** The check of the draft as it is now has come to its end, and has found nothing. */
 	async clean(): Promise<void> {
 		await this.written();
-		await expect(this.problems).toContainText('Checked: nothing was found.', { timeout: 60_000 });
+		await expect(this.page.getByTestId('check')).toHaveAttribute('data-verdict', 'good', { timeout: 60_000 });
+		await expect(this.problems).toContainText('Nothing was found.');
 	}
 }

@@ -7,7 +7,12 @@ export const field = (page: Page, name: string): Locator => form(page).locator(`
 export const expression = (page: Page, label: string): Locator =>
 	form(page).getByRole('textbox', { name: label, exact: true }).and(page.locator('.cm-content'));
 export const file = (page: Page): Locator => page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
-export const problems = (page: Page): Locator => page.getByRole('region', { name: 'Problems' });
+/** Shows one of what is told of the draft below its form. */
+export const panel = (page: Page, name: 'Problems' | 'Usages' | 'Guards added' | 'Tried runs' | 'Changes' | 'Could be shorter'): Promise<void> =>
+	page.getByRole('tablist', { name: 'About the draft' }).getByRole('tab', { name }).click();
+/** How the check of the draft stands. */
+export const check = (page: Page): Locator => page.getByTestId('check').getByRole('status');
+export const problems = (page: Page, name = 'Problems'): Locator => page.getByRole('region', { name, exact: true });
 
 /**
  * Writes a text into an editor in the place of what is there, with keys that it knows. `fill` selects what is there behind

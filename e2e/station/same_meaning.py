@@ -1,6 +1,6 @@
 """Whether two folders hold the same model: `same_meaning.py FOLDER OTHER` says what is otherwise, and ends with 1 then.
 
-What the models do is compared as the page Deploy compares revisions: variables, abilities with what the supervisor adds,
+What the models do is compared as the page Review changes compares revisions: variables, abilities with what the supervisor adds,
 effects, operations, specifications, plans. All else of the documents is compared as it is loaded, without comments and
 line breaks; messages are compared by their type hashes.
 """
@@ -15,14 +15,16 @@ from sequence_planner.analysis.finding import analyses
 from sequence_planner.model.paths import DEFINITIONS
 from sequence_planner.model.loader import load_station
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.editor.diff import Meant, behaviour_differences, differences, plan_differences
+from sequence_planner.editor.comparing.behaviour import behaviour_differences, plan_differences
+from sequence_planner.editor.comparing.diff import Written, differences
+from sequence_planner.editor.comparing.meant import Meant
 
 
 def meant(station: ReadyStation) -> Meant:
     """What it does; an error where it cannot be supervised."""
     for found in analyses(station.automaton):
         if found.supervisor is not None and found.guards is not None:
-            return Meant(station, found.supervisor, found.guards)
+            return Meant(station.automaton, found.supervisor, found.guards, found.reached)
     raise SystemExit(f"{station.automaton.name} has no supervisor")
 
 
@@ -67,8 +69,13 @@ def all_differences(one: Path, other: Path) -> Iterator[str]:
     yield from otherwise({**hashes(one, first)}, {**hashes(other, second)})
     yield from otherwise(documents(one), documents(other))
     old, new = meant(first), meant(second)
-    for found in (*differences(old, new), *behaviour_differences(old, new), *plan_differences(old, new)):
+    written = differences(Written(old.automaton, old.guards), Written(new.automaton, new.guards))
+    behaviour, undecided = behaviour_differences(old, new)
+    plans, unplanned = plan_differences(old, new, (behaviour, undecided))
+    for found in (*written, *behaviour, *plans):
         yield found.model_dump_json()
+    for name in (*undecided, *unplanned):
+        yield f"It is not known whether {name} does the same."
 
 
 if __name__ == "__main__":

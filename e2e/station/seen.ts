@@ -4,7 +4,7 @@ import { join } from 'node:path';
 
 export const PAIRS = ['bolt_pair_1', 'bolt_pair_2', 'bolt_pair_3'] as const;
 
-/** The row of a variable; its attribute `data-value` holds the value in the model's words. */
+/** A variable on State; its attribute `data-value` holds the value in the model's words. */
 export function variable(page: Page, name: string): Locator {
 	return page.locator(`[data-variable="${name}"]`);
 }

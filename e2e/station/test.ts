@@ -31,6 +31,8 @@ interface Given {
 	browse: (person: Person | null, address: string, screen?: Screen) => Promise<Page>;
 	/** The operator's page. */
 	operate: Page;
+	/** State, so high that every variable is in sight. */
+	state: Page;
 	/** The watch page on a round watch of 192 dp. */
 	watch: Page;
 	/** What the browser found wrong on all pages: script errors, refused content, failed requests. */
@@ -41,6 +43,8 @@ type Screen = Pick<BrowserContextOptions, 'viewport' | 'deviceScaleFactor' | 'ha
 type Theme = 'light' | 'dark';
 
 export const DESK: Screen = { viewport: { width: 1440, height: 900 } };
+/** As high as the table of a station's variables is. */
+const HIGH: Screen = { viewport: { width: 1440, height: 2400 } };
 /** A round watch of 192 dp. */
 export const WRIST: Screen = { viewport: { width: 192, height: 192 }, deviceScaleFactor: 2, hasTouch: true };
 
@@ -117,6 +121,11 @@ export const test = base.extend<Given, { bench: Bench }>({
 			return page;
 		});
 		await Promise.all(contexts.map((context) => context.close()));
+	},
+	state: async ({ browse, byItself }, use) => {
+		const page = await browse(byItself ? null : EVA, '/state', HIGH);
+		await expect(page.locator('[data-row]')).not.toHaveCount(0);
+		await use(page);
 	},
 	watch: async ({ browse, byItself }, use) => {
 		const page = await browse(byItself ? null : EVA, '/operator', WRIST);

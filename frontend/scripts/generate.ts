@@ -23,6 +23,7 @@ interface Schema {
 	readonly prefixItems?: readonly Schema[];
 	readonly enum?: readonly (string | number)[];
 	readonly default?: unknown;
+	readonly unit?: 's';
 	readonly minimum?: number;
 	readonly exclusiveMinimum?: number;
 	readonly maximum?: number;
@@ -76,6 +77,8 @@ function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	const within = typeof schema.additionalProperties === 'object' ? schema.additionalProperties : undefined;
 	if (refersTo(within, 'Bounds')) return { kind: 'bounds' };
 	if (refersTo(schema.items, 'TableRow')) return { kind: 'rows' };
+	const kinds = within?.anyOf?.some((each) => refersTo(each, 'Parameter')) ? within.anyOf.find((each) => each.enum)?.enum : undefined;
+	if (kinds !== undefined) return { kind: 'parameters', choices: kinds };
 	if (isScalar(schema)) return { kind: 'scalar' };
 	if (schema.type === 'array' && isScalar(schema.items)) return { kind: 'scalars' };
 	if (isScalar(within) || isValue(within) || isArgument(within) || schema.additionalProperties === true) return { kind: 'named' };
@@ -111,6 +114,7 @@ function fieldOf(schema: Schema, required: boolean): FieldShape {
 		...(isScalar && { otherwise: schema.default as string | number | boolean }),
 		...(schema.maxItems !== undefined && schema.maxItems === schema.minItems && { count: schema.maxItems }),
 		...(schema.type === 'integer' && { whole: true }),
+		...(bound.unit !== undefined && { unit: bound.unit }),
 		...(bound.minimum !== undefined && { least: bound.minimum }),
 		...(bound.exclusiveMinimum !== undefined && { above: bound.exclusiveMinimum }),
 		...(bound.maximum !== undefined && { most: bound.maximum })

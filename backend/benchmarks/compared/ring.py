@@ -15,8 +15,9 @@ from sequence_planner.automaton.automaton import (
     VariableDeclaration,
 )
 from sequence_planner.automaton.dependencies import ordered_flags
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment
-from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.resolver import resolve_assignment, resolve_predicate
 from sequence_planner.language.syntax import Expression
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 

@@ -20,8 +20,6 @@ from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.export.efa import plain_of_station
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import Comparison, Constant, Expression, Variable, conjunction
 from sequence_planner.planning.problem import Goal
 
@@ -279,4 +277,4 @@ def _goal(automaton: Automaton, chance: random.Random, steps: int) -> Goal:
 
 
 def _predicate(automaton: Automaton, text: str) -> Expression:
-    return resolve_predicate(parse(text), NameScope(automaton.types))
+    return automaton.read_condition(text)

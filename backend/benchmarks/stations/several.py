@@ -16,14 +16,18 @@ from typing import Any
 from ruamel.yaml import YAML
 
 MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
+_ONCE = {Path("mimic.yaml"), Path("shifts.yaml")}
+"""What a station has once, and says nothing of what several do."""
 _AT_KIT = "target_pose == AtLadderFrameTCPPose or pose == AtLadderFrameTCPPose"
 
 
 def write_several(folder: Path, number: int) -> Path:
     """Write the model with `number` copies into a new folder, which it gives back."""
     files = {path.relative_to(MODEL): path.read_text() for path in MODEL.rglob("*") if path.is_file()}
+    files = {name: text for name, text in files.items() if name not in _ONCE}
     station = _read(files.pop(Path("station.yaml")))
-    things = [*station["estimated"], *(name.stem for name in files if name.parent == Path("resources"))]
+    resources = [name.stem for name in files if name.parent == Path("resources")]
+    things = [*station["predicates"], *station["estimated"], *resources]
     tops = [key for name, text in files.items() if name.parent == Path() for key in _read(text)]
 
     def copy(text: str, which: int, names: Iterable[str] = things) -> str:
@@ -45,8 +49,9 @@ def write_several(folder: Path, number: int) -> Path:
             zone = {f"robot_{each}": _AT_KIT for each in (which, which + 1)}
             title = f"One of stations {which} and {which + 1} at the kit"
             file.write(f"one_at_kit_{which}: {json.dumps({'title': title, 'zone': zone})}\n")
-    estimated = station["estimated"].items()
-    station["estimated"] = {copy(name, which): what for which in copies for name, what in estimated}
+    for section in ("predicates", "estimated"):
+        text = json.dumps(station[section])
+        station[section] = {name: what for which in copies for name, what in json.loads(copy(text, which)).items()}
     station["rest"] = " and ".join(f"({copy(station['rest'], which)})" for which in copies)
     _write(folder / "station.yaml", json.dumps(station))
     return folder

@@ -23,7 +23,7 @@ from sequence_planner.core.data_models import DataModel, complained
 from sequence_planner.core.logging import FORMAT, LogFormat
 from sequence_planner.core.secrets import CLIENT_SECRET
 from sequence_planner.db.location import read_url
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.process.memory_limit import LEAST, MOST
 from sequence_planner.retention.settings import LEAST_ORDER_DAYS, MOST_DAYS, MOST_GB, NO_ARCHIVE
 from sequence_planner.ros.environment import INTERFACE

@@ -9,10 +9,9 @@ from pathlib import Path
 from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.checks.warning import ModelWarning, described
 from sequence_planner.analysis.store import content_key, read, write
-from sequence_planner.analysis.written import suspicious_in
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.declarations import OPERATION, GroundBefore
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import TRUE, variables
@@ -22,10 +21,12 @@ from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.builder import build_pipelines, flow_name, load_messages
 from sequence_planner.pipelines.examples import PipelineExample, failures, loading_failures
 from sequence_planner.pipelines.graph import StationPipelines
-from sequence_planner.pipelines.inference import with_inferred_variables
+from sequence_planner.pipelines.inference import with_inferred_variables, wrong_in_unused_types
 from sequence_planner.planning.goals.monitor import TooManyStatesError, monitor_of
 from sequence_planner.process.gc_tuning import collection_put_off
 from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.scenarios.suspicions import all_suspicions
+from sequence_planner.texts.message import message
 
 
 @dataclass(frozen=True)
@@ -50,8 +51,8 @@ class ReadyStation:
         return Connections(frozenset(self.pipelines.feeds), self.pipelines.carried)
 
     def suspicions(self) -> list[ModelWarning]:
-        """Return what is suspicious in its documents and its pipelines."""
-        return list(suspicious_in(self.written, self.automaton, self.pipelines))
+        """Return what is suspicious in its documents, its pipelines and its scenarios."""
+        return list(all_suspicions(self.written, self.automaton, self.pipelines))
 
     def failures(self) -> list[Finding]:
         """Return what is wrong with the pipelines as they run: stages that cannot be loaded, and else examples that
@@ -87,7 +88,13 @@ def read_station(folder: Path, before: Before | None = None) -> MeantStation:
     written = load_station(folder, before.files)
     registry = load_messages(written)
     station = with_inferred_variables(written, registry)
-    automaton = ground(station, before.abilities)
+    unusable = wrong_in_unused_types(written, registry)
+    try:
+        automaton = ground(station, before.abilities)
+    except ModelError as error:
+        raise ModelError([*error.findings, *unusable]) from error
+    if unusable:
+        raise ModelError(unusable)
     _require_plannable(automaton)
     _require_possible_beginning(automaton)
     return MeantStation(station, registry, automaton)
@@ -151,11 +158,8 @@ def _require_possible_beginning(automaton: Automaton) -> None:
     for name, specification in automaton.specifications.items():
         if evaluate(specification.forbidden, state) is True:
             values = described(state, dict.fromkeys(variables(specification.forbidden)))
-            message = (
-                f"`{name}` forbids the initial state, in which {values}: begin otherwise (`initial` of a variable), or "
-                "forbid less"
-            )
-            findings.append(Finding(automaton.places[name], message))
+            said = message("wrong.forbids-initial", specification=name, values=values)
+            findings.append(Finding(automaton.places[name], said))
     if findings:
         raise ModelError(findings)
 

@@ -2,6 +2,7 @@ from typing import Any
 from uuid import UUID
 
 from cyclonedds.domain import DomainParticipant
+from cyclonedds.qos import Qos
 from cyclonedds.sub import DataReader
 
 class DDSException(Exception):
@@ -12,6 +13,7 @@ class Entity:
     @property
     def guid(self) -> UUID: ...
     def set_status_mask(self, mask: int) -> None: ...
+    def set_qos(self, qos: Qos) -> None: ...
     def __del__(self) -> None: ...
 
 class DDSStatus:

@@ -20,7 +20,7 @@ from sequence_planner.editor.attach import (
     with_topic,
 )
 from sequence_planner.language.types import BOOLEAN
-from sequence_planner.model.yaml.editor import same
+from sequence_planner.model.yaml.content import same
 from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.types.messages import MessageRegistry

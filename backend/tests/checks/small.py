@@ -7,8 +7,9 @@ from pathlib import Path
 from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.checks.rules import check_automaton
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.model.loader import load_station
+from support.told import as_message
 
 STATION = """
 name: small
@@ -58,8 +59,10 @@ def device(folder: Path, *changes: tuple[str, str], **documents: str) -> Automat
 
 
 def found(automaton: Automaton, connections: Connections | None = None) -> list[str]:
-    """What the checks say: file:line:column, message and kind; the file without its folder."""
+    """What the checks say, which has to be known in other languages too: file:line:column, message and kind; the file
+    without its folder.
+    """
     return [
-        f"{Path(w.place.file).name}:{w.place.line}:{w.place.column}: {w.message} [{w.kind}]"
+        f"{Path(w.place.file).name}:{w.place.line}:{w.place.column}: {as_message(w.message)} [{w.kind}]"
         for w in check_automaton(automaton, connections)
     ]

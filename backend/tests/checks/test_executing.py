@@ -6,7 +6,7 @@ from pathlib import Path
 
 from checks.small import device, found
 from sequence_planner.analysis.checks.rules import check_executing
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.model.loader import load_station
 from support.places import WORKED_EXAMPLE
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 from sequence_planner.analysis.checks.reachability import cannot_be
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.language.evaluator import holds
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import Expression
 from sequence_planner.model.loader import load_station
 from sequence_planner.synthesis.supervisor import Supervision
@@ -18,7 +16,7 @@ from support.places import WORKED_EXAMPLE
 
 
 def predicate(automaton: Automaton, text: str) -> Expression:
-    return resolve_predicate(parse(text), NameScope(automaton.types))
+    return automaton.read_condition(text)
 
 
 def test_what_is_reached_is_never_said_to_be_impossible() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from checks.large import write_large_station
 from sequence_planner.analysis.checks.rules import check_automaton
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.model.loader import load_station
 from support.examples import TIMED
 

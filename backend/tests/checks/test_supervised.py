@@ -33,12 +33,16 @@ from sequence_planner.synthesis.supervisor import supervised, supervisor
 from sequence_planner.synthesis.traces import StepKind
 from support.automata import Does, automaton
 from support.examples import examples
+from support.told import as_message
 
 OFF = (BOOLEAN, False)
 
 
 def found(station: Automaton) -> list[ModelWarning]:
-    return check_supervision(station, supervised(station))
+    warnings = check_supervision(station, supervised(station))
+    for each in warnings:
+        as_message(each.message)
+    return warnings
 
 
 def with_operations(choices: Choices) -> Automaton:

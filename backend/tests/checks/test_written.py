@@ -57,8 +57,12 @@ def test_nothing_is_said_where_everything_is_used(press: Path) -> None:
         ("predicates:\n", "  ‹spare: goal == home\n", "predicate"),
     ],
 )
-def test_a_name_of_the_station_that_nothing_uses(press: Path, section: str, declared: str, what: str) -> None:
-    [place] = changed(press, "station.yaml", (section, section + declared))
+@pytest.mark.parametrize("file", ["station.yaml", "resources/arm.yaml"])
+def test_a_name_of_the_station_or_a_resource_that_nothing_uses(
+    press: Path, file: str, section: str, declared: str, what: str
+) -> None:
+    declared = declared if file == "station.yaml" else declared.replace("goal == home", "at == home")
+    [place] = changed(press, file, (section, section + declared))
     assert said(press) == [f"{place}: warning: {NOTHING.format(what, 'spare')}"]
 
 
@@ -126,3 +130,33 @@ def test_a_number_that_an_instance_gives_may_leave_nothing_open(tmp_path: Path) 
         ("when: executing and at == stop", "when: 'at == stop and at least fewest q in stops: target == q'"),
     )
     assert said(robots) == []
+
+
+@pytest.mark.parametrize(
+    ("finish", "said_so"),
+    [(1, "each run is told to be late"), (2.5, "that take no longer than usual"), (3, None), (30, None)],
+)
+def test_a_time_limit_that_is_shorter_than_what_it_usually_takes(
+    tmp_path: Path, finish: float, said_so: str | None
+) -> None:
+    """It is told once of all instances of an ability, where that is written."""
+    station = tmp_path / "single_bolt"
+    shutil.copytree(MODELS / "single_bolt", station)
+    [place] = changed(
+        station,
+        "resources/robot.yaml",
+        ("\n  move_to:", "\n  ‹move_to:"),
+        (
+            "timeouts: {react: 2, finish: 30}\n    duration: [2, 3]",
+            f"timeouts: {{finish: {finish}}}\n    duration: [2, 3]",
+        ),
+    )
+    found = [each for each in said(station) if each.endswith("[too-late]")]
+    if said_so is None:
+        assert found == []
+    else:
+        [only] = found
+        assert only.startswith(
+            f"{place}: warning: `robot.move_to` usually takes 2 to 3 s and must finish within {finish:g} s"
+        )
+        assert said_so in only

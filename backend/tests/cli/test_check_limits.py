@@ -19,6 +19,7 @@ from sequence_planner.process.memory_limit import MemoryLimitError, memory_limit
 from sequence_planner.process.task import WorkerError
 from support.commands import as_json, command
 from support.places import BOLT_TIGHTENING
+from support.waiting import patience
 
 COUNTS = """
   made: {type: 0..200}
@@ -83,7 +84,7 @@ def test_a_question_that_is_too_hard_ends_with_the_deadline(tmp_path: Path) -> N
     model = load_model(station)
     began = time.monotonic()
     found = checked(model.automaton, model.connections, Limits(deadline=5.0))
-    assert time.monotonic() - began < 30.0  # killed, whatever it was at
+    assert time.monotonic() - began < patience(30.0)  # killed, whatever it was at
     assert found.suspicious or found.unfinished
 
 

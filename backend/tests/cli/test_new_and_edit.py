@@ -44,9 +44,15 @@ def test_a_new_station_is_fine(gate: Path) -> None:
     assert "\nname: north_gate\n" in (gate / "station.yaml").read_text(encoding="utf-8")
 
 
+def test_its_scenarios_pass(gate: Path) -> None:
+    code, document = as_json("test", gate)
+    assert (code, len(document["scenarios"])) == (0, 2)
+    assert document["not_exercised"] == {"abilities": [], "operations": []}
+
+
 def test_its_files_name_schemas_that_they_satisfy(gate: Path) -> None:
-    files = [*gate.glob("*.yaml"), *gate.glob("resources/*.yaml")]
-    assert len(files) == 4
+    files = [*gate.glob("*.yaml"), *gate.glob("resources/*.yaml"), *gate.glob("tests/*.yaml")]
+    assert len(files) == 5
     for file in files:
         first, _, text = file.read_text(encoding="utf-8").partition("\n")
         schema = file.parent / first.partition("$schema=")[2]

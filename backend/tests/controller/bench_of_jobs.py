@@ -27,8 +27,6 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.recorder import RunRecorder, model_digest
 from sequence_planner.execution.state import OperatorPlan, OperatorPlanKind
 from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.language.parser import parse_assignment
-from sequence_planner.language.resolver import NameScope, resolve_assignment
 from sequence_planner.language.syntax import TRUE
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.planner import Planner
@@ -62,8 +60,8 @@ _WRITTEN = automaton(
         "sweep": "swept",
     },
 )
-EMPTY = resolve_assignment(parse_assignment("content := empty"), NameScope(_WRITTEN.types))
-NOT_BOXED = resolve_assignment(parse_assignment("boxed := false"), NameScope(_WRITTEN.types))
+EMPTY = _WRITTEN.read_action("content := empty")
+NOT_BOXED = _WRITTEN.read_action("boxed := false")
 MASTERS = {
     "bottle": WorkMaster(
         "bottle",

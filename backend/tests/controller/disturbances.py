@@ -40,7 +40,7 @@ DEVICE_STEP = 0.05  # seconds between two reports of a device
 SPEED = 2.0  # of the devices
 CALM = 0.6  # seconds between two disturbances, on average
 AWAY = 2.5  # seconds for which a resource is away, at most
-IDENTITY = StationIdentity(name="truck", title="Truck", description="", transport="memory", emulated=True)
+IDENTITY = StationIdentity(name="truck", title="Truck", titles={}, description="", transport="memory", emulated=True)
 
 
 @dataclass

@@ -66,7 +66,9 @@ class Plant:
 
     def controller(self, supervisor: Supervisor) -> Controller:
         """A controller that runs, and waits for production to be started."""
-        identity = StationIdentity(name="mixer", title="", description="", transport=self._kind, emulated=True)
+        identity = StationIdentity(
+            name="mixer", title="", titles={}, description="", transport=self._kind, emulated=True
+        )
         controller = build_controller(identity, self.station, supervisor, self.join("sequence_planner"), self._database)
         controller.take_command()
         self._running.append(asyncio.create_task(controller.run()))

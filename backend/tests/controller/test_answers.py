@@ -15,11 +15,13 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.recorder import RunRecorder
 from sequence_planner.execution.state import InitialState
 from sequence_planner.execution.vocabulary import Mode
-from sequence_planner.planning.diagnosis import CorrectedValue, Correction, Diagnosis
+from sequence_planner.planning.diagnosis import CorrectedValue, Correction, Diagnosis, Member, MemberKind, Reason
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.problem import Plan
+from sequence_planner.planning.problem import Plan, Proof
+from sequence_planner.texts.message import Sentence
 
 BOLTS = "bolts[bolt_pair_1]"
+RULE = "no_standing_tool_on_placed_bolts(bolt_pair_1)"
 NOW = Timestamp(0.0, 0.0)
 NOTHING = Plan((), False, False)
 
@@ -95,5 +97,34 @@ def test_neither_the_nearest_safe_state_nor_what_would_help_contradicts_an_answe
     online = Correction((CorrectedValue("robot", None),), NOTHING)
     found = Diagnosis(None, (tight, online))
     said = f"{BOLTS} := tightened, only if you have checked that it is so"
-    assert diagnosis_view(found, ()).corrections == ["robot online", said]
-    assert diagnosis_view(found, (), taken.execution.conduct.answers).corrections == ["robot online"]
+    assert diagnosis_view(taken.execution.automaton, found, ()).corrections == ["robot online", said]
+    assert diagnosis_view(taken.execution.automaton, found, (), taken.execution.conduct.answers).corrections == [
+        "robot online"
+    ]
+
+
+def test_why_there_is_no_plan_is_told_in_titles_to_people_and_in_names_to_programs() -> None:
+    """What is to be seen to comes first."""
+    members = (
+        Member(MemberKind.VALUE, BOLTS, "placed"),
+        Member(MemberKind.VALUE, "robot.pose"),
+        Member(MemberKind.SPECIFICATION, RULE),
+        Member(MemberKind.OFFLINE, "robot"),
+    )
+    automaton = standing().execution.automaton
+    proof = Proof("relaxation", ())
+    view = diagnosis_view(automaton, Diagnosis(Reason(members, minimal=True, proof=proof), ()), ())
+    assert view.members == [
+        "robot is offline",
+        "robot.pose is not known",
+        f"{BOLTS} is placed",
+        f"the specification “{RULE}”",
+    ]
+    said = [next(iter(message.arguments.values())) for message in view.member_messages]
+    assert all(isinstance(each, Sentence) for each in said)
+    assert [each.words["en"] for each in said if isinstance(each, Sentence)] == [
+        "Robot UR10",
+        "the pose of the robot",
+        "bolt pair 1 is placed",
+        "The tool must turn before it meets placed bolts",
+    ]

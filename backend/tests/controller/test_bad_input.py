@@ -206,7 +206,7 @@ def test_a_publisher_that_is_started_anew(folder: Path) -> None:
         await heard(tank, controller)
         tank.transport.close()
         await until_async(lambda: state(controller) == (None, None), "it is unknown without a publisher")
-        assert of_tank(controller) == [f"No message any more on {TOPIC} (its publishers have gone)"]
+        assert of_tank(controller) == [f"No more messages on {TOPIC} (its publishers have gone)"]
         await heard(Tank(plant), controller)
         assert of_tank(controller) == []
 
@@ -246,7 +246,7 @@ def test_a_quality_of_service_that_is_not_kept(tmp_path: Path, policy: str, seco
             await until_async(lambda: state(controller) == (None, None), "the promise is broken")
             assert time.monotonic() - killed < 4.0  # of the topic's own deadline, 5 s, and DDS's lease, 10 s
             (text,) = of_tank(controller)
-            assert text.startswith(f"No message any more on {TOPIC} (")
+            assert text.startswith(f"No more messages on {TOPIC} (")
         async with talker(own, 100, quality):
             await until_async(lambda: value(controller, "tank.mode") == "on", "it is heard again")
 

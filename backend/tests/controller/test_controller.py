@@ -14,9 +14,10 @@ from sequence_planner.controller.build import build_controller
 from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.execution import SetMode, StartProduction
 from sequence_planner.controller.features.automatic_start import start_when_alone
-from sequence_planner.controller.views.station import Priority
+from sequence_planner.controller.views.station import Priority, StationView
 from sequence_planner.core.actor import SYSTEM
 from sequence_planner.db.database import Database
+from sequence_planner.execution.events import Answered, Heard
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
@@ -334,15 +335,25 @@ def test_a_value_that_is_unknown_and_the_alarm_of_its_device_are_in_one_view(
 
 
 def test_an_operation_says_which_steps_are_for_it_and_when_it_was_done_last() -> None:
+    """From the moment the plan is there, which comes between two ticks."""
+
     async def scenario(on: Bench) -> None:
         arm = Arm(on.network)
+        views: list[StationView] = []
+
+        def hear(heard: Heard) -> None:
+            if isinstance(heard.happening, Answered):
+                views.append(on.controller.view())
+
+        on.controller.execution.listeners.append(hear)
         with arm.saying("home"):
             await on.start()
-            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
-            view = on.controller.view()
+            await on.until(lambda: bool(views))
+            view = views[0]
             fetch = view.operations["fetch(left)"]
             assert {fetch.first_step, fetch.last_step} <= {step.id for step in view.plan.steps}
             assert fetch.last_step is not None
+            assert fetch.steps == [step.id for step in view.plan.steps]
             assert (fetch.began, fetch.ended) == (None, None)
             assert view.plan.since <= view.time
         with arm.saying("out"):
@@ -352,5 +363,9 @@ def test_an_operation_says_which_steps_are_for_it_and_when_it_was_done_last() ->
             assert fetch.began is not None
             assert fetch.ended is not None
             assert fetch.began < fetch.ended <= view.time
+            assert fetch.work, "a step ran for it"
+            began, ended = fetch.work[0].began, fetch.work[-1].ended
+            assert ended is not None
+            assert fetch.began <= began < ended <= fetch.ended
 
     run(scenario)

@@ -12,7 +12,7 @@ from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.controller.commands.approvals import ForceVariable, ReleaseForce
 from sequence_planner.controller.commands.command import CommandRefused
-from sequence_planner.controller.features.forces import Forces
+from sequence_planner.controller.features.commissioning.forces import Forces
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.language.types import Value

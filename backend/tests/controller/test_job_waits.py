@@ -77,7 +77,7 @@ def test_what_comes_before_is_said() -> None:
     on.take("b", "box")
     on.sequence(("b/pack_it", "a/check_it"))
     on.ticks()
-    assert waits(on, job="b") == ["check_it of job a"]
+    assert waits(on, job="b") == ["“check_it” of job a"]
 
 
 def test_a_precondition_that_does_not_hold_is_said() -> None:
@@ -86,7 +86,7 @@ def test_a_precondition_that_does_not_hold_is_said() -> None:
     on.execution.start_production()
     on.take("a", "crate")
     on.ticks(3, packed=True)
-    assert waits(on) == ["the precondition of label_it: content == full"]
+    assert waits(on) == ["“label_it”, which waits until content == full"]
 
 
 def test_alarms_are_said_where_nothing_moves(on: Bench) -> None:
@@ -136,7 +136,7 @@ def test_a_stuck_order_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """As it was met: an ability overdue for half an hour, and an order that waited for nothing."""
     station = Ordered()
     assert station.run()
-    late = "Run the nutrunner, which has not finished within 30 s"
+    late = "“Run the nutrunner”, which has not finished within 30 s"
     assert late not in station.waits()
     monkeypatch.setattr(EmulatedDevices, "advance", lambda self, now: None)
     station.rig.run(40)
@@ -155,7 +155,7 @@ def test_a_tight_pair_that_was_corrected_to_placed_is_what_the_order_waits_for()
     (tight,) = [pair for pair in pairs if state.state[pair] == "tightened"]
     state.correct({tight: "placed"}, "Eva", "a mistake", station.now)
     station.rig.run(200)
-    assert station.waits() == [f"the precondition of New engine: {tight} == tightened"]
+    assert station.waits() == [f"“New engine”, which waits until {tight} == tightened"]
 
 
 def test_people_are_waited_for_and_what_keeps_them() -> None:

@@ -148,7 +148,7 @@ def test_a_run_that_decides_on_what_is_brought_belongs_to_the_product_before(on:
     on.tell("a", "abort")
     on.take("b", "bottle")
     on.ticks()
-    assert on.jobs["b"].waits_for == ["the end of fill"]
+    assert on.jobs["b"].waits_for == ["the end of “fill”"]
     on.tick(level=True)
     on.tick(flows=False, level=False)
     assert on.jobs["b"].state == "running"
@@ -338,7 +338,7 @@ def test_why_an_operation_is_not_active(on: Bench) -> None:
     on.ticks(2)
     assert why("fill_it") is None
     assert why("check_it") == "what comes before it for Job a: fill_it"
-    assert why("pack_it") == "what comes before it for Job b: check_it of job a"
+    assert why("pack_it") == "what comes before it for Job b: “check_it” of job a"
     on.correct({"content": "full"})
     on.tick()
     assert why("fill_it") == "another job that asks for it: for Job a it is completed"

@@ -14,6 +14,7 @@ from sequence_planner.controller.commands.execution import SetMode, TakeControl,
 from sequence_planner.controller.commands.recovery import ConfirmEstimates, DecideOutputs
 from sequence_planner.controller.features.automatic_start import go_on, start_when_alone
 from sequence_planner.controller.previous_run import what_is_known
+from sequence_planner.controller.views.station import OperationView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.db.database import Database
 from sequence_planner.db.location import SqliteFile
@@ -264,3 +265,38 @@ def test_holding_is_possible_while_nothing_can_be_journalled_and_starts_nothing_
                 await until_async(lambda: "out" in arm.commands)
 
     asyncio.run(scenario())
+
+
+def test_after_a_start_operations_are_as_far_as_they_were() -> None:
+    """What was done was done then, and what is active has been so since it was asked for, not since the start."""
+
+    def fetch(on: Bench) -> OperationView:
+        return on.controller.view().operations["fetch(left)"]
+
+    async def scenario(database: Database) -> None:
+        network = MemoryNetwork()
+        arm = Arm(network)
+        before = Timestamp.now().epoch
+        await commanded_out(network, database, arm)
+        after = Timestamp.now().epoch
+        async with bench(network, database) as on:
+            assert (fetch(on).active, fetch(on).active_since) == (False, None), "production has not started"
+            with arm.saying("home"):
+                await at_home(on)
+                await on.controller.command(TakeControl(actor=EVA))
+                await on.controller.command(DecideOutputs(actor=EVA, reason="free", values={"arm.goto": "out"}))
+                await on.start()
+                await on.until(lambda: fetch(on).active)
+            with arm.saying("out"):
+                await on.until(lambda: fetch(on).completed == 1)
+            done = fetch(on)
+            assert done.began is not None
+            assert done.ended is not None
+            assert before < done.began < after < done.ended
+        with arm.saying("out"):
+            async with bench(network, database) as on:
+                assert (fetch(on).completed, fetch(on).began, fetch(on).ended) == (1, done.began, done.ended)
+                assert fetch(on).work == done.work
+
+    with journal() as database:
+        asyncio.run(scenario(database))

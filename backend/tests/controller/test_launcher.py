@@ -23,7 +23,7 @@ from sequence_planner.startup.station_process import UNUSABLE, Executed, Station
 from support.network import free_port
 from support.places import REPOSITORY
 from support.station import MODEL, RunningStation, command, descendants, environment, finished, foreign_node, station
-from support.waiting import until
+from support.waiting import patience, until
 
 
 def part(program: str) -> StationProcess:
@@ -89,7 +89,7 @@ def test_what_had_recovered_is_started_again_soon(monkeypatch: pytest.MonkeyPatc
     dying.spawn()
     began = time.monotonic()
     starts(dying, 4)
-    assert time.monotonic() - began < 3 * 0.5 + 2
+    assert time.monotonic() - began < patience(3 * 0.5 + 2)
     dying.end()
 
 

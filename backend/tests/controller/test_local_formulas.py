@@ -143,7 +143,7 @@ def test_a_violation_raises_an_alarm_that_says_which(tmp_path: Path) -> None:
     rig.execution.state = {**rig.execution.state, "arm.goto": "out"}
     rig.tick()
     texts = [alarm.text for key, alarm in shown.current(now).items() if key.startswith("local:")]
-    assert set(texts) == {"The local specification `G (arm.goto != out)` of fetch was violated"}
+    assert set(texts) == {"The local specification `G (arm.goto != out)` of “fetch” was violated"}
 
 
 def test_what_happens_before_production_is_started_is_not_held_against_anybody() -> None:

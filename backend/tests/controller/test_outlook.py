@@ -12,7 +12,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.outlook import Outlook, simulate_plan
 from sequence_planner.language.types import BOOLEAN, Value
 from sequence_planner.planning.problem import Plan, PlanAnswer, PlanTick, Verdict
-from support.automata import Does, automaton
+from support.automata import Does, automaton, predicate_of
 
 
 def following(station: Automaton, plan: tuple[PlanTick, ...], goals: tuple[str, ...], **measured: Value) -> Executor:
@@ -77,6 +77,20 @@ STATION = automaton(
     },
     goals={"placed": "part", "tightened": "tight", "released": "gone"},
 )
+
+
+def automaton_with_goals(*goals: str) -> Automaton:
+    """The same station with other goals: `first`, and `second`."""
+    names = ("first", "second")
+    return replace(
+        STATION,
+        operations={
+            name: replace(STATION.operations["placed"], name=name, goal=predicate_of(STATION, goal))
+            for name, goal in zip(names, goals, strict=False)
+        },
+    )
+
+
 EVERYTHING = course(("", "place", "look"), ("put", "tighten"), ("hold", "leave"), ("go",))
 GOALS = ("placed", "tightened", "released")
 UNTOUCHED: dict[str, Value] = {"part": False, "tight": False, "gone": False}
@@ -129,6 +143,29 @@ def test_what_a_device_does_by_a_command_is_by_the_step_that_gave_it() -> None:
     outlook = looked_through(execution)
     assert waits(execution, outlook) == {"take": "call"}
     assert serving(execution, outlook) == {"done": ("call", "take")}
+
+
+def test_a_step_between_those_of_an_operation_is_not_for_it_where_another_alone_waits_for_it() -> None:
+    seen = automaton_with_goals("tight", "lit")
+    execution = following(
+        seen, course(("", "place", "look"), ("put", "tighten"), ("hold",)), ("first", "second"), **UNTOUCHED
+    )
+    outlook = looked_through(execution)
+    place, look, tighten = [step.number for step in execution.plan.order.ahead]
+    assert outlook.serves == {"first": (place, tighten), "second": (look, look)}
+    assert outlook.steps_for("first") == {place, tighten}
+    assert outlook.steps_for("second") == {look}
+    assert outlook.steps_for("unknown") == set()
+
+
+def test_a_step_that_nothing_waits_for_is_for_the_operation_within_which_it_lies() -> None:
+    execution = following(
+        automaton_with_goals("tight"),
+        course(("", "place", "look"), ("put", "tighten"), ("hold",)),
+        ("first",),
+        **UNTOUCHED,
+    )
+    assert looked_through(execution).steps_for("first") == {step.number for step in execution.plan.order.ahead}
 
 
 def test_without_a_plan_there_is_nothing_to_say() -> None:

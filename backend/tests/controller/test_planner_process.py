@@ -144,13 +144,14 @@ from sequence_planner.synthesis.supervisor import FewerSpecifications
 from sequence_planner.synthesis.supervisor import synthesise
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
     automaton = prepare_station(Path({str(CELL)!r})).automaton
     supervisor = synthesise(automaton)
     model = DiagnosisModel(automaton, supervisor, FewerSpecifications(automaton, supervisor))
     request = PlanRequest(dict(initial_state(automaton)), goals_of(automaton, ("fetch(left)",)))
 
     async def live():
+        # As all that runs here does. `asyncio.run` alone misses a signal that comes just before it begins to wait.
+        asyncio.get_running_loop().add_signal_handler(signal.SIGINT, asyncio.current_task().cancel)
         planner = Worker(work, Planning(model, cautious=True), "planner")
         await planner.ask(request, 30.0)
         print("ready", flush=True)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+
 import pytest
 
 from sequence_planner.automaton.automaton import State
@@ -16,6 +19,8 @@ from sequence_planner.controller.commands.tasks import (
 from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
 from sequence_planner.controller.views.station import NextMovesView, TaskView
 from sequence_planner.core.clock import Timestamp
+from sequence_planner.core.immutable import replace
+from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode
 from sequence_planner.texts.message import message
 from support.people import EVA
@@ -114,13 +119,20 @@ def test_a_watch_that_speaks_on_a_topic_is_heard_beside_the_page() -> None:
 
 
 def test_a_task_says_who_moves_next() -> None:
-    rig, abilities = Rig(), truck_engine()[0].automaton.abilities
+    rig, automaton = Rig(), truck_engine()[0].automaton
+    abilities = automaton.abilities
 
     def moving() -> list[str]:
         return [name for name in rig.execution.plan.order.names if abilities[name].human is None]
 
-    def shown(*, goes_on: bool) -> list[NextMovesView]:
-        tasks = OpenTasks(rig.execution, rig.desk, lambda: goes_on, lambda resource: message("still.nothing"))
+    def shown(*, goes_on: bool, still: str = "") -> list[NextMovesView]:
+        stilled = {still: replace(abilities[still], moves=False)} if still else {}
+        execution = SimpleNamespace(
+            automaton=replace(automaton, abilities={**abilities, **stilled}), plan=rig.execution.plan
+        )
+        tasks = OpenTasks(
+            cast(Executor, execution), rig.desk, lambda: goes_on, lambda resource: message("still.nothing")
+        )
         views = tasks.view_part(Timestamp(rig.now, rig.now))["tasks"]
         assert isinstance(views, dict)
         (view,) = views.values()
@@ -129,9 +141,17 @@ def test_a_task_says_who_moves_next() -> None:
 
     rig.start_production()
     assert rig.run(20, until=lambda: bool(rig.desk.open) and len(moving()) > 2)
-    titles = [abilities[name].title for name in moving()[:2]]
-    assert shown(goes_on=True) == [NextMovesView(name="robot", title="Robot UR10", moves=titles)]
+    titles = [abilities[name].title for name in moving()[:3]]
+    assert shown(goes_on=True) == [NextMovesView(name="robot", title="Robot UR10", moves=titles[:2])]
     assert shown(goes_on=False) == []
+    # What moves nothing is not said to move, and what moves after it is.
+    told = [title for view in shown(goes_on=True, still=moving()[0]) for title in view.moves]
+    assert told == titles[1:]
+
+
+def test_what_tells_the_planner_what_the_robot_holds_moves_nothing() -> None:
+    still = {name for name, ability in truck_engine()[0].automaton.abilities.items() if not ability.moves}
+    assert still == {"robot.attach_in_planning_scene", "robot.detach_in_planning_scene"}
 
 
 def told(

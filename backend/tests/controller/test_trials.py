@@ -183,8 +183,8 @@ def test_it_takes_the_paused_mode_and_production(press: Press) -> None:
 
 def test_what_its_guard_lacks_is_said(press: Press) -> None:
     press.tick("down")
-    assert press.refused("not-startable") == "press waits for at == up."
-    assert press.definition().obstacle == "press waits for at == up."
+    assert press.refused("not-startable") == "“press” waits for at == up."
+    assert press.definition().obstacle == "“press” waits for at == up."
     assert press.refused("unknown-ability", "pres").startswith("The station has no ability `pres`")
 
 
@@ -192,7 +192,7 @@ def test_the_supervisor_is_asked_as_ever(press: Press) -> None:
     press.attempt("open")
     press.tick()
     detail = press.refused("not-startable")
-    assert detail == "press waits for not door, because of: shut."
+    assert detail == "“press” waits for not door, because of: shut."
     assert press.definition().allowed is False
     assert press.definition("open").allowed is True
 

@@ -144,7 +144,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     assert taken.tick() == ()
     assert causes(4) == []
     (text,) = causes(5.1)
-    assert text == "Move to above engine has not started for 5 s: it waits for a step: the station goes step by step"
+    assert text == "“Move to above engine” has not started for 5 s: it waits for a step: the station goes step by step"
     taken.execution.take_step()
     assert taken.tick() == (TO_ABOVE,)
     assert causes(60) == []

@@ -17,9 +17,9 @@ from sequence_planner.controller.commands.command import CommandRefused
 from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.features.variables import Beliefs
 from sequence_planner.controller.planner_client import AdvisorClient
-from sequence_planner.controller.recovery.explain import ConditionContext, HindranceKind, of_ability
+from sequence_planner.controller.recovery.explain import ConditionContext, HindranceKind, Involving, of_ability
 from sequence_planner.controller.recovery.why_not import WhyNot
-from sequence_planner.controller.views.details import ConditionView, WhyNotView
+from sequence_planner.controller.views.details import ConditionView, ReasonView, WhyNotView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
@@ -29,7 +29,7 @@ from sequence_planner.planning.problem import PlanRequest
 from sequence_planner.synthesis.guards import shown_guards
 from sequence_planner.synthesis.supervisor import supervised, supervisor
 from support.automata import Does, automaton, predicate_of
-from support.places import TRUCK_ENGINE_STATION
+from support.places import BOLT_TIGHTENING, TRUCK_ENGINE_STATION
 
 UNSUPERVISED = Supervisor(StateSet((), ()), {})
 
@@ -114,6 +114,77 @@ def test_an_ability_says_all_that_is_in_its_way_and_who_could_change_it() -> Non
             assert (refused.value.slug, refused.value.status) == ("unknown-ability", 404)
 
     asyncio.run(scenario())
+
+
+def leaves(part: ReasonView) -> list[ReasonView]:
+    return [leaf for each in part.parts for leaf in leaves(each)] if part.parts else [part]
+
+
+def test_the_conditions_are_told_in_whole_as_trees() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            desk, execution = asked.desk, asked.execution
+            execution.start_production()
+            desk.tick()
+            (enabled,) = (await asked.ability("unload")).trees
+            assert (enabled.about, enabled.tree.kind, enabled.tree.holds) == ("enabled", "all", False)
+            parts = {part.text: part for part in leaves(enabled.tree)}
+            assert parts["at == work"].decides
+            assert [each.name for each in parts["at == work"].involved] == ["at"]
+            assert [(each.name, each.value) for each in parts["loaded"].reads] == [("loaded", False)]
+            resting = [part for part in parts.values() if part.holds]
+            assert resting
+            assert not any(part.decides or part.involved for part in resting)
+            (begins,) = (await asked.operation()).trees
+            assert (begins.about, [leaf.text for leaf in leaves(begins.tree)]) == ("precondition", ["loaded"])
+            desk.correct(loaded=True)
+            desk.tick()
+            (goal,) = (await asked.operation()).trees
+            assert (goal.about, goal.tree.holds) == ("goal", False)
+            asked.plan()
+            assert desk.tick() == ("go",)
+            running = await asked.ability("go")
+            (end,) = running.trees
+            assert (running.conditions, end.about) == ([], "finish")
+            (arrived,) = leaves(end.tree)
+            assert [(each.how, each.name) for each in arrived.involved[0].changers] == [
+                ("effect", "go"),
+                ("device", "station"),
+            ]
+
+    asyncio.run(scenario())
+
+
+def test_what_must_end_is_wanted_otherwise_down_to_the_variables() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            asked.execution.start_production()
+            asked.desk.correct(delivered=True)
+            asked.desk.tick()
+            done, begins = (await asked.operation()).trees
+            assert (done.about, done.tree.wanted, done.tree.holds) == ("undone", False, True)
+            (delivered,) = done.tree.involved
+            assert (delivered.name, delivered.wanted, begins.about) == ("delivered", [False], "precondition")
+            (tree,) = (await asked.goal("not (loaded or at == work)")).trees
+            assert (tree.about, tree.tree.holds, [part.involved for part in leaves(tree.tree)]) == (
+                "predicate",
+                True,
+                [[], []],
+            )
+
+    asyncio.run(scenario())
+
+
+def test_somebody_acknowledges_a_task_and_the_clock_changes_what_goes_by_it() -> None:
+    station = usable_automaton(BOLT_TIGHTENING)
+    execution = Executor(station, UNSUPERVISED)
+    execution.tick({"operator.acknowledged": False, "robot.pose": "home"}, Timestamp(0.0, 0.0))
+    timed = frozenset({"robot.pose"})
+    involving = Involving(execution, ConditionContext({}, lambda name: None, Beliefs(execution), dict, timed))
+    (free,) = involving.among(predicate_of(station, "operator.acknowledged"))
+    assert [(each.how, each.name) for each in free.changers] == [("task", "operator")]
+    (pose,) = involving.among(predicate_of(station, "robot.pose == above_engine"))
+    assert [each.how for each in pose.changers if each.how != "effect"] == ["clock", "device"]
 
 
 def test_the_supervisor_and_the_plan_can_be_in_the_way() -> None:

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.model.loader import load_station
 from sequence_planner.synthesis.supervisor import Supervision, relevant, synthesise

@@ -12,8 +12,9 @@ from itertools import product
 from typing import Any
 
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.resolver import resolve_assignment, resolve_predicate
 from sequence_planner.language.syntax import Assignment, Component, Name
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 

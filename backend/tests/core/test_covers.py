@@ -10,9 +10,10 @@ from itertools import combinations, product
 from hypothesis import given
 
 from sequence_planner.language.evaluator import holds
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.resolver import resolve_predicate
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 from sequence_planner.synthesis.bdd import Diagrams, Function
 from sequence_planner.synthesis.guards import Cube, count_literals, cover, single, worded

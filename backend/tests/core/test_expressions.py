@@ -7,9 +7,10 @@ from itertools import product
 from hypothesis import given
 
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment
 from sequence_planner.language.printer import print_assignment, print_expression
-from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.resolver import resolve_assignment, resolve_predicate
 from sequence_planner.language.simplifier import simplify, simplify_assignment
 from sequence_planner.language.syntax import (
     FALSE,

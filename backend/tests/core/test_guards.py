@@ -15,9 +15,7 @@ from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.language.evaluator import evaluate, holds
-from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import And, Expression, variables
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.efa_document import read_plain
@@ -55,7 +53,7 @@ def read(written: Mapping[str, Any]) -> Automaton:
 def printed(automaton: Automaton, guard: SupervisorGuard) -> Expression:
     """The guard as a person would write it down again."""
     assert guard.expression is not None
-    return resolve_predicate(parse(print_expression(guard.expression)), NameScope(automaton.types))
+    return automaton.read_condition(print_expression(guard.expression))
 
 
 # The examples.

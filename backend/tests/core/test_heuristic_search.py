@@ -12,8 +12,6 @@ from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.language.evaluator import holds
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import Expression
 from sequence_planner.language.types import BOOLEAN
 from sequence_planner.model.efa_document import read_plain
@@ -183,7 +181,7 @@ def test_goals_one_by_one_are_reached_like_goals_together() -> None:
 
 
 def _at(automaton: Automaton, place: str) -> Expression:
-    return resolve_predicate(parse(f"at == {place}"), NameScope(automaton.types))
+    return automaton.read_condition(f"at == {place}")
 
 
 def test_what_is_needless_only_where_a_device_tarries_stays() -> None:

@@ -16,8 +16,9 @@ from sequence_planner.automaton.lifting.index_folding import GroundStatement, In
 from sequence_planner.automaton.lifting.normal_form import normal_form
 from sequence_planner.automaton.lifting.wording import ModelWording, phrase
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.resolver import resolve_predicate
 from sequence_planner.language.shorthand.vocabulary import NamedPredicate, ValueRelation, Vocabulary
 from sequence_planner.language.syntax import (
     And,

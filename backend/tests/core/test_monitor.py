@@ -10,8 +10,9 @@ from hypothesis import given
 from language.trees import formulas, traces
 from sequence_planner.language.evaluator import Valuation
 from sequence_planner.language.ltl import satisfies
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse_formula
-from sequence_planner.language.resolver import NameScope, resolve_formula
+from sequence_planner.language.resolver import resolve_formula
 from sequence_planner.language.syntax import TRUE, BinaryTemporal, Expression, UnaryTemporal, conjunction
 from sequence_planner.language.types import BOOLEAN, Value
 from sequence_planner.planning.goals.monitor import MOST_STATES, Monitor, TooManyStatesError, monitor_of

@@ -9,8 +9,6 @@ from sequence_planner.automaton.automaton import Automaton, State
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.core.immutable import replace
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.types import BOOLEAN, EnumerationType
 from sequence_planner.planning.heuristic.relaxation import reachable
 from sequence_planner.planning.operation_decomposition import OperationByOperation, OperationTask
@@ -78,7 +76,7 @@ def ask(station: Automaton, task: PlanningTask) -> Finding:
 def towards(station: Automaton, state: State, goal: str, offline: str = "") -> tuple[str, ...] | None:
     """Which operations seem to lead to the predicate `goal`."""
     possible = reachable(station, state, Circumstances(frozenset({offline}))).possible
-    predicate = resolve_predicate(parse(goal), NameScope(station.types))
+    predicate = station.read_condition(goal)
     return OperationTask(station).towards(state, [predicate], possible)
 
 
@@ -135,9 +133,7 @@ def test_an_operation_does_not_bring_what_another_is_for() -> None:
         goals={"placing": "bolt != empty", "tightening": "bolt == tight"},
     )
     operations = dict(station.operations)
-    operations["tightening"] = replace(
-        operations["tightening"], precondition=resolve_predicate(parse("bolt == placed"), NameScope(station.types))
-    )
+    operations["tightening"] = replace(operations["tightening"], precondition=station.read_condition("bolt == placed"))
     station = replace(station, operations=operations)
     assert towards(station, initial_state(station), "bolt == tight") == ("placing", "tightening")
     assert towards(station, initial_state(station), "bolt != empty") == ("placing",)

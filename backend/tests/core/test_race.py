@@ -35,7 +35,7 @@ from sequence_planner.planning.problem import (
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
 from support.examples import ONLY_TIMED, examples
-from support.waiting import until
+from support.waiting import patience, until
 
 from .choices import made_by
 from .random_problems import Problem, problem
@@ -196,7 +196,7 @@ def test_a_deadline_is_kept_by_lanes_that_cannot_be_interrupted(worked_example: 
         for _ in range(2):
             began = time.monotonic()
             answer = asking.answer(0.3, contract)
-            assert 0.25 < time.monotonic() - began < 0.7
+            assert 0.25 < time.monotonic() - began < patience(0.7)
             assert answer.verdict is Verdict.LATE
 
 
@@ -206,12 +206,14 @@ def test_a_lane_that_does_not_come_back_is_replaced_and_answers_again(
     monkeypatch.setattr(racing, "PATIENCE", 0.2)
     with closing(Asking(worked_example, "bmc")) as asking:
         assert asking.answer().plan is not None
+        lane = asking.race._lanes["bmc"]
+        until(lambda: lane._back == lane._number)  # else it is the question before from which it does not come back
         still = the("bmc")
         assert still.pid is not None
         os.kill(still.pid, signal.SIGSTOP)
         began = time.monotonic()
         assert asking.answer(0.2).verdict is Verdict.LATE
-        assert time.monotonic() - began < 0.7
+        assert time.monotonic() - began < patience(0.7)
         until(lambda: still.poll() is not None)
         until(lambda: bool(processes()))
         assert asking.answer().plan is not None
@@ -258,7 +260,7 @@ def test_a_request_is_called_off_from_another_thread(worked_example: Automaton) 
         threading.Timer(0.2, budget.call_off).start()
         began = time.monotonic()
         answer = asking.planner.answer(asking.request, budget)
-        assert time.monotonic() - began < 1
+        assert time.monotonic() - began < patience(1)
         assert answer.plan is None
 
 

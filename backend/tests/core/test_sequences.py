@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.tick import record_activity, update_operations
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace

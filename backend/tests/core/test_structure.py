@@ -33,6 +33,7 @@ LAYERS = (
     "planning",
     "analysis",
     "simulation",
+    "scenarios",
     "export",
     "journal",
     "standby",
@@ -73,6 +74,7 @@ MOST_IMPORTS = 15  # modules of the program that a module imports
 FEWER_IMPORTS = {"controller.controller": 8}  # of those that are to stay simpler than others
 MOST_NAMESAKES = 4  # modules that define a public function of the same name, unless it is one of these
 PROTOCOL_VERBS = {
+    "answering",
     "causes",
     "close",
     "handle",

@@ -17,8 +17,6 @@ from sequence_planner.automaton.tick import (
     synchronise,
 )
 from sequence_planner.language.evaluator import holds
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import Expression
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.problem import Plan, PlanRequest, Verdict, goals_of
@@ -32,7 +30,7 @@ TORQUE = "nutrunner.run_nut.torque_is_reached"
 
 
 def predicate(automaton: Automaton, text: str) -> Expression:
-    return resolve_predicate(parse(text), NameScope(automaton.types))
+    return automaton.read_condition(text)
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,7 @@ from sequence_planner.core.storage_error import StorageError
 from sequence_planner.db.database import Database
 from sequence_planner.db.metadata import METADATA
 from sequence_planner.db.upgrade import NEWEST
+from sequence_planner.editor import talk
 from sequence_planner.mes import webhooks
 from support.postgresql import PASSWORD
 
@@ -32,7 +33,7 @@ database.check()
 
 
 def test_the_migrations_make_the_tables_that_the_program_declares(database: Database) -> None:
-    rooms = (auth, journal, mes, webhooks, standby, editor)
+    rooms = (auth, journal, mes, webhooks, standby, editor, talk)
     for package in rooms:
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)

@@ -42,10 +42,25 @@ measured:
   held: {type: grip, initial: bare}
 output:
   target: {type: spot}
+  side: {type: sides}
+sets:
+  sides: {of: spot, values: [left, right]} # of the arm alone
+  lone: {of: sides, except: [right]}
+relations:
+  across: {between: [sides, sides], pairs: [[lone, right]]}
+maps:
+  mirrored: {from: sides, to: sides, values: {lone: right, right: left}}
 predicates:
+  is_aside: {parameters: {where: sides}, when: 'at in sides and (at == where or at == mirrored[where])'}
   is_at: {parameters: {q: spot}, when: at == q and target == q}
   is_free: at in free and not is_at(left)
 abilities:
+  turn:
+    parameters: {where: sides}
+    enabled: "is_aside(where) and across(side, right) and any s in sides: s != where and side == s"
+    start: {do: [side := where]}
+    effects:
+      turns: {for: {from_side: sides}, when: side != at and at == from_side, do: [at := side]}
   move:
     title: "Move to {to}"
     parameters: {to: free}
@@ -63,6 +78,8 @@ abilities:
     finish: {when: "exactly 1 q in ends: is_done(q) or bolts[q] == placed"}
     effects:
       holds: {kind: executing, when: held == bare, do: ["held := small"]}
+      slips:
+        {for: {it: grip}, when: "held == it and it != bare and grip_for[one] == it", do: [held := bare], fault: true}
 """,
     "operations.yaml": """\
 fasten:
@@ -71,6 +88,7 @@ fasten:
   local: "all p in ends where p > p1: F (bolts[p] == tight)"
 """,
     "specifications.yaml": """\
+aside: {parameters: {where: arm.sides}, forbidden: 'arm.at == where and arm.side == where and arm.at in arm.lone'}
 apart: {never: 'at least 3 p in part: bolts[p] == placed', while: 'any s in work: near(s, goal)'}
 """,
 }

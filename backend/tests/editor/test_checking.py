@@ -20,6 +20,7 @@ from sequence_planner.forking.starting import children
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.process.task import WorkerError
 from support.places import BOLT_TIGHTENING
+from support.told import as_message
 from support.waiting import PATIENCE, until_async
 
 
@@ -32,11 +33,17 @@ def test_a_model_is_found_fit_with_what_its_supervisor_adds(tmp_path: Path) -> N
     found = list(checked(7, bolts(), BOLT_TIGHTENING, StartNeeds(), tmp_path))
     assert [each.state for each in found[:-1]] == [CheckState.CHECKING] * (len(found) - 1)
     assert found[0].doing == "reading it"
+    for each in found[:-1]:
+        assert each.doing_message is not None
+        assert each.doing == as_message(each.doing_message)
     done = found[-1]
     assert (done.number, done.state, done.doing, done.findings) == (7, CheckState.DONE, "", [])
     assert done.hindrance(done.number) is None
     assert done.summary is not None
     assert (done.summary.abilities, done.summary.operations) == (13, 8)
+    assert done.summary.examples == 0
+    assert [each.what for each in done.looked] == list(dict.fromkeys(each.doing for each in found[:-1]))
+    assert all(each.seconds >= 0 for each in done.looked)
     assert done.analysis is not None
     assert done.analysis.guards
 
@@ -48,8 +55,11 @@ def test_errors_stand_at_their_places_in_the_files_of_the_model(tmp_path: Path) 
     assert (finding.line, finding.column) != (1, 1)
     assert "did you mean `robot.tool_is_attached`" in finding.message
     assert (done.state, done.summary) == (CheckState.DONE, None)
+    assert finding.said is not None
+    assert finding.message == as_message(finding.said)
     hindrance = done.hindrance(1)
     assert hindrance is not None
+    assert as_message(hindrance.why).arguments["what"] == finding.said
     assert hindrance.slug == "check-found-errors"
     assert f"operations.yaml:{finding.line}:{finding.column}: {finding.message.rstrip('.')}" in hindrance.why
     ahead = done.hindrance(2)
@@ -65,8 +75,11 @@ def test_what_cannot_be_met_is_shown_with_a_run_and_cannot_be_deployed(tmp_path:
     assert done.analysis is not None
     assert done.analysis.supervised is False
     (finding,) = [each for each in done.findings if each.kind == "specification-cannot-be-met"]
+    assert finding.said is not None
+    assert finding.message == as_message(finding.said)
     hindrance = done.hindrance(done.number)
     assert hindrance is not None
+    assert as_message(hindrance.why).id == "hindrance.no-supervisor.because"
     assert hindrance.slug == "no-supervisor"
     assert finding.message.rstrip(".") in hindrance.why
     assert "`rest`" in finding.message
@@ -157,6 +170,8 @@ def test_a_check_whose_process_is_killed_says_so(tmp_path: Path, monkeypatch: py
         os.kill(process.pid, signal.SIGKILL)
         failed = await desk.until(lambda view: view.state is CheckState.FAILED)
         assert "ended without an answer" in failed.doing
+        assert failed.doing_message is not None
+        assert failed.doing == as_message(failed.doing_message)
         hindrance = failed.hindrance(failed.number)
         assert hindrance is not None
         assert hindrance.slug == "not-checked"
@@ -171,7 +186,7 @@ def test_work_that_fails_is_not_waited_for() -> None:
     async def live() -> None:
         async with (
             asyncio.timeout(PATIENCE),
-            working("compared", None, None, None) as found,
+            working("comparing.comparison:compared", None, None, None) as found,
         ):
             with pytest.raises(WorkerError):
                 await anext(found)

@@ -11,6 +11,7 @@ from sequence_planner.core.actor import Actor
 from sequence_planner.db.database import Database
 from sequence_planner.editor import draft as drafts
 from sequence_planner.editor.draft import ChangeKind, Draft, DraftProposal, PartChangedError, SetEntry, WriteText
+from sequence_planner.editor.schemas.draft import LONGEST_TEXT, MOST_PLACES, change_view
 from sequence_planner.model.paths import EditError
 from support.people import ADAM, EVA
 
@@ -100,6 +101,32 @@ def test_changes_are_kept_with_who_made_them(desk: Desk) -> None:
         ("Adam", ChangeKind.EDIT, "wrote resources/robot.yaml"),
         ("Eva", ChangeKind.EDIT, "title is A cell"),
     ]
+
+
+def test_a_change_tells_what_it_did_and_so_does_taking_it_back(desk: Desk, database: Database) -> None:
+    desk.set(EVA, ["title"], "Cell", "Robot cell")
+    desk.undo(EVA)
+    desk.write(EVA, OPERATIONS, FILES[OPERATIONS], None)
+    with database.reading() as connection:
+        told = [change_view(each, did) for each, did in drafts.accounts(connection, 3)]
+    assert [[(each.file, each.line, each.was, each.now) for each in view.places] for view in told] == [
+        [(OPERATIONS, 1, "drill:\n  goal: done", None)],
+        [(STATION, 2, "title: Robot cell", "title: Cell")],
+        [(STATION, 2, "title: Cell", "title: Robot cell")],
+    ]
+
+
+def test_of_a_large_change_only_its_beginning_is_told(desk: Desk, database: Database) -> None:
+    lines = "".join(f"# {number} {'long ' * 100}\nline_{number}: 1\n" for number in range(2 * MOST_PLACES))
+    desk.write(EVA, "resources/robot.yaml", None, lines)
+    desk.write(EVA, "resources/robot.yaml", lines, lines.replace(": 1", ": 2"))
+    with database.reading() as connection:
+        last, first = (change_view(each, did).places for each, did in drafts.accounts(connection, 2))
+    assert len(last) == MOST_PLACES
+    assert last[0].now == "line_0: 2"
+    assert len(first) == 1
+    assert first[0].now is not None
+    assert len(first[0].now) == LONGEST_TEXT + 1
 
 
 def test_a_refused_change_leaves_nothing_behind(desk: Desk) -> None:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sequence_planner.editor.merging import MergeConflictError, merged
+from sequence_planner.editor.merging import MergeConflictError, merged, rewritten
 from support.examples import examples
 
 LINES = st.lists(st.sampled_from("abc"), max_size=8).map(lambda lines: "".join(f"{line}\n" for line in lines))
@@ -104,3 +104,32 @@ def test_long_texts_of_like_lines_are_merged_soon() -> None:
     old = "".join(f"  v{number}:\n    type: bool\n" for number in range(20_000))
     mine, theirs = old.replace("v10000:", "w:"), old.replace("v19999:\n    type: bool", "v19999:\n    type: int")
     assert merged(old, mine, theirs) == mine.replace("v19999:\n    type: bool", "v19999:\n    type: int")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("a: 1\nb: 2\n", "a: 1\nb: 3\n", [(2, "b: 2", "b: 3")]),
+        ("a:\n  x: 1\n  y: 2\n", "a:\n  x: 2\n  y: 3\n", [(2, "x: 1", "x: 2"), (3, "y: 2", "y: 3")]),
+        ("a: 1\n", "a: 1\nb:\n  c: 2\n", [(2, None, "b:\n  c: 2")]),
+        ("a: 1\n  b: 2\n  c: 3\n", "a: 1\n", [(2, "b: 2\nc: 3", None)]),
+        (None, "a: 1\n", [(1, None, "a: 1")]),
+        ("a: 1\n", None, [(1, "a: 1", None)]),
+    ],
+)
+def test_lines_that_differ_are_told_with_what_they_were(
+    old: str | None, new: str | None, told: list[tuple[int, str | None, str | None]]
+) -> None:
+    assert [(each.line, each.was, each.now) for each in rewritten(old, new)] == told
+
+
+@given(LINES, LINES)
+def test_all_that_differs_is_told_where_it_stands(old: str, new: str) -> None:
+    found = rewritten(old, new)
+    assert bool(found) == (old != new)
+    lines = new.splitlines()
+    for each in found:
+        now = [] if each.now is None else each.now.splitlines()
+        assert lines[each.line - 1 :][: len(now)] == now
+    gone = sum(len((each.was or "").splitlines()) - len((each.now or "").splitlines()) for each in found)
+    assert len(old.splitlines()) - gone == len(lines)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.editor.diff import text_differences
+from sequence_planner.editor.comparing.diff import text_differences
 
 
 def test_only_files_that_differ_are_told_with_what_is_new_and_gone() -> None:

@@ -11,6 +11,7 @@ from sequence_planner.editor.schemas.what_if import WhatIfView
 from sequence_planner.language.types import Value
 from sequence_planner.model.files import read_files
 from support.places import BOLT_TIGHTENING, MODELS
+from support.told import as_message
 
 PLACED: dict[str, Value | None] = {f"bolts[bolt_pair_{number}]": "placed" for number in (1, 2, 3)}
 
@@ -54,6 +55,8 @@ def test_what_cannot_be_used_says_so(tmp_path: Path) -> None:
     found = simulate(tmp_path, bolts(operations=("priority: 1", "priority: one")), {})
     assert (found.seconds, found.runs) == (0.0, [])
     assert "operations.yaml" in str(found.obstacle)
+    assert found.obstacle_message is not None
+    assert as_message(found.obstacle_message) == found.obstacle
 
 
 def _each_in(folder: Path, *models: dict[str, str]) -> Iterator[tuple[Path, dict[str, str]]]:
@@ -91,10 +94,10 @@ def test_a_draft_with_names_for_what_is_said_more_than_once_goes_on_like_one_wit
     short["resources/robot.yaml"] = robot.replace("\nabilities:", free, 1)
     found, plain = (simulate(folder, files, PLACED) for folder, files in _each_in(tmp_path, short, bolts()))
     assert found.obstacle is None
-    # Which of the pairs comes first is the planner's choice.
-    assert [_plain(each.ability) for each in found.runs] == [_plain(each.ability) for each in plain.runs]
-    tightened = {each.operation for each in found.completed if each.operation.startswith("tighten")}
-    assert tightened and len(found.completed) == len(plain.completed)
+    # How many abilities that takes is the planner's choice, which has less time on a busy machine.
+    assert {_plain(each.ability) for each in found.runs} == {_plain(each.ability) for each in plain.runs}
+    for run in (found, plain):
+        assert {each.operation for each in run.completed} >= {f"tighten_bolt_pair(bolt_pair_{n})" for n in (1, 2, 3)}
 
 
 def _plain(ability: str) -> str:

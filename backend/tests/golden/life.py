@@ -241,7 +241,12 @@ async def life(
     """A controller from its start to its end, which knows what the journal does."""
     station, supervisor = ready(folder)
     identity = StationIdentity(
-        name=folder.name.removesuffix("_deployed"), title="", description="", transport="memory", emulated=True
+        name=folder.name.removesuffix("_deployed"),
+        title="",
+        titles={},
+        description="",
+        transport="memory",
+        emulated=True,
     )
     transport = network.join(station.registry, "sequence_planner", asyncio.get_running_loop())
     known = what_is_known(database, station.automaton)

@@ -26,6 +26,7 @@ from sequence_planner.cli.lazy import LazyCommand
 from sequence_planner.cli.main import app
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.kinds import KINDS as ALARMS
+from sequence_planner.controller.features.plan import KIND as OPERATIONS
 from sequence_planner.controller.features.variables import KIND as BELIEFS
 from sequence_planner.execution.record.codec import _MISSING, BEGUN, KINDS, SNAPSHOT, WRITTEN_AS, _fields
 from sequence_planner.execution.record.recorder import EXECUTION, ORDER, PLAN
@@ -48,7 +49,7 @@ def journal_kinds() -> str:
     """
     parts = {f"{prefix}{name.lstrip('_')}": _form(form) for prefix, name, form in _memory()}
     kinds = {kind: _form(form) for kind, form in KINDS.items()}
-    others = {"whole": sorted((BEGUN, SNAPSHOT)), "lasting": sorted((ASIDE, BELIEFS))}
+    others = {"whole": sorted((BEGUN, SNAPSHOT)), "lasting": sorted((ASIDE, BELIEFS, OPERATIONS))}
     return json.dumps({"happenings": kinds, "memory": parts, **others}, indent=1, sort_keys=True) + "\n"
 
 

@@ -12,7 +12,7 @@ from sequence_planner.db.database import Database
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.record.recorder import RunRecorder, model_digest
 from sequence_planner.execution.state import InitialState
-from sequence_planner.history.simulation import SimulatedStation
+from sequence_planner.history.simulated_station import SimulatedStation
 from sequence_planner.journal.writer import RunWriter
 from support.databases import journal
 from support.places import BOLT_TIGHTENING

@@ -181,6 +181,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         *(tick, tick, tick, tick, ask, ask, answer, answer, order, order),
         lambda: execution.change_mode(choices.pick(tuple(Mode)), "Eva", lived.moment),
         lambda: execution.set_stepping(choices.chance(2)),
+        lambda: execution.set_cycle_stop(not choices.chance(3), "Eva", "the shift ends", lived.moment),
         *(execution.take_step, service, correct, force, release, errand),
         lambda: execution.call_off("Eva", lived.moment),
         lambda: execution.confirm(frozenset(station.names(Kind.ESTIMATED)[:1]), "Eva", lived.moment),

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import ast
+import re
+from pathlib import Path
+
 import pytest
 
+from sequence_planner.language import parser
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
-from sequence_planner.language.resolver import (
-    NameScope,
-    resolve_assignment,
-    resolve_formula,
-    resolve_predicate,
-)
+from sequence_planner.language.resolver import resolve_assignment, resolve_formula, resolve_predicate
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 
 from .marking import assert_refused
@@ -173,3 +174,19 @@ def test_slips_in_an_action(example: str, message: str) -> None:
 )
 def test_slips_in_a_formula(example: str, message: str) -> None:
     assert_refused(lambda text: resolve_formula(parse_formula(text), SCOPE), example, message)
+
+
+def test_what_is_expected_is_said_in_every_language() -> None:
+    """A sign stands in quotes; what is no sign is a text of the catalogue."""
+    source = ast.parse(Path(parser.__file__).read_text(encoding="utf-8"))
+    places = {"_expect": 1, "_unfit": 0, "_no_operator": 0, "_domain": 0, "_word": 0}
+    wanted = {
+        each.value
+        for call in ast.walk(source)
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and call.func.attr in places
+        for what in [call.args[places[call.func.attr]]]
+        for each in ([what.body, what.orelse] if isinstance(what, ast.IfExp) else [what])
+        if isinstance(each, ast.Constant) and isinstance(each.value, str)
+    }
+    assert len(wanted) > 10
+    assert {what for what in wanted if re.fullmatch("`[^a-z]+`", what) is None} <= parser.WANTED.keys()

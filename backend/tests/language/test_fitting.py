@@ -13,9 +13,10 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 from sequence_planner.language import fitting
 from sequence_planner.language.evaluator import evaluate, holds
 from sequence_planner.language.fitting import fits_condition, misfit
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.resolver import resolve_assignment, resolve_predicate
 from sequence_planner.language.syntax import (
     TRUE,
     Arithmetic,

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import MOST_NESTED, parse, parse_assignment, parse_formula
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, resolve_formula, resolve_predicate
+from sequence_planner.language.resolver import resolve_formula, resolve_predicate
 from sequence_planner.language.syntax import (
     Expression,
     ExpressionError,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sequence_planner.language.suggestions import beginning_with, nearest, nearest_of
+from sequence_planner.language.names.suggestions import beginning_with, nearest, nearest_of
 from support.examples import examples
 
 WORDS = st.text("abc_.", min_size=1, max_size=8)

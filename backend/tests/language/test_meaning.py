@@ -8,9 +8,10 @@ from itertools import product
 from hypothesis import given
 
 from sequence_planner.language.evaluator import evaluate, holds
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.resolver import resolve_predicate
 from sequence_planner.language.simplifier import simplify, simplify_assignment
 from sequence_planner.language.syntax import (
     FALSE,

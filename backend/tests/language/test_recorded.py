@@ -12,12 +12,13 @@ from pathlib import Path
 
 import pytest
 
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.language.records.expressions import read_calculation
 from sequence_planner.language.records.field_paths import REAL, TEXT
 from sequence_planner.language.records.record import ListType, NestedType, RecordType
-from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_formula, resolve_predicate
+from sequence_planner.language.resolver import resolve_assignment, resolve_formula, resolve_predicate
 from sequence_planner.language.syntax import Expression, ExpressionError, children
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment
 from sequence_planner.language.printer import print_assignment, print_expression
-from sequence_planner.language.resolver import NameScope, resolve_assignment, resolve_predicate
+from sequence_planner.language.resolver import resolve_assignment, resolve_predicate
 from sequence_planner.language.syntax import Constant, ExpressionError, occurrences
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange
 

@@ -11,14 +11,10 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.printer import print_assignment, print_expression
-from sequence_planner.language.resolver import (
-    NameScope,
-    resolve_assignments,
-    resolve_formula,
-    resolve_predicate,
-)
+from sequence_planner.language.resolver import resolve_assignments, resolve_formula, resolve_predicate
 from sequence_planner.language.shorthand.cases import MOST_CASES
 from sequence_planner.language.shorthand.vocabulary import NamedPredicate, ValueMap, ValueRelation, Vocabulary
 from sequence_planner.language.simplifier import simplify

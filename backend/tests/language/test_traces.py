@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.language.ltl import progress, satisfies
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse_formula
-from sequence_planner.language.resolver import NameScope, resolve_formula
+from sequence_planner.language.resolver import resolve_formula
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.syntax import (
     FALSE,

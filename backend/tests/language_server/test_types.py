@@ -165,7 +165,7 @@ def test_the_type_is_the_file_that_it_is_in(editor: Editor, robots: Path) -> Non
     ("file", "mark", "offset", "name", "files"),
     [
         ("types/robot.yaml", "initial: conveyor", 12, "belt", {"robot.yaml", "robot_1.yaml", "robot_2.yaml"}),
-        ("types/robot.yaml", "  move_to:", 4, "go_to", {"robot.yaml", "robot_1.yaml", "robot_2.yaml"}),
+        ("types/robot.yaml", "  move_to:", 4, "go_to", {"robot.yaml", "robot_1.yaml", "robot_2.yaml", "work.yaml"}),
         ("resources/robot_1.yaml", "type: robot", 8, "arm", {"arm.yaml", "robot_1.yaml", "robot_2.yaml"}),
     ],
 )

@@ -220,6 +220,32 @@ def test_a_product_that_is_made_freely_ends_with_the_last_operation() -> None:
     assert (figures.count, figures.open) == (3, {"a": None})
 
 
+def test_the_time_in_which_the_station_is_paused_is_not_that_of_the_next_product() -> None:
+    station = Station()
+    station.packml("execute")
+    station.tick(activated=["take"], started=["move"])
+    station.after(100).tick(completed=["give"], activated=["take"])  # then it pauses, as somebody has asked for it
+    station.packml("held")
+    assert station.after(600).figures().in_work() == {}
+    station.tick(started=["move"])
+    begun = station.now
+    station.after(1).packml("execute")
+    assert station.figures().in_work() == {"a": begun}
+    station.after(89).tick(completed=["give"])
+    assert station.figures().cycles == {"a": [100.0, 90.0]}
+
+
+def test_a_pause_within_a_product_is_of_its_time() -> None:
+    station = Station()
+    station.packml("execute")
+    station.tick(activated=["take"], started=["move"])
+    station.after(10).packml("held")
+    station.after(600).packml("execute")
+    station.tick(started=["move"])
+    station.after(10).tick(completed=["give"])
+    assert station.figures().cycles == {"a": [620.0]}
+
+
 def test_where_the_begin_was_not_seen_the_product_counts_and_has_no_time() -> None:
     station = Station()
     station.after(60).tick(activated=["give"])

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.core.actor import SYSTEM
-from sequence_planner.editor.diff import text_differences
+from sequence_planner.editor.comparing.diff import text_differences
 from sequence_planner.editor.draft import WriteText, applied
 from sequence_planner.editor.revisions import Revisions, tree_of
 from sequence_planner.editor.symbols.index import ModelPart

@@ -7,7 +7,8 @@ import difflib
 import pytest
 
 from sequence_planner.model.paths import EditError, parse_path, shown_path
-from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
+from sequence_planner.model.yaml.content import Content
+from sequence_planner.model.yaml.editor import insert, move, remove, rename, replace
 from sequence_planner.model.yaml.reader import EntryPath, read_text
 from support.places import BOLT_TIGHTENING
 

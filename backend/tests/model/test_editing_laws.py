@@ -9,7 +9,8 @@ import re
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from sequence_planner.model.yaml.editor import Content, insert, move, remove, rename, replace
+from sequence_planner.model.yaml.content import Content
+from sequence_planner.model.yaml.editor import insert, move, remove, rename, replace
 from sequence_planner.model.yaml.reader import EntryPath, read_text
 from support.examples import examples
 from support.places import BOLT_TIGHTENING

@@ -11,6 +11,7 @@ import pytest
 from editor.shorthand import SHORTHAND
 from sequence_planner.automaton.tick import initial_state, writes
 from sequence_planner.language.evaluator import holds
+from sequence_planner.model.loader import ReadBefore, load_station
 from sequence_planner.station import prepare_station
 
 from .breaking import findings, replace, write
@@ -59,6 +60,52 @@ def press(tmp_path: Path) -> Path:
             "  ends: {of: part, values: [p1, p3]}",
             "  ‹ends: {of: part, except: [p1, p2, p3]}",
             "no value of `part` is left in `ends`: a set has at least one",
+        ),
+        # sets of a resource
+        (ARM, "sides: {of: spot", "sides: {of: ‹spt", "unknown enumeration or set `spt`; did you mean `spot`?"),
+        (
+            ARM,
+            "values: [left, right]}",
+            "values: [‹lft, right]}",
+            f"`lft` is no value of {PLACES} and no set; did you mean `left`?",
+        ),
+        (
+            ARM,
+            "  lone: {of: sides, except: [right]}",
+            "  ‹lone: {of: sides, except: [right, left]}",
+            "no value of `arm.sides` is left in `arm.lone`: a set has at least one",
+        ),
+        (
+            ARM,
+            "  lone: {of: sides,",
+            "  ‹grip: {of: spot, values: [home]}\n  lone: {of: sides,",
+            "`grip` is an enumeration already: give the set another name",
+        ),
+        (
+            ARM,
+            "side: {type: sides}",
+            "side: {type: ‹side_s}",
+            "unknown type `side_s`: write bool, a range such as 0..3, or an enumeration; did you mean `arm.sides`?",
+        ),
+        (
+            ARM,
+            "at in sides and",
+            "at in ‹sids and",
+            "there is no set `sids`: `in` needs values in braces, an enumeration or a named set; did you mean "
+            "`arm.sides`?",
+        ),
+        (
+            "specifications.yaml",
+            "arm.at in arm.lone",
+            "arm.at in ‹arm.lon",
+            "there is no set `arm.lon`: `in` needs values in braces, an enumeration or a named set; did you mean "
+            "`arm.lone`?",
+        ),
+        (
+            ARM,
+            "across(side, right)",
+            "across(side, ‹lone)",
+            "`lone` is a set, and one value stands here: write `all l in lone: across(side, l)`",
         ),
         # relations and maps
         (STATION, "[spot, spot]", "[spot, ‹spt]", "unknown enumeration or set `spt`; did you mean `spot`?"),
@@ -198,3 +245,68 @@ def test_a_quantifier_without_quotes(press: Path, file: str, old: str, new: str,
     """YAML takes it for a mapping."""
     [place] = replace(press, file, old, new)
     assert findings(press) == [f"{place}: {message}"]
+
+
+# Sets of a resource.
+
+
+def test_a_set_of_a_resource_means_what_one_of_the_station_does(press: Path) -> None:
+    """It is only known by its own name there alone."""
+    before = prepare_station(press).automaton
+    for name in (ARM, "specifications.yaml"):
+        text = (press / name).read_text()
+        (press / name).write_text(text.replace("arm.sides", "sides").replace("arm.lone", "lone"))
+    sets = "  sides: {of: spot, values: [left, right]} # of the arm alone\n  lone: {of: sides, except: [right]}\n"
+    replace(press, ARM, f"sets:\n{sets}", "")
+    replace(press, STATION, "sets:\n", f"sets:\n{sets}")
+    after = prepare_station(press).automaton
+    for part in ("variables", "abilities", "effects", "operations", "specifications", "rest", "flags"):
+        assert getattr(after, part) == getattr(before, part), part
+    assert before.indices["arm.turn"] == {"where": "arm.sides"}
+
+
+def test_a_resource_with_sets_that_has_not_changed_is_the_same_object(press: Path) -> None:
+    before = ReadBefore()
+    first = load_station(press, before).resources["arm"]
+    replace(press, STATION, "name: press", "name: other")
+    assert load_station(press, before).resources["arm"] is first
+    replace(press, ARM, "values: [left, right]} #", "values: [left, right, out]} #")
+    assert load_station(press, before).resources["arm"] != first
+
+
+def test_a_set_of_a_resource_comes_before_one_of_the_station(press: Path) -> None:
+    replace(press, STATION, "  free: {of: spot,", "  sides: {of: spot, values: [home]}\n  free: {of: spot,")
+    automaton = prepare_station(press).automaton
+    assert {name for name in automaton.abilities if name.startswith("arm.turn")} == {
+        "arm.turn(left)",
+        "arm.turn(right)",
+    }
+
+
+_TYPE = """\
+parameters: {places: enumeration, first: {kind: value, of: places}}
+sets:
+  others: {of: places, except: [first]}
+measured: {at: {type: places, initial: first}}
+output: {goal: {type: others}}
+abilities:
+  go:
+    parameters: {where: others}
+    enabled: not at in others and goal != where
+    start: {do: [goal := where]}
+    until: at == where
+    effects:
+      comes: {for: {each: others}, when: goal == each and at != each, do: [at := each]}
+"""
+
+
+def test_it_is_one_of_its_own_for_each_instance_of_a_type(tmp_path: Path) -> None:
+    write(tmp_path, STATION, "name: lines\nenumerations: {spot: [home, left, right], stop: [store, bench]}\n")
+    write(tmp_path, "types/line.yaml", _TYPE)
+    write(tmp_path, "resources/one.yaml", "type: line\narguments: {places: spot, first: home}\n")
+    write(tmp_path, "resources/two.yaml", "type: line\narguments: {places: stop, first: bench}\n")
+    automaton = prepare_station(tmp_path).automaton
+    assert set(automaton.abilities) == {"one.go(left)", "one.go(right)", "two.go(store)"}
+    assert [each.name for each in automaton.effects] == [
+        "one.go(left).comes[left]", "one.go(left).comes[right]", "two.go(store).comes[store]"
+    ]  # fmt: skip

@@ -12,7 +12,7 @@ from shutil import copytree
 import pytest
 
 from sequence_planner.automaton.automaton import Automaton, Kind
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.language.printer import print_expression
 from sequence_planner.model.loader import load_station

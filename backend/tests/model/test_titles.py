@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 
 from editor.shorthand import SHORTHAND
 from sequence_planner.automaton.findings import title_of
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.language.types import EnumerationType
 from sequence_planner.model.loader import load_station

@@ -14,7 +14,7 @@ from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.model.loader import ReadBefore, load_station
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.content import plain
 from sequence_planner.model.yaml.reader import read_yaml
 from sequence_planner.station import read_station
 from support.places import MODELS, STATIONS
@@ -61,7 +61,7 @@ def test_the_robots_are_what_they_were_when_they_were_written_out(robots: Path) 
     assert model_digest(automaton(robots)) == model_digest(automaton(ROBOTS))
 
 
-class _Folded:
+class FoldedResource:
     """A resource as a type with as many parameters as can be, and an instance with the arguments that it had."""
 
     def __init__(self, content: dict[str, Any], enumerations: dict[str, list[str]]) -> None:
@@ -120,7 +120,7 @@ def test_a_resource_is_the_same_as_an_instance_of_a_type_made_of_it(tmp_path: Pa
     enumerations = plain(read_yaml(folded / "station.yaml", "it").content).get("enumerations", {})
     (folded / "types").mkdir()
     for file in (folded / "resources").glob("*.yaml"):
-        made = _Folded(plain(read_yaml(file, "it").content), enumerations)
+        made = FoldedResource(plain(read_yaml(file, "it").content), enumerations)
         (folded / "types" / file.name).write_text(json.dumps({"parameters": made.parameters, **made.type}))
         file.write_text(json.dumps({"type": file.stem, "arguments": made.arguments}))
     assert model_digest(automaton(folded)) == model_digest(automaton(station))

@@ -12,12 +12,13 @@ from hypothesis import strategies as st
 from core.choices import Choices, made_by
 from pipelines.stage_texts import MESSAGE, MODE
 from sequence_planner.language.evaluator import evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_calculation
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.records.expressions import read_calculation, read_condition
 from sequence_planner.language.records.field_paths import REAL, TEXT
 from sequence_planner.language.records.record import FieldType, RecordType
-from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.resolver import resolve_predicate
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type
 from support.examples import examples

@@ -121,8 +121,8 @@ OUTGOING = "topics:\n  /tank/command: {{type: tank_msgs/msg/Command, direction: 
          "there is no map `code_off`: `maps` of station.yaml or of the resource declares them; did you mean "
          "`code_of`?"),
         (INCOMING, "map: {field: word, variable: now, values: ‹in_use}", "now: {type: stop}",
-         "`in_use` is from {manual, automatic, off} to bool, and `word` is text and `now` {store, bench}: it fits "
-         "neither way round"),
+         "`in_use` is from {manual, automatic, off} to bool, and fits neither way round (`word`: text, `now`: "
+         "{store, bench})"),
         (OUTGOING, "map: {field: word, variable: using, values: ‹in_use}", "using: {type: bool}",
          "`in_use` has `true` for both `manual` and `automatic`, so it cannot be read backwards here: give each a "
          "value of its own"),
@@ -136,8 +136,8 @@ OUTGOING = "topics:\n  /tank/command: {{type: tank_msgs/msg/Command, direction: 
          "there is no relation `near`: `relations` of station.yaml or of the resource declares them; did you mean "
          "`far`?"),
         (OUTGOING, "table: {fields: [wanted, wanted], variables: [far], rows: [{when: ‹far, gives: [true]}]}",
-         "wanted: {type: drive}", "`far` is between {between, store, bench} and {store, bench}, and `wanted` is "
-         "{manual, automatic, off} and `wanted` is {manual, automatic, off}: no pair fits"),
+         "wanted: {type: drive}", "`far` is between {between, store, bench} and {store, bench}, and no pair fits "
+         "the fields (`wanted`: {manual, automatic, off}, `wanted`: {manual, automatic, off})"),
     ],
 )  # fmt: skip
 def test_a_table_that_does_not_fit_is_refused_where_it_is_named(

@@ -20,7 +20,7 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
 from sequence_planner.process.task import BackgroundTask, TooLargeError, WorkerError
 from sequence_planner.process.worker import FOLDER, Worker, WorkerLateError, WorkerLoop
-from support.waiting import until, until_async
+from support.waiting import patience, until, until_async
 
 Scenario = Callable[[Worker[object, Any]], Awaitable[None]]
 NAMED = f"{work.__module__}:{work.__name__}"
@@ -180,7 +180,7 @@ def test_one_that_stands_still_holds_up_nothing_and_is_ended(kept: bool) -> None
         os.kill(still, signal.SIGSTOP)
         began = time.monotonic()
         error = await why_not(worker, "model", 0.3)
-        assert 0.45 < time.monotonic() - began < 1.5
+        assert 0.45 < time.monotonic() - began < patience(1.5)
         assert isinstance(error, WorkerLateError)
         assert str(error) == "the tested was silent too long and is started again"
         await until_async(lambda: not worker.away)
@@ -226,7 +226,7 @@ def test_one_that_does_not_come_back_from_what_was_called_off_is_replaced_whatev
         asked.cancel()
         began = time.monotonic()
         assert (await why_not(worker, "model", 600)).again
-        assert time.monotonic() - began < 2
+        assert time.monotonic() - began < patience(2)
         await until_async(lambda: not worker.away)
         assert (await worker.ask("process", 20))[0] != before
 
@@ -308,12 +308,13 @@ from sequence_planner.process.task import BackgroundTask
 from sequence_planner.process.worker import Worker
 
 async def live():
+    # As all that runs here does. `asyncio.run` alone misses a signal that comes just before it begins to wait.
+    asyncio.get_running_loop().add_signal_handler(signal.SIGINT, asyncio.current_task().cancel)
     worker = Worker(work, "model", "tested")
     print((await worker.ask("process", 20))[0], flush=True)
     await worker.ask("sleep", 600)
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
     asyncio.run(live())
 """
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,11 +18,12 @@ from hypothesis import strategies as st
 from ros_networks import Network, play, settle, standard
 from ros_processes import peer
 
-from sequence_planner.ros.qos import QualityOfService
-from sequence_planner.ros.transport import Sample, TransportError
+from sequence_planner.ros.qos import Direction, QualityOfService
+from sequence_planner.ros.transport import Sample, Transport, TransportError
 from sequence_planner.ros.transports import cyclonedds_network
 from sequence_planner.ros.transports.choice import open_transport
-from sequence_planner.ros.transports.cyclonedds_network import loopback_configuration
+from sequence_planner.ros.transports.cyclonedds_discovery import Discovery
+from sequence_planner.ros.transports.cyclonedds_network import MOST_IN_PROCESS, loopback_configuration
 from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.simulation.faults import garbage
@@ -78,6 +80,29 @@ def test_another_process_answers_and_is_seen_to_leave(kind: str, expected: Expec
             await until_async(lambda: heard[-1] == "ÅÄÖ", "the last answer comes")
             assert [text for text in heard if text != "HELLO"] == ["A", "AB", "ABC", "ABCD", "ÅÄÖ"]
         await until_async(lambda: not foreign(), "the peer is gone")
+
+    play("cyclonedds", scenario)
+
+
+def test_a_peer_that_comes_during_a_look_at_the_network_has_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A participant says once which nodes it has; whoever looked at that moment saw one without a name for ever."""
+    take = Discovery._refresh
+    came: list[Transport] = []
+
+    async def scenario(network: Network) -> None:
+        station = network.join("station")
+
+        def take_while_somebody_comes(discovery: Discovery, direction: Direction) -> None:
+            take(discovery, direction)
+            if direction == "subscriber" and not came:
+                came.append(network.join("device"))
+                came[0].advertise("/pong", TEXT, RELIABLE)
+                time.sleep(1.0)  # seconds, in which it is discovered
+
+        monkeypatch.setattr(Discovery, "_refresh", take_while_somebody_comes)
+        station.graph()
+        [device] = [endpoint for endpoint in station.graph() if endpoint.topic == "/pong"]
+        assert device.node == "/device"
 
     play("cyclonedds", scenario)
 
@@ -282,5 +307,18 @@ def test_the_domain_is_that_of_the_environment(monkeypatch: pytest.MonkeyPatch) 
         finally:
             here.close()
             elsewhere.close()
+
+    play("cyclonedds", scenario)
+
+
+def test_a_process_is_not_on_the_network_more_often_than_cyclonedds_can_bear() -> None:
+    """In one more it would never end making a topic, and take all memory of the machine."""
+
+    async def scenario(network: Network) -> None:
+        joined = [network.join(f"device_{number}") for number in range(MOST_IN_PROCESS)]
+        with pytest.raises(TransportError, match="emulate the devices of some resources in another one"):
+            network.join("one_more")
+        joined.pop().close()
+        network.join("in_its_place").advertise("/here", TEXT, RELIABLE)
 
     play("cyclonedds", scenario)

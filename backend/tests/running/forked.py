@@ -61,7 +61,7 @@ UNTIL_KILLED = 0.6  # seconds after it has done some work, at most
 PATIENCE = 240.0  # on a machine that is busy with much else
 SHOW_EVERY = 2.0
 LONGEST_STEP = 7200.0  # seconds by which the clock is stepped at most
-IDENTITY = StationIdentity(name="truck", title="Truck", description="", transport="memory", emulated=True)
+IDENTITY = StationIdentity(name="truck", title="Truck", titles={}, description="", transport="memory", emulated=True)
 
 
 @cache

@@ -10,11 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.startup.station_process import UNUSABLE
 from support.network import free_port
+from support.places import REPOSITORY
 from support.station import finished, foreign_node
 from support.waiting import PATIENCE, until
 
@@ -247,3 +249,77 @@ def test_real_devices_cannot_be_reset(tmp_path: Path) -> None:
         station.checked()
         refused = station.deploy(station.save("Titled"), simulation="reset")
         assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-emulated")
+
+
+AGV = REPOSITORY / "models" / "docking_agv"
+PRODUCT = "assemble"  # with which it is done
+RETITLED = (STATION, "title: AGV with a docking station", "title: AGV and bench")
+
+
+def person_works(station: EditedStation) -> None:
+    """Whoever has a task says that it is done."""
+    for name, task in station.get("tasks").items():
+        station.browser.post(f"tasks/{quote(name, safe='')}/acknowledgement", json={"revision": task["revision"]})
+
+
+def planned(station: EditedStation, name: str) -> str:
+    """Change the title, and plan to deploy that when the product is done; the id of the revision."""
+    station.change(RETITLED)
+    assert station.checked()["state"] == "done"
+    revision = station.save(name)
+    number = station.asked("GET", "model")["number"]
+    body = {"revision": revision, "number": number, "reason": "a better title"}
+    answer = station.browser.put("model/deployments/planned", json=body, timeout=PATIENCE)
+    assert answer.status_code == 204, answer.text
+    return revision
+
+
+def test_what_is_planned_is_deployed_when_the_product_is_done_and_nothing_of_another_has_begun(tmp_path: Path) -> None:
+    model = tmp_path / "docking_agv"
+    shutil.copytree(AGV, model)
+    with edited(tmp_path, "--emulator", "--emulator-speed", "5", model=model) as station:
+        until(station.up)
+        station.control()
+        begin(station)
+        until(lambda: station.get("operations")["fetch_kit"]["active"])
+        revision = planned(station, "Retitled")
+        told = station.asked("GET", "model/deployments/planned")
+        assert (told["name"], told["refused"]) == ("Retitled", None)
+        assert station.get("cycle_stop", "station")["reached"] is False
+
+        def runs() -> bool:
+            person_works(station)
+            seen = station.station().get("deployment")
+            return seen is not None and (seen["revision"], seen["state"]) == (revision, "runs")
+
+        until(runs, seconds=4 * PATIENCE)
+        until(lambda: title(station) == "AGV and bench")
+        assert station.asked("GET", "model/deployments/planned") is None
+        assert station.get("mode", "station") == "paused"
+        operations = station.get("operations")
+        assert operations[PRODUCT]["completed"] == 1
+        assert operations["hand_over_kit"]["completed"] == 1, "the next product has not begun"
+
+
+def test_what_is_planned_is_not_deployed_where_somebody_pauses_before_and_says_so(tmp_path: Path) -> None:
+    model = tmp_path / "docking_agv"
+    shutil.copytree(AGV, model)
+    with edited(tmp_path, "--emulator", model=model) as station:
+        until(station.up)
+        station.control()
+        refused = station.browser.put(
+            "model/deployments/planned",
+            json={"revision": "0" * 40, "number": station.asked("GET", "model")["number"], "reason": "so"},
+            timeout=PATIENCE,
+        )
+        assert (refused.status_code, refused.json()["type"]) == (404, "/problems/no-revision")
+        begin(station)
+        planned(station, "Retitled")
+        station.asked("PUT", "mode", {"mode": "paused"})
+        until(lambda: station.asked("GET", "model/deployments/planned")["refused"] is not None)
+        told = station.asked("GET", "model/deployments/planned")["refused"]
+        assert told["detail_message"]["id"] == "refused.not-paused.taken-back"
+        assert "paused or held before" in told["detail"]
+        assert title(station) == "AGV with a docking station"
+        station.asked("DELETE", "model/deployments/planned")
+        assert station.asked("GET", "model/deployments/planned") is None

@@ -126,7 +126,7 @@ def test_devices_that_were_killed_leave_unknown_values_and_come_back_to_work(
     topics = ["/ur10/state", "/ur10/planning_scene/state"]
     until(lambda: at_work.get("resources")["robot"]["awaited_topics"] == topics)
     assert at_work.get("resources")["operator"]["online"]
-    until(lambda: "No message any more on /smart_nutrunner/state" in str(at_work.get("alarms")))
+    until(lambda: "No more messages on /smart_nutrunner/state" in str(at_work.get("alarms")))
     before = done_so_far(at_work)
     time.sleep(1)
     assert done_so_far(at_work) == before

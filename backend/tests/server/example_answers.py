@@ -18,7 +18,16 @@ from sequence_planner.controller.commands.queries import (
     AskGoal,
     AskGoalBlockers,
     AskOperationBlockers,
+    AskOperationDefinition,
     AskReset,
+    AskTrace,
+)
+from sequence_planner.controller.tracing.schemas import (
+    TracedChangeView,
+    TracedPipelineView,
+    TracedReaderView,
+    TracedStepView,
+    TraceView,
 )
 from sequence_planner.controller.views.details import (
     AbilityActionView,
@@ -30,9 +39,12 @@ from sequence_planner.controller.views.details import (
     CorrectionPreview,
     InvolvedView,
     NamesView,
+    OperationDefinitionView,
     PredicateView,
     ReactionView,
     ReadValueView,
+    ReasonTreeView,
+    ReasonView,
     ShiftsView,
     SupervisedView,
     TimeoutsView,
@@ -59,7 +71,7 @@ from sequence_planner.controller.views.proposals import (
     PreviewStepView,
     ValueChangeView,
 )
-from sequence_planner.controller.views.station import BeliefView, SpecificationView
+from sequence_planner.controller.views.station import BeliefView, SpecificationView, VariableKind
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.core.distribution import Distribution
 from sequence_planner.mimic.views import MimicView
@@ -79,7 +91,15 @@ WORK_MASTERS = WorkMastersView(
     abilities={"robot.move": WorkAbilityView(title="Move", writes=["robot.pose"], instant=False)},
 )
 STEP = PreviewStepView(
-    tick=1, start=0.0, end=2.0, ability="robot.move", title="Move", resource="robot", human=False, restart=True
+    tick=1,
+    start=0.0,
+    end=2.0,
+    ability="robot.move",
+    title="Move",
+    resource="robot",
+    human=False,
+    restart=True,
+    moves=True,
 )
 PAUSE_FIRST = message("refused.wrong-mode.try", mode=message("mode.automatic"))
 PLAN = PlanPreviewView(ticks=2, steps=[STEP], minimal_ticks=True, minimal_starts=False)
@@ -155,6 +175,75 @@ CONDITION = ConditionView(
 )
 
 
+REASONS = ReasonTreeView(
+    about="enabled",
+    specifications=[],
+    rest=False,
+    sequence=None,
+    tree=ReasonView(
+        kind="leaf",
+        text="robot.pose == home",
+        sentence=as_it_was("the robot is at home", "sentence."),
+        predicate=None,
+        holds=None,
+        decides=True,
+        wanted=True,
+        reads=[ReadValueView(name="robot.pose", kind="measured", value=None)],
+        involved=[POSE],
+        parts=[],
+    ),
+)
+
+TRACE = TraceView(
+    name="robot.pose",
+    kind=VariableKind.MEASURED,
+    resource="robot",
+    value=None,
+    since=None,
+    time=1000.0,
+    revision=7,
+    incoming=[
+        TracedPipelineView(
+            name="/robot/state",
+            role="incoming",
+            resource="robot",
+            message="robot_msgs/msg/State",
+            sources=[],
+            last=None,
+            fresh=False,
+            deadline=1.0,
+            trouble=None,
+            steps=[
+                TracedStepView(
+                    kind=None, summary="", place=None, passes=False, fields=None, at=None, held=0, troubles=[]
+                )
+            ],
+            becomes={"pose": "robot.pose"},
+        )
+    ],
+    outgoing=[],
+    written_by=None,
+    belief=None,
+    acknowledges=[],
+    writers=[],
+    readers=[
+        TracedReaderView(
+            of="ability",
+            name="robot.move",
+            title="Move",
+            part="enabled",
+            sentence=as_it_was("the robot is at home", "sentence."),
+            holds=None,
+            decides=True,
+        )
+    ],
+    more_readers=0,
+    from_beginning=True,
+    changes=[TracedChangeView(name="bolts[left]", value="placed", since=999.0, same_tick=False, by=None, sent={})],
+    more_changes=0,
+)
+
+
 CORRECTION = CorrectionPreview(
     revision=7,
     changes=[
@@ -195,7 +284,10 @@ HOME = PredicateView(
     holds=None,
     parts=[
         ConjunctView(
-            text="robot.pose == home", holds=None, reads=[ReadValueView(name="robot.pose", kind="measured", value=None)]
+            text="robot.pose == home",
+            sentence=as_it_was("the robot is at home", "sentence."),
+            holds=None,
+            reads=[ReadValueView(name="robot.pose", kind="measured", value=None)],
         )
     ],
     place=WrittenPlaceView(file="resources/robot.yaml", line=12),
@@ -295,6 +387,16 @@ def example_answer(ask: Query[Any]) -> DataModel:
             return _blockers("ability", name)
         case AskOperationBlockers(name=name):
             return _blockers("operation", name)
+        case AskOperationDefinition(name=name):
+            if name != "tighten":
+                raise CommandRefused("unknown-operation", "Look at what it has.", 404)
+            return OperationDefinitionView(
+                name=name, title="Tighten", revision=7, precondition=HOME, turns={"in_order": HOME}, goal=HOME
+            )
+        case AskTrace(name=name):
+            if name != TRACE.name:
+                raise CommandRefused("unknown-variable", "Look at what it has.", 404)
+            return TRACE
         case AskGoalBlockers(predicate=name):
             return _blockers("goal", name)
     raise AssertionError(f"nobody has thought of an answer to {ask.kind}")
@@ -311,6 +413,7 @@ def _blockers(of: str, name: str) -> WhyNotView:
         summary="It waits for a message on /robot/state.",
         summary_message=as_it_was("It waits for a message on /robot/state.", "blocked.", "waits."),
         conditions=[CONDITION],
+        trees=[REASONS],
         plan=PLAN if of == "goal" else None,
         reasons=None,
     )

@@ -10,6 +10,7 @@ import pytest
 from sequence_planner.controller.commands.command import Command, CommandRefused
 from sequence_planner.controller.commands.queries import AskDefinition
 from sequence_planner.controller.commands.recovery import TryAbility
+from sequence_planner.controller.ipc import CarriedOut
 from sequence_planner.server.settings import Settings
 from support.server import Loop
 
@@ -25,10 +26,10 @@ class Trying(Asked):
 
     refused: CommandRefused | None = None
 
-    async def handle(self, command: Command) -> None:
+    async def handle(self, command: Command) -> CarriedOut | None:
         if self.refused is not None:
             raise self.refused
-        await super().handle(command)
+        return await super().handle(command)
 
 
 @pytest.fixture

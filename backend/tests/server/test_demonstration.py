@@ -57,6 +57,24 @@ def test_a_demonstration_acts_and_says_what_it_is(shown: Server, controller: Con
         assert browser.delete("/api/v1/session").status_code == 204
 
 
+def test_who_is_not_signed_in_is_told_the_title_of_the_station_and_nothing_else_of_it(shown: Server) -> None:
+    with shown.client() as browser:
+        answer = browser.get("/api/v1/session").json()
+        assert answer["station"] == {"en": "Bolting", "sv": "Skruvning"}
+        assert not {"view", "description", "name"} & answer.keys()
+        assert [answer[each] for each in ("person", "session", "version")] == [None, None, None]
+
+
+def test_where_the_station_was_never_heard_its_title_is_not_known(loop: Loop, settings: Settings) -> None:
+    server = Server(loop, settings)
+    server.start()
+    try:
+        with server.client() as browser:
+            assert browser.get("/api/v1/session").json()["station"] is None
+    finally:
+        server.stop()
+
+
 def test_there_is_no_demonstration_where_none_was_asked_for(client: httpx.Client) -> None:
     assert client.get("/api/v1/session").json()["demonstration"] is False
     problem(opened(client), 403, "no-demonstration")

@@ -54,6 +54,7 @@ def entries(name: str) -> st.SearchStrategy[dict[str, Any]]:
         "approvals": st.fixed_dictionaries({"why": st.text(max_size=3), "until": TIMES}),
         "forces": st.fixed_dictionaries({"value": VALUES, "until": TIMES}),
         "undecided": st.fixed_dictionaries({"value": VALUES, "quiet": st.lists(VALUES, max_size=2)}),
+        "breakpoints": st.fixed_dictionaries({"hits": st.integers(0, 2), "stopped": st.booleans()}),
         "alarms": st.fixed_dictionaries({"text": NAMES}),
     }[name]
     return st.dictionaries(NAMES, member.map(lambda update: entry.model_copy(update=update)), max_size=3)

@@ -264,6 +264,15 @@ def test_a_revision_is_saved_and_taken_back(eva: httpx.Client, adam: httpx.Clien
     problem(adam.post(f"{MODEL}/revisions/{'0' * 40}/restore", json={"number": number + 2}), 404, "no-revision")
 
 
+def test_places_in_which_the_draft_differs_are_counted(eva: httpx.Client) -> None:
+    assert read(eva, "/changes")["changes"] == 0
+    made(eva, TITLE)
+    number = made(eva, {"kind": "text", "file": "resources/notes.yaml", "was": None, "text": "one: 1\ntwo: 2\n"})[
+        "number"
+    ]
+    assert read(eva, "/changes") == {"number": number, "changes": 2}
+
+
 def test_versions_are_compared(eva: httpx.Client) -> None:
     made(eva, TITLE)
     number = made(
@@ -276,6 +285,9 @@ def test_versions_are_compared(eva: httpx.Client) -> None:
     (part,) = found["parts"]
     assert (part["name"], part["over"]) == ("tighten_bolt_pair(pair)", "all pair in bolt_pair")
     assert part["members"] == [f"tighten_bolt_pair(bolt_pair_{n})" for n in (1, 2, 3)]
+    assert found["doing"] == ""
+    begun = read(eva, "/comparison", old="running", wait="0")
+    assert begun["doing"] or begun["parts"] is not None
     assert read(eva, "/comparison", old=id)["text"] == {}
     problem(eva.get(f"{MODEL}/comparison", params={"old": "0" * 40}), 404, "no-revision")
     problem(eva.get(f"{MODEL}/comparison", params={"old": "HEAD"}), 422, "invalid-request")
@@ -325,11 +337,11 @@ def test_the_picture_of_the_draft_is_drawn_as_that_of_the_station(eva: httpx.Cli
     assert (found["number"], found["digest"]) == (read(eva)["number"], files["mimic.yaml"]["digest"])
     assert (found["picture"]["made_from"], found["file"]) == ("file", None)
     assert found["titles"]["nutrunner"] == "Smart nutrunner"
-    at = {"kind": "set", "file": "mimic.yaml", "path": ["symbols", "nutrunner", "at", 0], "was": 40, "value": 44}
+    at = {"kind": "set", "file": "mimic.yaml", "path": ["symbols", "nutrunner", "at", 0], "was": 24, "value": 28}
     made(eva, at, {**at, "path": ["symbols", "nutrunner", "resource"], "was": "nutrunner", "value": "nutruner"})
     picture = read(eva, "/mimic")["picture"]
     (nutrunner,) = (each for each in picture["symbols"] if each["name"] == "nutrunner")
-    assert (nutrunner["box"]["x"], nutrunner["resource"]) == (44, None)
+    assert (nutrunner["box"]["x"], nutrunner["resource"]) == (28, None)
     assert [each["message"] for each in picture["findings"]] == [
         "there is no resource `nutruner`; did you mean `nutrunner`?"
     ]
@@ -344,6 +356,31 @@ def test_the_picture_of_the_draft_is_drawn_as_that_of_the_station(eva: httpx.Cli
     made(eva, {**wrong, "was": read(eva, "/files", path="station.yaml")["files"]["station.yaml"]["content"]["rest"]})
     unusable = read(eva, "/mimic")
     assert (unusable["usable"], unusable["picture"]) == (False, None)
+
+
+def test_the_order_of_operations_follows_the_draft_and_stays_while_that_cannot_be_used(eva: httpx.Client) -> None:
+    def order() -> dict[str, Any]:
+        found = read(eva, "/operations")
+        assert found["number"] == read(eva)["number"]
+        return found
+
+    def links(found: dict[str, Any]) -> set[tuple[str, str]]:
+        return {(each["before"], each["after"]) for each in found["links"]}
+
+    first, second = "place_bolt_pair(bolt_pair_1)", "place_bolt_pair(bolt_pair_2)"
+    before = order()
+    assert (before["usable"], before["operations"][first]["lane"]) == (True, "operator")
+    assert before["operations"][first]["begins"][0]["text"] == "bolts[bolt_pair_1] == empty"
+    assert before["operations"][first]["entry"] == "place_bolt_pair"
+    assert (first, "tighten_bolt_pair(bolt_pair_1)") in links(before)
+    assert (first, second) not in links(before)
+    sequence = {"kind": "add", "file": "operations.yaml", "path": ["both"], "value": {"sequence": [first, second]}}
+    made(eva, sequence)
+    after = order()
+    assert (first, second) in links(after)
+    assert [each["text"] for each in after["operations"][second]["turns"]] == ["bolts[bolt_pair_1] == placed"]
+    made(eva, {**sequence, "path": ["wrong"], "value": {"sequence": [first, "nobody"]}})
+    assert {**order(), "number": after["number"]} == {**after, "usable": False}
 
 
 def test_the_model_as_a_whole_follows_the_draft(eva: httpx.Client) -> None:
@@ -419,3 +456,44 @@ def test_without_a_controller_nothing_is_deployed(eva: httpx.Client) -> None:
 def test_a_server_that_does_not_know_the_model_says_so(controller: Controller, lonely_server: Server) -> None:
     with lonely_server.client(Role.ENGINEER) as client:
         problem(client.get(MODEL), 409, "no-model")
+
+
+def test_engineers_comment_on_the_draft_and_everybody_reads_it(server: Server, eva: httpx.Client) -> None:
+    with server.client(Role.VIEWER) as vera:
+        assert read(vera, "/comments") == {"comments": []}
+        number = read(eva)["number"]
+        said = eva.post(f"{MODEL}/comments", json={"text": "Why 12 s?"})
+        assert said.status_code == 201
+        assert (said.json()["draft"], said.json()["number"]) == (number, 1)
+        eva.post(f"{MODEL}/comments", json={"text": "The longest run took 5.8 s.\nSo it is enough."})
+        told = read(vera, "/comments")["comments"]
+        assert [each["text"] for each in told] == ["Why 12 s?", "The longest run took 5.8 s.\nSo it is enough."]
+        assert {each["by"] for each in told} == {said.json()["by"]}
+        for text in ("", "x" * 5001):
+            problem(eva.post(f"{MODEL}/comments", json={"text": text}), 422, "invalid-request")
+        problem(vera.post(f"{MODEL}/comments", json={"text": "I, too"}), 403, "role-too-low")
+
+
+def test_the_state_space_of_the_draft_is_told_folded(eva: httpx.Client) -> None:
+    """From the first look, where a choice is made, to a plan on it; and what cannot be shown is refused with why."""
+    address, present = f"{MODEL}/what-if/state-space", {"bolts[bolt_pair_1]": "placed"}
+    begun = eva.post(address, json={"present": {}})
+    assert begun.status_code == 200, begun.text
+    view = begun.json()
+    assert 1 < view["count"] == len(view["nodes"]) <= view["most"]
+    assert view["exact"]
+    assert sum(node["initial"] for node in view["nodes"]) == 1
+    asked = {
+        "variables": ["bolts[bolt_pair_1]"],
+        "extent": "supervised",
+        "plan": True,
+        "until": "bolts[bolt_pair_1] == tightened",
+    }
+    told = eva.post(address, json={"question": asked, "present": present}).json()
+    assert [node["values"] for node in told["nodes"] if node["present"]] == [["placed"]]
+    assert told["nodes"][told["path"][-1]["node"]]["values"] == ["tightened"]
+    for wrong, why in (([], "at least one"), (["robot.wings"], "there is no variable robot.wings")):
+        refused = eva.post(address, json={"question": {"variables": wrong}, "present": present})
+        assert why in problem(refused, 422, "not-folded")["detail"]
+    unread = eva.post(address, json={"question": {"variables": "robot.pose"}, "present": present})
+    problem(unread, 422, "invalid-request")

@@ -13,6 +13,9 @@ from sequence_planner.controller.commands.command import Command
 from sequence_planner.controller.commands.execution import (
     EnterRestart,
     LeaveRestart,
+    RemoveBreakpoint,
+    SetBreakpoint,
+    SetCycleStop,
     SetMode,
     SetService,
     SetStepping,
@@ -42,6 +45,8 @@ MOVE = "robot.move_to_position(home)"
         ("POST", "/production/start", {}, StartProduction.model_construct()),
         ("POST", "/restart/enter", {"reason": WHY}, EnterRestart.model_construct(reason=WHY)),
         ("POST", "/restart/leave", {"reason": WHY}, LeaveRestart.model_construct(reason=WHY)),
+        ("PUT", "/mode/cycle-stop", {"on": True}, SetCycleStop.model_construct(on=True)),
+        ("DELETE", "/breakpoints/7", None, RemoveBreakpoint.model_construct(id="7")),
         ("PUT", "/stepping", {"on": True}, SetStepping.model_construct(on=True)),
         ("POST", "/stepping/step", {}, TakeStep.model_construct()),
         (
@@ -85,6 +90,17 @@ def test_each_request_is_a_command(
     assert given.model_dump(exclude={"actor"}) == {"reason": None, **command.model_dump(exclude={"actor"})}
     value = getattr(given, "value", None)
     assert type(value) is type(getattr(command, "value", None))  # true is not 1
+
+
+def test_a_breakpoint_that_is_set_is_answered_with_its_id(server: Server, controller: Controller) -> None:
+    shown = controller.view.breakpoints["1"]
+    with server.client(Role.ENGINEER) as client:
+        answer = client.post("/api/v1/breakpoints", json={"condition": "robot.on"})
+    assert answer.status_code == 201
+    assert answer.json() == {"id": "7", **shown.model_dump(mode="json")}
+    [given] = controller.commands
+    assert isinstance(given, SetBreakpoint)
+    assert given.condition == "robot.on"
 
 
 @pytest.mark.parametrize(

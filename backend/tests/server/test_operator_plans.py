@@ -17,7 +17,9 @@ from sequence_planner.controller.commands.queries import (
     AskGoal,
     AskGoalBlockers,
     AskOperationBlockers,
+    AskOperationDefinition,
     AskReset,
+    AskTrace,
 )
 from sequence_planner.controller.commands.recovery import ExecuteOperatorPlan, StopOperatorPlan
 from sequence_planner.controller.ipc import ControllerLink
@@ -26,7 +28,7 @@ from sequence_planner.server.settings import Settings
 from sequence_planner.texts.message import message
 from support.server import Controller, Loop, Server
 
-from .example_answers import ADVICE, OFFER, example_answer
+from .example_answers import ADVICE, OFFER, TRACE, example_answer
 from .test_acting import problem
 
 
@@ -73,6 +75,10 @@ def test_each_question_is_asked_as_it_is_and_answered_with_its_document(
     (condition,) = ability["conditions"]
     assert condition["involved"][0]["wanted"] == ["home"]
     problem(engineer.get("operations/carry%28left%29/blockers"), 404, "unknown-operation")
+    assert engineer.get("operations/tighten/definition").json()["turns"]["in_order"]["text"] == "pose == home"
+    problem(engineer.get("operations/carry/definition"), 404, "unknown-operation")
+    assert engineer.get("variables/robot.pose/trace").json() == TRACE.model_dump(mode="json")
+    problem(engineer.get("variables/robot.goal/trace"), 404, "unknown-variable")
     assert engineer.post("goals/blockers", json=goal).json()["plan"]["steps"][0]["ability"] == "robot.move"
     assert controller.asked == [
         AskAdvice(),
@@ -80,6 +86,10 @@ def test_each_question_is_asked_as_it_is_and_answered_with_its_document(
         AskReset(operation="tighten(1)"),
         AskAbilityBlockers(name="robot.move"),
         AskOperationBlockers(name="carry(left)"),
+        AskOperationDefinition(name="tighten"),
+        AskOperationDefinition(name="carry"),
+        AskTrace(name="robot.pose"),
+        AskTrace(name="robot.goal"),
         AskGoalBlockers(predicate="robot.pose == home"),
     ]
 

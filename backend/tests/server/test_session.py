@@ -55,7 +55,8 @@ def works(server: Server, token: str) -> bool:
 
 
 def test_who_knows_the_password_is_signed_in(server: Server, browser: httpx.Client, person: Person) -> None:
-    assert browser.get("/api/v1/session").json()["state"] == "first-start"
+    before = browser.get("/api/v1/session").json()
+    assert (before["state"], before["people"]) == ("first-start", True), "nobody is an administrator"
     assert browser.get("/api/v1/session").json()["version"] is None
     answer = sign_in(browser, " ADA ")
     told = answer.json()

@@ -149,7 +149,7 @@ def test_what_is_an_engine_away_is_planned_from_the_empty_station(operations: tu
     answer = Planner(automaton, supervisor).answer(request)
     assert (answer.verdict, answer.left_out) == (Verdict.FOUND, ())
     assert answer.plan is not None
-    assert len(answer.plan.ticks) < FAR[operations]
+    # How short it becomes in a turn is a matter of the processor: that is asserted by counted clocks, below.
     assert not TIMED or time.process_time() - began < (LONGEST_FAR if len(operations) == 1 else LONGEST_WHOLE)
 
 
@@ -172,15 +172,15 @@ class CountedClocks:
         return self._held_up * self.process_time()
 
 
-@pytest.mark.parametrize("operation", ["mount_ladder_frame", *(f"tighten_bolt_pair({pair})" for pair in PAIRS[::5])])
-def test_a_planner_that_others_hold_up_finds_the_same_plan_as_long_as_there_is_time(
-    operation: str, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("operations", FAR, ids=lambda each: each[-1])
+def test_a_planner_that_others_hold_up_finds_the_same_short_plan_as_long_as_there_is_time(
+    operations: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By engines that look at no clock from another thread, so that each look is counted alike each time."""
     station, supervisor, _, _ = ready()
     automaton, deadline = station.automaton, 60.0
     lane = Lane("here", {Contract.FAST: ("operation by operation", "search"), Contract.MINIMAL: ("search",)})
-    request = PlanRequest(initial_state(automaton), goals_of(automaton, (operation,)), deadline, contract=Contract.FAST)
+    request = PlanRequest(initial_state(automaton), goals_of(automaton, operations), deadline, contract=Contract.FAST)
 
     def held_up(times: int) -> tuple[PlanAnswer, int]:
         clocks = CountedClocks(times)
@@ -190,8 +190,10 @@ def test_a_planner_that_others_hold_up_finds_the_same_plan_as_long_as_there_is_t
             patch.setattr(time, "monotonic", clocks.monotonic)
             return planner.answer(request), clocks.looks
 
-    (alone, looks), (busy, as_many) = held_up(1), held_up(100)
-    assert alone.verdict is Verdict.FOUND
+    (alone, looks), (busy, as_many) = held_up(1), held_up(50)
+    assert (alone.verdict, alone.left_out) == (Verdict.FOUND, ())
+    assert alone.plan is not None
+    assert len(alone.plan.ticks) < FAR[operations]
     assert (busy.plan, as_many) == (alone.plan, looks)
     too_busy, _ = held_up(2000)
     assert deadline / 2 < too_busy.seconds < 1.1 * deadline

@@ -32,7 +32,7 @@ from support.waiting import until_async
 STATE, COMMAND = "/arm/state", "/arm/command"
 STATE_TYPE, COMMAND_TYPE = "cell_msgs/msg/ArmState", "cell_msgs/msg/ArmCommand"
 POSES = {"home": [0.0, 0.0], "out": [1.0, 0.5], "unknown": [0.5, 0.25]}
-IDENTITY = StationIdentity(name="cell", title="Cell", description="", transport="memory", emulated=True)
+IDENTITY = StationIdentity(name="cell", title="Cell", titles={}, description="", transport="memory", emulated=True)
 
 
 @cache

@@ -12,6 +12,7 @@ from sequence_planner.controller.views.station import (
     ApprovalState,
     ApprovalView,
     BeliefView,
+    BreakpointView,
     ForceView,
     InstructionView,
     JobStepState,
@@ -38,7 +39,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.planning.problem import Contract
-from sequence_planner.texts.message import Wording, as_it_was, message
+from sequence_planner.texts.message import Sentence, Wording, as_it_was, message
 
 
 def ability(resource: str, title: str) -> AbilityView:
@@ -46,6 +47,7 @@ def ability(resource: str, title: str) -> AbilityView:
         resource=resource,
         title=title,
         human=resource == "operator",
+        moves=True,
         restart=False,
         enabled=True,
         executing=False,
@@ -98,6 +100,7 @@ def example_view(**changes: object) -> StationView:
         station=StationIdentity(
             name="bolting",
             title="Bolting",
+            titles={"en": "Bolting", "sv": "Skruvning"},
             description="Tightens a bolt pair.",
             transport="cyclonedds",
             emulated=True,
@@ -111,6 +114,20 @@ def example_view(**changes: object) -> StationView:
         silent=[],
         failing=[],
         stepping=False,
+        cycle_stop=None,
+        breakpoints={
+            "1": BreakpointView(
+                condition="robot.pose == home",
+                sentence=message(
+                    "sentence.so", condition=Sentence({"en": "the robot is at home"}, "robot.pose == home")
+                ),
+                by="Eva",
+                since=1700000000.0,
+                hits=0,
+                last=None,
+                stopped=False,
+            )
+        },
         production=Production.STARTED,
         unconfirmed=False,
         undecided={
@@ -164,6 +181,8 @@ def example_view(**changes: object) -> StationView:
                 ended=None,
                 first_step=None,
                 last_step=None,
+                steps=[],
+                work=[],
                 goal="bolts[bolt_pair_1] = tightened",
                 precondition="true",
                 sentence=message("sentence.goal", condition=Wording({"en": "bolt pair 1 is tight"})),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import socket
 from contextlib import ExitStack
@@ -13,7 +14,6 @@ _MARKS: Final = 7000
 _DOMAINS: Final = 100
 # The ports of DDS: those of a domain begin there, so far apart; and so many programs are looked for in each.
 _DDS, _APART, _FIRST, _PROGRAMS = 7400, 250, 10, 16
-_taken: list[socket.socket] = []
 
 
 def free_domain() -> int:
@@ -23,7 +23,7 @@ def free_domain() -> int:
         mark = _bound(socket.SOCK_STREAM, _MARKS + number, "127.0.0.1")
         if mark is not None and _is_empty(number):
             mark.listen()
-            _taken.append(mark)
+            atexit.register(mark.close)
             return number
         if mark is not None:
             mark.close()

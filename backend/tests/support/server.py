@@ -25,9 +25,10 @@ from sequence_planner.auth.roles import Role
 from sequence_planner.auth.sessions import SignedIn, open_session
 from sequence_planner.auth.users import Person
 from sequence_planner.controller.commands.command import Command, CommandRefused
+from sequence_planner.controller.commands.execution import SetBreakpoint
 from sequence_planner.controller.commands.tasks import TaskCommand
-from sequence_planner.controller.ipc import ControllerLink
-from sequence_planner.controller.views.station import StationView
+from sequence_planner.controller.ipc import CarriedOut, ControllerLink
+from sequence_planner.controller.views.station import MadeBreakpointView, StationView
 from sequence_planner.core.actor import SYSTEM, ActorKind
 from sequence_planner.server.binding import bind
 from sequence_planner.server.http.credentials import session_cookie
@@ -78,7 +79,7 @@ class Controller:
         self.link = ControllerLink(path, self.handle)
         self._task: asyncio.Task[None] | None = None
 
-    async def handle(self, command: Command) -> None:
+    async def handle(self, command: Command) -> CarriedOut | None:
         if isinstance(command, TaskCommand):
             task = self.view.tasks.get(command.task)
             if task is None or task.revision != command.revision:
@@ -86,6 +87,8 @@ class Controller:
             if command.task == "broken":
                 raise RuntimeError("a fault of the controller")
         self.commands.append(command)
+        made = MadeBreakpointView(id="7", **dict(self.view.breakpoints["1"]))
+        return CarriedOut(made=made if isinstance(command, SetBreakpoint) else None)
 
     def start(self) -> None:
         self.loop.run(self.link.__aenter__())

@@ -2,7 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
-import { expression, field, file, form, problems, write } from '../../station/editor.ts';
+import { check, expression, field, file, form, problems, write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bolt_tightening' });
@@ -27,8 +27,7 @@ async function add(page: Page, what: string, name: string, given: Readonly<Recor
 /** What was typed last is in the draft, which was checked without an error. */
 const sound = async (page: Page, typed: string): Promise<void> => {
 	await expect(file(page)).toContainText(typed);
-	await expect(problems(page).getByRole('status')).toHaveText(/^Checked/, { timeout: 60_000 });
-	await expect(problems(page).getByRole('status')).not.toContainText('error');
+	await expect(check(page)).toHaveText('Checked', { timeout: 60_000 });
 };
 
 test('a set, a relation, a map and a predicate are made by forms, used in a guard, renamed and taken back', async ({
@@ -105,7 +104,7 @@ test('a set, a relation, a map and a predicate are made by forms, used in a guar
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error')).toHaveCount(0);
 	await expect(file(page)).toContainText('can_go(home)');
-	await expect(problems(page).getByRole('status')).not.toContainText('error', { timeout: 60_000 });
+	await expect(check(page)).not.toContainText('error', { timeout: 60_000 });
 
 	// What it is in the names it was written in, and what it stands for in the end.
 	await expect(async () => {

@@ -2,7 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
-import { expression, field, file, form, problems, write } from '../../station/editor.ts';
+import { check, expression, field, file, form, write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'robots drafted', byItself: false, people: 'everybody', copied: 'robots_with_buffer' });
@@ -42,6 +42,9 @@ test('an instance shows what it has of its type, changes it, and is reset; the t
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'executing').locator('.cm-lintRange-error')).toHaveCount(0);
 	await expect(file(page)).toContainText('executing: target == stop and at != stop');
+	// Nothing of it is on its way any more when the page is left.
+	await expect(field(page, 'executing').locator(':is([data-state="typing"], [data-state="sending"])')).toHaveCount(0);
+	await expect(file(page)).toContainText('executing: target == stop and at != stop');
 
 	// What both robots have is called otherwise for both, and the type with its file.
 	await page.goto(at(TYPE, 'abilities', 'open_gripper'));
@@ -57,8 +60,7 @@ test('an instance shows what it has of its type, changes it, and is reset; the t
 	await expect(form(page).getByRole('heading').first()).toContainText('arm');
 	await page.goto(at(ROBOT));
 	await expect(field(page, 'type').getByRole('combobox')).toHaveValue('arm');
-	await expect(problems(page).getByRole('status')).toHaveText(/^Checked/, { timeout: 60_000 });
-	await expect(problems(page).getByRole('status')).not.toContainText('error');
+	await expect(check(page)).toHaveText('Checked', { timeout: 60_000 });
 	expect(await findings(page)).toEqual([]);
 
 	// What an argument is wrong in is said beside it.
@@ -67,5 +69,42 @@ test('an instance shows what it has of its type, changes it, and is reset; the t
 	await expect(field(page, 'arguments')).toContainText('is no value of');
 	await page.getByRole('button', { name: /^Undo: / }).click();
 	await expect(field(page, 'arguments')).not.toContainText('is no value of');
+	expect(complaints).toEqual([]);
+});
+
+test('the parameters of a type are written in its form, and all else of the file stays', async ({ browse, complaints }) => {
+	const page = await browse(INA, at(TYPE));
+	const parameters = field(page, 'parameters');
+	const rows = parameters.getByRole('listitem');
+	await expect(rows).toHaveCount(3);
+	await expect(parameters.getByLabel('Kind of conveyor')).toHaveValue('value');
+	await expect(parameters.getByLabel('Enumeration of conveyor')).toHaveValue('stops');
+	await expect(parameters.getByLabel('Enumeration of namespace')).toHaveCount(0);
+
+	await parameters.getByRole('button', { name: 'Add an entry: Parameters' }).click();
+	const name = parameters.getByLabel('Parameters, name 4');
+	await name.fill('stops');
+	await name.press('Tab');
+	await expect(parameters.getByText('The same name is here twice.')).toBeVisible();
+	await name.fill('travel');
+	await name.press('Tab');
+	await expect(rows).toHaveCount(4);
+	await parameters.getByLabel('Kind of travel').selectOption('number');
+	await expect(file(page)).toContainText('travel: number');
+	await parameters.getByLabel('Default of travel').fill('slow');
+	await parameters.getByLabel('Default of travel').press('Tab');
+	await expect(parameters.getByText('Write a number, such as 2.5.')).toBeVisible();
+	await parameters.getByLabel('Default of travel').fill('2.5');
+	await parameters.getByLabel('Default of travel').press('Tab');
+	await expect(file(page)).toContainText('default: 2.5');
+	await expect(file(page)).toContainText('stops: enumeration # where it can be sent');
+	expect(await findings(page)).toEqual([]);
+
+	await parameters.getByLabel('Kind of travel').selectOption('value');
+	await expect(parameters.getByLabel('Enumeration of travel')).toHaveValue('stops');
+	await parameters.getByRole('button', { name: 'Remove Parameters, travel' }).click();
+	await expect(rows).toHaveCount(3);
+	await expect(file(page)).not.toContainText('travel');
+	await expect(file(page)).toContainText('stops: enumeration # where it can be sent');
 	expect(complaints).toEqual([]);
 });

@@ -1,7 +1,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { picture } from '../../station/seen.ts';
-import { expression, field, file, form, problems, write } from '../../station/editor.ts';
+import { check, expression, field, file, form, panel, problems, write } from '../../station/editor.ts';
 import { INA, IVO, VERA } from '../../station/station.ts';
 import { expect, test } from '../../station/test.ts';
 
@@ -56,8 +56,8 @@ test('a variable and an ability with guard and action are added; what is wrong i
 	await expect(expression(page, 'Enabled')).toHaveAttribute('aria-invalid', 'true');
 	await expect(expression(page, 'Enabled')).toHaveAccessibleDescription(/did you mean/);
 	await expect(field(page, 'enabled').locator('[data-state="accepted"]')).toBeVisible();
-	await expect(problems(page)).toContainText('1 error');
-	await expect(problems(page).getByRole('listitem')).toContainText('did you mean `is_checked`?');
+	await expect(check(page)).toHaveText('Cannot be used: 1 error');
+	await expect(problems(page).locator('[data-finding]')).toContainText('did you mean `is_checked`?');
 	await expect(row(page, ROBOT, 'abilities', 'check_pose')).toContainText('1 error');
 	expect(await findings(page)).toEqual([]);
 	await page.emulateMedia({ colorScheme: 'dark' });
@@ -73,18 +73,24 @@ test('a variable and an ability with guard and action are added; what is wrong i
 	await expect(form(page).getByRole('heading').first()).toContainText('check_pose');
 	await expect(file(page).locator('.cm-chosen').first()).toContainText('check_pose');
 
-	await write(expression(page, 'Enabled'), 'pose == home and not is_checked');
+	// What was meant is written by a press, and that is one step of undo.
+	await problems(page).getByRole('button', { name: 'Write “is_checked”' }).click();
+	await expect(expression(page, 'Enabled')).toHaveText('pose == home and not is_checked');
+	await expect(page.getByRole('button', { name: 'Undo: “is_chekced” becomes “is_checked”' })).toBeVisible();
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error')).toHaveCount(0);
 	await form(page).getByRole('button', { name: 'Add an entry: Start: Actions' }).click();
 	await write(expression(page, 'Start: Actions, 1'), 'is_checked := true');
 	await expect(file(page)).toContainText('is_checked := true');
-	await expect(problems(page).getByRole('status')).not.toContainText('error', { timeout: 60_000 });
-	await expect(problems(page).getByRole('status')).toContainText('Checked', { timeout: 60_000 });
+	await expect(check(page)).toHaveText('Checked', { timeout: 60_000 });
 
+	await panel(page, 'Changes');
 	await expect(changes(page).getByRole('listitem').first()).toContainText('robot.check_pose: Start: Actions');
 	await expect(changes(page).getByRole('listitem').first()).toContainText('Ina');
+	// From what to what, with its place.
+	await expect(changes(page).getByRole('listitem').first().locator('[data-place]')).toContainText('is_checked := true');
 	await expect(page.getByRole('button', { name: 'Undo: robot.check_pose: Start: Actions' })).toBeVisible();
-	await problems(page).getByRole('heading').click();
+	await panel(page, 'Problems');
+	await problems(page).getByRole('heading', { name: 'Problems' }).focus();
 	await page.keyboard.press('Control+z');
 	await expect(file(page)).not.toContainText('is_checked := true');
 	await expect(expression(page, 'Start: Actions, 1')).toHaveCount(0);
@@ -152,6 +158,7 @@ test('two engineers at once: the form follows, and where both write the same bot
 	await title(ina).fill('Ina was here');
 	await title(ina).press('Tab');
 	await expect(title(ivo)).toHaveValue('Ina was here', { timeout: 2000 });
+	await panel(ivo, 'Changes');
 	await expect(changes(ivo).getByRole('listitem').first()).toContainText('Ina');
 
 	// Ivo is still writing when Ina has written.
@@ -259,6 +266,37 @@ test('a renamed variable is renamed wherever it is named; before it is deleted i
 	await page.keyboard.press('Escape');
 });
 
+test('a part is copied in the tree and pasted into another resource; what is none is said, and one undo takes it back', async ({ browse }) => {
+	const page = await browse(INA, at(ROBOT, 'abilities', 'move_to_position'));
+	await ready(page);
+	const [from, to, copy] = [row(page, ROBOT, 'abilities', 'move_to_position'), row(page, 'resources/nutrunner.yaml'), row(page, 'resources/nutrunner.yaml', 'abilities', 'move_to_position')];
+	await from.focus();
+	await expect(async () => {
+		await page.keyboard.press('Control+c');
+		await expect(page.getByText('move_to_position copied as YAML')).toBeVisible({ timeout: 1000 });
+	}).toPass();
+	await to.click();
+	await to.focus();
+	await page.keyboard.press('Control+v');
+	await expect(copy).toHaveAttribute('aria-selected', 'true');
+	await expect(form(page).getByRole('heading').first()).toContainText('move_to_position');
+	await expect(file(page)).toContainText('move_to_position');
+	await page.getByRole('button', { name: /^Undo/ }).first().click();
+	await expect(copy).toHaveCount(0);
+
+	// What stands in the clipboard may be anything.
+	await to.focus();
+	for (const [text, said] of [['hello', 'no part of a model'], ['nonsense: {a: {}}', '“nonsense” has no place here']] as const) {
+		await to.evaluate((element, pasted) => {
+			const clipboardData = new DataTransfer();
+			clipboardData.setData('text/plain', pasted);
+			element.dispatchEvent(new ClipboardEvent('paste', { clipboardData, bubbles: true }));
+		}, text);
+		await expect(page.getByRole('alert').filter({ hasText: said })).toBeVisible();
+	}
+	await expect(copy).toHaveCount(0);
+});
+
 test('the tree is gone through by keyboard and searched; who may not edit can look @long', async ({ browse }) => {
 	const page = await browse(VERA, '/model');
 	await ready(page);
@@ -294,6 +332,7 @@ test('what could be said shorter is found, proven, written under a name that is 
 	const page = await browse(INA, at('operations.yaml', 'new_engine'));
 	await ready(page);
 	const shorter = page.getByRole('region', { name: 'Shorter with the same meaning' });
+	await panel(page, 'Could be shorter');
 	await shorter.getByRole('button', { name: 'Look for shorter ways' }).click();
 	const predicate = shorter.getByRole('listitem').filter({ hasText: 'Name a predicate `all_tightened`' });
 	await expect(predicate.getByLabel('Name')).toHaveValue('all_tightened', { timeout: 60_000 });
@@ -312,13 +351,15 @@ test('what could be said shorter is found, proven, written under a name that is 
 	await expect(shorter.getByRole('alert')).toContainText('is the name of something else');
 	await predicate.getByLabel('Name').fill('is_done');
 	await predicate.getByRole('button', { name: 'Write it so' }).click();
+	await panel(page, 'Changes');
 	await expect(changes(page).getByRole('listitem').first()).toContainText('Name a predicate `is_done`, in 2 places', {
 		timeout: 60_000
 	});
 	await expect(file(page)).toContainText('is_done');
 	await expect(file(page)).not.toContainText('bolts[bolt_pair_1] == tightened');
-	await expect(problems(page).getByRole('status')).toContainText('Checked', { timeout: 60_000 });
-	await expect(problems(page).getByRole('status')).not.toContainText('error');
+	await panel(page, 'Problems');
+	await expect(check(page)).toHaveText('Checked', { timeout: 60_000 });
+	await panel(page, 'Could be shorter');
 	await expect(predicate).toHaveCount(0, { timeout: 60_000 });
 
 	// All of it is one change.

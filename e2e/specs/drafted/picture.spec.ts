@@ -46,43 +46,43 @@ test.describe('the picture of a draft', () => {
 
 		// By mouse: it is where it was dropped at once, and one change of the draft.
 		const scene = thing(page, 'planning_scene');
-		await expect(scene).toHaveAccessibleName('Planning scene: at 40, 242');
+		await expect(scene).toHaveAccessibleName('Planning scene: at 24, 236');
 		await drag(page, scene, [0, 40]);
 		await expect(undo(page)).toHaveAccessibleName('Undo: planning_scene moved in the picture');
-		await expect(scene).not.toHaveAccessibleName('Planning scene: at 40, 242');
+		await expect(scene).not.toHaveAccessibleName('Planning scene: at 24, 236');
 		await expect(form(page).getByRole('heading').first()).toContainText('Planning scene');
 		const [was, is] = others(before, await text());
-		expect(was).toEqual(['at: [40, 242]']);
+		expect(was).toEqual(['at: [24, 236]']);
 		expect(is).toHaveLength(1);
-		expect(is[0]).toMatch(/^at: \[40, 2[78]\d\]$/);
+		expect(is[0]).toMatch(/^at: \[24, 2[67]\d\]$/);
 		await undo(page).click();
-		await expect(scene).toHaveAccessibleName('Planning scene: at 40, 242');
+		await expect(scene).toHaveAccessibleName('Planning scene: at 24, 236');
 		expect(await text()).toBe(before);
 
 		// By keys, with what is said of it; several presses are one change.
 		await scene.focus();
 		await page.keyboard.press('Shift+ArrowDown');
 		await page.keyboard.press('ArrowRight');
-		await expect(page.getByTestId('moved')).toHaveText('Planning scene: at 41, 250');
-		await expect.poll(text).toContain('at: [41, 250]');
+		await expect(page.getByTestId('moved')).toHaveText('Planning scene: at 25, 244');
+		await expect.poll(text).toContain('at: [25, 244]');
 		await expect(scene).toBeFocused();
-		expect(others(before, await text())).toEqual([['at: [40, 242]'], ['at: [41, 250]']]);
+		expect(others(before, await text())).toEqual([['at: [24, 236]'], ['at: [25, 244]']]);
 
 		// The corner, and a field of the form.
 		await page.locator('[data-corner]').focus();
 		await page.keyboard.press('ArrowLeft');
-		await expect.poll(text).toContain('size: [211, 50]');
+		await expect.poll(text).toContain('size: [299, 58]');
 		await form(page).getByLabel('Height').fill('52');
 		await page.keyboard.press('Enter');
-		await expect.poll(text).toContain('size: [211, 52]');
+		await expect.poll(text).toContain('size: [299, 52]');
 
 		// What is written in the file is drawn.
 		const file = page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
-		await file.getByText('at: [41, 250]').click();
+		await file.getByText('at: [25, 244]').click();
 		await page.keyboard.press('End');
 		for (let signs = 0; signs < 4; signs++) await page.keyboard.press('Backspace');
-		await page.keyboard.type('244]');
-		await expect(scene).toHaveAccessibleName('Planning scene: at 41, 244');
+		await page.keyboard.type('240]');
+		await expect(scene).toHaveAccessibleName('Planning scene: at 25, 240');
 		await drawn(page, 'file');
 
 		// A stop of the robot by itself.
@@ -92,8 +92,8 @@ test.describe('the picture of a draft', () => {
 		await page.keyboard.press('PageDown');
 		await expect(page.locator('[data-piece="stop:home"]')).toBeFocused();
 		await page.keyboard.press('ArrowUp');
-		await expect.poll(text).toContain('home: {at: [146, 83], title: {en: Home, sv: Hemma}}');
-		await expect(thing(page, 'robot')).toHaveAccessibleName('Robot UR10: at 396, 12');
+		await expect.poll(text).toContain('home: {at: [174, 83], title: {en: Home, sv: Hemma}}');
+		await expect(thing(page, 'robot')).toHaveAccessibleName('Robot UR10: at 658, 8');
 		expect(complaints).toEqual([]);
 	});
 
@@ -119,7 +119,7 @@ test.describe('the picture of a draft', () => {
 		expect((await drafting.files()).get(FILE)).toBe(before);
 		await swipe(-30);
 		await expect.poll(async () => (await drafting.files()).get(FILE)).not.toBe(before);
-		expect(others(before, (await drafting.files()).get(FILE) ?? '')[0]).toEqual(['at: [40, 242]']);
+		expect(others(before, (await drafting.files()).get(FILE) ?? '')[0]).toEqual(['at: [24, 236]']);
 		expect(complaints).toEqual([]);
 	});
 
@@ -184,8 +184,8 @@ test.describe('a picture that is deployed', () => {
 		await drawn(page, 'file');
 		await drag(page, thing(page, 'planning_scene'), [0, 40]);
 		await expect(undo(page)).toBeEnabled();
-		const placed = /planning_scene:\n\s+symbol: device\n\s+at: \[40, (\d+)\]/;
-		await expect.poll(async () => placed.exec((await drafting.files()).get(FILE) ?? '')?.[1]).not.toBe('242');
+		const placed = /planning_scene:\n\s+symbol: device\n\s+at: \[24, (\d+)\]/;
+		await expect.poll(async () => placed.exec((await drafting.files()).get(FILE) ?? '')?.[1]).not.toBe('236');
 		const y = Number(placed.exec((await drafting.files()).get(FILE) ?? '')?.[1]);
 		const [, revision] = await Promise.all([drafting.checked(), drafting.save('Drawn')]);
 		await page.goto('/');

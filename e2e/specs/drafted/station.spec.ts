@@ -15,7 +15,7 @@ test('from the goal of an operation down to the topic that carries it out, by mo
 	browse,
 	complaints
 }) => {
-	const page = await browse(VERA, '/station');
+	const page = await browse(VERA, '/model?view=graph');
 	await expect(map(page).getByRole('heading', { level: 2 })).toHaveText([/^Layer 3/, /^Layer 2/, /^Layer 1/, /^Layer 0/]);
 	await expect(map(page).locator('[data-layer="1"]').locator('[data-stop="ability:nutrunner.run_nut"]')).toBeVisible();
 	await piece(page, 'operation:prepare_planning_scene').click();
@@ -34,6 +34,8 @@ test('from the goal of an operation down to the topic that carries it out, by mo
 	await page.keyboard.press('ArrowLeft');
 	await expect(piece(page, 'operation:new_engine')).toBeFocused();
 	await page.keyboard.press('ArrowDown');
+	await expect(piece(page, 'operation:prepare_planning_scene')).toBeFocused();
+	await page.keyboard.press('ArrowDown');
 	await expect(piece(page, 'specification:no_standing_tool_on_placed_bolts')).toBeFocused();
 	await page.keyboard.press('ArrowUp');
 	await page.keyboard.press('Home');
@@ -47,6 +49,14 @@ test('from the goal of an operation down to the topic that carries it out, by mo
 	await expect(chosen(page).getByRole('heading', { level: 2 })).toContainText('new_engine');
 	await piece(page, 'operation:new_engine').press('Escape');
 	await expect(chosen(page)).toBeHidden();
+
+	// The tree and the graph go together, and from there it is a step to the form and back.
+	await page.locator('[role="treeitem"][data-id="operations.yaml#new_engine"]').click();
+	await expect(chosen(page).getByRole('heading', { level: 2 })).toContainText('new_engine');
+	await chosen(page).getByRole('link', { name: 'Open' }).click();
+	await expect(page.getByRole('region', { name: 'Chosen part' }).getByRole('heading').first()).toContainText('new_engine');
+	await page.getByRole('group', { name: 'How the model is shown' }).getByRole('button', { name: 'Graph' }).click();
+	await expect(piece(page, 'operation:new_engine')).toHaveAttribute('aria-pressed', 'true');
 	expect(complaints).toEqual([]);
 });
 
@@ -60,7 +70,9 @@ test('usages of anything are found, from the station and from an expression; loo
 		'measured:\n',
 		'estimated:\n  is_seen: {type: bool}\n\nmeasured:\n'
 	]);
+	// Older links lead to where it is now.
 	const page = await browse(VERA, '/station?loose=on');
+	await expect(page).toHaveURL(/\/model\?view=graph&loose=on$/);
 	await expect(piece(page, 'variable:robot.is_seen')).toContainText('written by nothing');
 	await expect(page.getByRole('complementary').filter({ hasText: 'Loose ends' })).toContainText('robot.is_seen');
 	const marked = piece(page, 'variable:robot.is_seen').getByText(/findings? of the check/);
@@ -77,7 +89,7 @@ test('usages of anything are found, from the station and from an expression; loo
 	await search.fill('RobotState');
 	await page.getByRole('search').getByRole('button', { name: /RobotState/ }).click();
 	await expect(above(page).locator('[data-manner="carries"]')).toContainText('/ur10/state');
-	await above(page).getByRole('link', { name: /^resources\/robot\.yaml:\d+$/ }).click();
+	await above(page).getByRole('link', { name: /^resources\/robot\.yaml:\d+$/ }).first().click();
 	await expect(page).toHaveURL(/\/model\?file=resources%2Frobot\.yaml&line=\d+$/);
 	const form = page.getByRole('region', { name: 'Chosen part' });
 	await expect(form.getByRole('heading').first()).toContainText('/ur10/state');
@@ -87,11 +99,16 @@ test('usages of anything are found, from the station and from an expression; loo
 	await goal.click();
 	await goal.press('End');
 	await goal.press('Shift+F12');
-	const dialog = page.getByRole('dialog', { name: 'Usages of robot.tool_is_attached' });
-	await expect(dialog.getByRole('status').first()).toContainText(/It is used in \d+ places/);
-	await expect(dialog).toContainText('topic /ur10/planning_scene/state');
+	const usages = page.getByRole('region', { name: 'Usages of robot.tool_is_attached' });
+	await expect(usages.getByRole('status').first()).toContainText(/It is used in \d+ places/);
+	await expect(usages).toContainText('topic /ur10/planning_scene/state');
 	expect(await findings(page)).toEqual([]);
-	await dialog.getByRole('link', { name: 'Show it in the station' }).click();
+	// It stays while its usages are gone through.
+	await usages.getByRole('button', { name: /^resources\/robot\.yaml:\d+$/ }).first().click();
+	await expect(form.getByRole('heading').first()).not.toContainText('prepare_planning_scene');
+	await expect(usages.getByRole('status').first()).toContainText(/It is used in \d+ places/);
+	await page.goBack();
+	await usages.getByRole('link', { name: 'Show it in the graph' }).click();
 	await expect(chosen(page).getByRole('heading', { level: 2 })).toContainText('robot.tool_is_attached');
 	await page.goBack();
 	await goal.click();

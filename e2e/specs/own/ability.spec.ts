@@ -4,7 +4,7 @@ import { acknowledge, picture, restsOnPerson, takeControl, variable } from '../.
 import { ADA } from '../../station/station.ts';
 import { expect, test } from '../../station/test.ts';
 
-const address = (ability: string): string => `/abilities?${new URLSearchParams({ name: ability })}`;
+const address = (ability: string): string => `/model?${new URLSearchParams({ ability, panel: 'runs' })}`;
 const moveTo = (pose: string): string => `robot.move_to_position(${pose})`;
 const region = (page: Page, name: string): Locator => page.getByRole('region', { name, exact: true });
 const phase = (page: Page): Locator => page.getByTestId('phase');
@@ -23,17 +23,20 @@ test.describe('a station that works', () => {
 	test('an ability is seen as it is, tried alone, and refused where the supervisor does not allow it', async ({
 		station,
 		operate,
+		state,
 		watch
 	}) => {
 		await restsOnPerson(operate, watch);
-		const pose = (await variable(operate, 'robot.pose').getAttribute('data-value')) ?? '';
+		const pose = (await variable(state, 'robot.pose').getAttribute('data-value')) ?? '';
 
-		await test.step('from its resource it is a step to an ability, and the list leads to the others', async () => {
-			const robot = operate.getByRole('article', { name: 'Robot UR10' });
-			await robot.locator('summary').click();
-			await robot.getByRole('link', { name: 'Move to home' }).click();
-			await expect(operate.getByRole('heading', { name: 'Move to home', level: 2 })).toBeVisible();
-			await expect(region(operate, 'Automaton')).toContainText('robot.target_pose == robot.pose');
+		await test.step('from its resource it is a step to an ability, and what it does stands there', async () => {
+			await operate.getByTestId('mimic').locator('[role="button"][data-symbol="robot"]').press('Enter');
+			await operate.getByRole('dialog', { name: 'Robot UR10' }).getByRole('link', { name: 'Move to home' }).click();
+			await expect(operate.getByRole('heading', { name: 'move_to_position', level: 2 })).toBeVisible();
+			const now = region(operate, 'In the station that runs');
+			await expect(now.getByRole('combobox', { name: 'Which one' })).toHaveValue(moveTo('home'));
+			await expect(now.getByRole('list', { name: 'May start when' }).locator('[title="robot.target_pose == robot.pose"]')).toBeVisible();
+			await now.getByRole('button', { name: 'Try it' }).click();
 			await expect(press(operate)).toHaveAttribute('aria-disabled', 'true');
 			await expect(operate.getByTestId('hindrance')).not.toBeEmpty();
 		});
@@ -48,8 +51,8 @@ test.describe('a station that works', () => {
 		await test.step('a guard that does not hold now says which part of it does not', async () => {
 			await operate.goto(station.url + address(moveTo(pose === 'home' ? 'home' : pose)));
 			await expect(phase(operate)).toHaveAttribute('data-phase', 'idle');
-			const lacking = operate.getByTestId('automaton').locator('[data-transition="enabled"] [data-holds="false"]');
-			await expect(lacking).toContainText(['does not hold']);
+			const lacking = operate.getByRole('list', { name: 'May start when' }).locator('[data-holds="false"]');
+			await expect(lacking.first()).toContainText('does not hold');
 			await expect(operate.getByTestId('hindrance')).toContainText('waits for');
 		});
 
@@ -58,8 +61,7 @@ test.describe('a station that works', () => {
 				await operate.goto(station.url + address(moveTo('home')));
 				await tried(operate);
 			}
-			await operate.getByRole('navigation', { name: 'Abilities' }).getByRole('link', { name: /above engine/ }).click();
-			await expect(operate.getByRole('heading', { name: 'Move to above engine' })).toBeFocused();
+			await operate.getByRole('combobox', { name: 'Which one' }).selectOption(moveTo('above_engine'));
 			await expect(phase(operate)).toHaveAttribute('data-phase', 'enabled');
 			await press(operate).focus();
 			await operate.keyboard.press('Enter');
@@ -80,6 +82,7 @@ test.describe('a station that works', () => {
 			const pair = await acknowledge(watch);
 			await operate.goto(station.url + address(moveTo(pair)));
 			const supervised = region(operate, 'The supervisor adds');
+			await operate.getByText('Automaton', { exact: true }).click();
 			await expect(supervised).toHaveAttribute('data-allowed', 'false');
 			await expect(supervised).toContainText('The tool must turn before it meets placed bolts');
 			await expect(operate.getByTestId('hindrance')).toContainText('The tool must turn before it meets placed bolts');

@@ -106,7 +106,7 @@ test('a new station becomes somebody’s by its link, once, who then lets others
 			})
 		).toEqual([403, 403]);
 
-		await eva.getByLabel('Present password').fill(temporary);
+		await eva.getByLabel('Current password').fill(temporary);
 		await eva.getByLabel('New password').fill(EVA.password);
 		await eva.getByRole('button', { name: 'Change password' }).click();
 		await expect(eva.getByText('The password was changed')).toBeVisible();

@@ -218,7 +218,7 @@ test('names are completed, explained, found and renamed', async () => {
 	expect(await connection.sendRequest(PrepareRenameRequest.type, ability)).toMatchObject({ placeholder: 'run_nut' });
 	const edit = await connection.sendRequest(RenameRequest.type, { ...ability, newName: 'tighten' });
 	const files = Object.keys(edit?.changes ?? {}).map((each) => each.split('/').at(-1));
-	expect(files.toSorted()).toEqual(['nutrunner.yaml', 'specifications.yaml']);
+	expect(files.toSorted()).toEqual(['nutrunner.yaml', 'specifications.yaml', 'work.yaml']);
 	const refused = connection.sendRequest(RenameRequest.type, { ...ability, newName: 'two words' });
 	await expect(refused).rejects.toThrow(ResponseError);
 	await expect(refused).rejects.toThrow('is no name');

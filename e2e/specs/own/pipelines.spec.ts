@@ -7,7 +7,8 @@ import { expect, test } from '../../station/test.ts';
 test.use({ shared: null, byItself: false, devices: true, people: 'everybody', copied: 'bolt_tightening' });
 
 const STATE = '/pipelines?of=%2Fur10%2Fstate';
-const box = (page: Page, kind: string, name: string): Locator => page.locator('.svelte-flow__node').filter({ hasText: kind }).filter({ hasText: name });
+const box = (page: Page, kind: string, name: string): Locator =>
+	page.locator('.svelte-flow__node').filter({ hasText: kind }).filter({ has: page.getByText(name, { exact: true }) });
 const steps = (page: Page): Locator => page.getByRole('list', { name: 'Steps' });
 const stage = (page: Page, kind: string): Locator => steps(page).locator('.stage').filter({ hasText: kind });
 const part = (page: Page): Locator => page.getByRole('region', { name: 'Chosen part' });
@@ -24,7 +25,9 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	await expect(box(page, 'Topic', '/ur10/state')).toBeVisible({ timeout: 30_000 });
 	await expect(box(page, 'Stage', 'discretise')).toContainText('joint_positions → pose');
 	await expect(box(page, 'Variable', 'robot.previous_pose')).toBeVisible();
-	await expect(page.locator('.svelte-flow__edge')).toHaveCount(5);
+	// What the robot says, and below it what it is told.
+	await expect(page.locator('.svelte-flow__edge[data-id^="/ur10/state"]')).toHaveCount(5);
+	await expect(box(page, 'Stage', 'undiscretise')).toContainText('target_pose → joint_positions');
 	await expect(page.locator('[data-wire]').filter({ hasText: /[1-9][\d.]*\/s/ })).toBeVisible();
 	await expect(page.locator('[data-wire]').filter({ hasText: 'pose = home' })).toBeVisible();
 	await examine(page, 'pipelines');
@@ -82,6 +85,102 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	await expect(page.locator('[data-wire]').filter({ hasText: 'pose = above_engine' })).toBeVisible();
 	await page.getByRole('button', { name: 'Show what passes now' }).first().click();
 	await expect(page.locator('[data-wire]').filter({ hasText: 'pose = home' })).toBeVisible();
+	expect(complaints).toEqual([]);
+});
+
+test('a pipeline is shaped in its picture: stages are dropped on wires, moved, copied, pasted and removed, and boxes stay where they are put', async ({
+	browse,
+	complaints
+}) => {
+	test.setTimeout(200_000);
+	const page = await browse(INA, STATE);
+	await expect(box(page, 'Topic', '/ur10/state')).toContainText(/moving\s*no/, { timeout: 30_000 });
+	await expect(box(page, 'Variable', 'robot.pose')).toContainText('home');
+	await expect(page.locator('.svelte-flow__node-lane').filter({ hasText: 'From Robot UR10' })).toContainText(/[1-9][\d.]* messages a second/);
+	const kind = (name: string): Locator => page.locator(`[data-stage-kind="${name}"]`);
+	const order = (): Promise<string[]> => steps(page).locator('.stage strong').allTextContents();
+	const wire = (text: string): Locator => page.locator('[data-wire]').filter({ hasText: text }).first();
+	await page.getByRole('searchbox', { name: 'Find a stage' }).fill('new value counts');
+	await expect(page.locator('[data-stage-kind]')).toHaveCount(1);
+
+	// From the palette onto a wire; what does not fit there is said, and nothing is changed.
+	await kind('debounce').dragTo(wire('pose = home'));
+	await expect.poll(order).toEqual(['discretise', 'debounce', 'remember']);
+	await expect(part(page).getByRole('heading', { name: 'debounce' })).toBeVisible();
+	await page.getByRole('searchbox', { name: 'Find a stage' }).fill('constant');
+	await expect(kind('constant')).toHaveAttribute('data-fits', 'false');
+	await kind('constant').dragTo(box(page, 'Stage', 'discretise'));
+	await expect(page.getByRole('alert').filter({ hasText: 'is for outgoing topics' })).toBeVisible();
+	await expect.poll(order).toEqual(['discretise', 'debounce', 'remember']);
+	await page.getByRole('alert').getByRole('button', { name: 'Close' }).click();
+
+	// By keyboard: from box to box, cut, pasted elsewhere as YAML, removed and taken back.
+	await box(page, 'Stage', 'debounce').focus();
+	await page.keyboard.press('Control+x');
+	await expect.poll(order).toEqual(['discretise', 'remember']);
+	await box(page, 'Stage', 'discretise').focus();
+	await page.keyboard.press('ArrowRight');
+	await expect(box(page, 'Stage', 'remember')).toBeFocused();
+	await page.keyboard.press('Enter');
+	await expect(part(page).getByRole('heading', { name: 'remember' })).toBeVisible();
+	await page.keyboard.press('Control+v');
+	await expect.poll(order).toEqual(['discretise', 'remember', 'debounce']);
+	await box(page, 'Stage', 'debounce').press('Delete');
+	await expect.poll(order).toEqual(['discretise', 'remember']);
+	await page.getByRole('status').getByRole('button', { name: 'Take back' }).last().click();
+	await expect.poll(order).toEqual(['discretise', 'remember', 'debounce']);
+
+	// A stage that is dragged onto another wire goes there; one that is dragged elsewhere stays there, for who put it there.
+	const all = (): Promise<void> => page.getByRole('button', { name: 'Show all of it' }).click();
+	await all();
+	await box(page, 'Stage', 'debounce').dragTo(wire('2 fields'));
+	await expect.poll(order).toEqual(['debounce', 'discretise', 'remember']);
+	await all();
+	await box(page, 'Stage', 'remember').dragTo(wire('2 fields'));
+	await expect(page.getByRole('alert').filter({ hasText: 'it would not fit' })).toContainText('there is no field');
+	await expect.poll(order).toEqual(['debounce', 'discretise', 'remember']);
+	await page.getByRole('alert').getByRole('button', { name: 'Close' }).click();
+	const topic = box(page, 'Topic', '/ur10/state');
+	const at = async (): Promise<string> => topic.evaluate((element) => element.style.transform);
+	const usual = await at();
+	await topic.hover();
+	await page.mouse.down();
+	const from = await topic.boundingBox();
+	await page.mouse.move((from?.x ?? 0) + 60, (from?.y ?? 0) + 95, { steps: 8 });
+	await page.mouse.up();
+	await expect.poll(at).not.toBe(usual);
+	const put = await at();
+	await topic.hover();
+	await page.mouse.down();
+	await page.mouse.move((from?.x ?? 0) + 200, (from?.y ?? 0) + 20, { steps: 8 });
+	await expect.poll(at).not.toBe(put);
+	await page.keyboard.press('Escape');
+	await page.mouse.up();
+	await expect.poll(at).toBe(put);
+	await page.reload();
+	await expect.poll(at, { timeout: 30_000 }).toBe(put);
+	await page.getByRole('button', { name: 'Lay it all out again' }).click();
+	await expect.poll(at).toBe(usual);
+
+	// A field is drawn to what it becomes; what means nothing is said.
+	await topic.locator('.svelte-flow__handle.source').dragTo(box(page, 'Topic', '/ur10/planning_scene/state').locator('.svelte-flow__handle.target'));
+	await expect(page.getByRole('alert').filter({ hasText: 'nothing can lead' })).toBeVisible();
+
+	// What was written elsewhere is pasted where a wire is chosen.
+	await wire('2 fields').click();
+	await page.evaluate(() => {
+		const clipboardData = new DataTransfer();
+		clipboardData.setData('text/plain', '- limit: {every: 2}');
+		document.activeElement?.dispatchEvent(new ClipboardEvent('paste', { clipboardData, bubbles: true }));
+	});
+	await expect.poll(order).toEqual(['limit', 'debounce', 'discretise', 'remember']);
+
+	// Of the whole station what is looked for stands out.
+	await page.goto('/pipelines');
+	await page.getByRole('searchbox', { name: 'Find in the graph' }).fill('joint_positions undiscretise');
+	await expect(page.getByText('1 of 1')).toBeVisible();
+	await page.getByRole('button', { name: 'Open', exact: true }).click();
+	await expect(part(page).getByRole('heading', { name: 'undiscretise' })).toBeVisible();
 	expect(complaints).toEqual([]);
 });
 

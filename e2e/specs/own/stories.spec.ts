@@ -13,6 +13,7 @@ import type { Locator, Page } from '@playwright/test';
 interface Place {
 	readonly station: Station;
 	readonly operate: Page;
+	readonly state: Page;
 	readonly watch: Page;
 	readonly restart: Page;
 	readonly plant: Plant;
@@ -69,12 +70,12 @@ async function tightenings({ operate, plant }: Place): Promise<number> {
 
 /** The robot is told to go down to placed bolts. */
 async function goesDown(at: Place): Promise<void> {
-	const { operate, watch, plant } = at;
+	const { state, watch, plant } = at;
 	await served(
 		watch,
 		async () => {
-			const target = (await variable(operate, 'robot.target_pose').getAttribute('data-value')) ?? '';
-			return plant.pairs.includes(target) && (await shows(operate, `bolts[${target}]`, 'placed'));
+			const target = (await variable(state, 'robot.target_pose').getAttribute('data-value')) ?? '';
+			return plant.pairs.includes(target) && (await shows(state, `bolts[${target}]`, 'placed'));
 		},
 		240
 	);
@@ -82,14 +83,14 @@ async function goesDown(at: Place): Promise<void> {
 
 /** It is there with the tool turning, for so long that what strikes then strikes while it does. */
 async function tightens(at: Place): Promise<void> {
-	const { operate, watch, plant, station } = at;
+	const { state, watch, plant, station } = at;
 	await goesDown(at);
 	await station.fault('nutrunner slow 10');
 	await served(
 		watch,
 		async () => {
-			const pose = (await variable(operate, 'robot.pose').getAttribute('data-value')) ?? '';
-			return plant.pairs.includes(pose) && (await shows(operate, plant.turning, 'true'));
+			const pose = (await variable(state, 'robot.pose').getAttribute('data-value')) ?? '';
+			return plant.pairs.includes(pose) && (await shows(state, plant.turning, 'true'));
 		},
 		120
 	);
@@ -165,7 +166,7 @@ for (const plant of PLANTS)
 		test.use({ shared: null, copied: plant.model });
 
 		for (const { name, strike, hands } of STORIES.filter((each) => each.name.includes(NAMED)))
-			test(`${name}, and the page leads back to production @long`, async ({ operate, watch, station }) => {
+			test(`${name}, and the page leads back to production @long`, async ({ operate, state, watch, station }) => {
 				test.setTimeout(600_000);
 				await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'started', { timeout: 120_000 });
 				await takeControl(operate);
@@ -174,7 +175,7 @@ for (const plant of PLANTS)
 				const judged = new Judged(restart);
 				await restart.goto(new URL('/restart', operate.url()).href);
 				await expect(restart.getByTestId('next-act')).toBeAttached();
-				const at: Place = { station, operate, watch, restart, plant };
+				const at: Place = { station, operate, state, watch, restart, plant };
 				await strike(at);
 				// What nobody need do anything about is over by itself.
 				const before = await tightenings(at);
@@ -206,13 +207,13 @@ const MOST_PRESSES = 6;
 /** What says beside the name of the page Restart that somebody is needed. */
 const marked = (page: Page): Locator => page.locator('nav a[href="/restart"] .badge').first();
 
-const asked = async ({ operate }: Place): Promise<string> =>
-	(await variable(operate, 'operator.requested_pair').getAttribute('data-value')) ?? '';
+const asked = async ({ state }: Place): Promise<string> =>
+	(await variable(state, 'operator.requested_pair').getAttribute('data-value')) ?? '';
 
 /** The bolts that the operator is asked for are believed to be there, and the station goes on. */
 async function slipped(at: Place): Promise<void> {
-	const { operate, watch, plant, restart } = at;
-	const isEmpty = (pair: string): Promise<boolean> => shows(operate, `bolts[${pair}]`, 'empty');
+	const { state, watch, plant, restart } = at;
+	const isEmpty = (pair: string): Promise<boolean> => shows(state, `bolts[${pair}]`, 'empty');
 	let pair: string;
 	let others: boolean[];
 	do {
@@ -229,11 +230,11 @@ async function slipped(at: Place): Promise<void> {
 
 /** The operator is asked for bolts that are there, and tells so on the watch. */
 async function askedAgain(at: Place): Promise<void> {
-	const { operate, watch, plant, restart } = at;
+	const { state, watch, plant, restart } = at;
 	/** Bolts that wait for the robot, which is at others: what it and the tool do says nothing of them. */
 	const waiting = async (): Promise<string | undefined> => {
-		const placed = await Promise.all(plant.pairs.map((pair) => shows(operate, `bolts[${pair}]`, 'placed')));
-		const target = await variable(operate, 'robot.target_pose').getAttribute('data-value');
+		const placed = await Promise.all(plant.pairs.map((pair) => shows(state, `bolts[${pair}]`, 'placed')));
+		const target = await variable(state, 'robot.target_pose').getAttribute('data-value');
 		return placed.filter(Boolean).length > 1 ? plant.pairs.find((pair, n) => placed[n] && pair !== target) : undefined;
 	};
 	let pair: string | undefined;
@@ -316,13 +317,13 @@ async function slip({ restart, station }: Place, name: string, value: string): P
 }
 
 /** The operator's page on which presses are counted, and all that stories need. */
-async function counted(operate: Page, watch: Page, station: Station, plant: Plant): Promise<{ at: Place; clicks: Clicks }> {
+async function counted(operate: Page, state: Page, watch: Page, station: Station, plant: Plant): Promise<{ at: Place; clicks: Clicks }> {
 	await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'started', { timeout: 120_000 });
 	const restart = await operate.context().newPage();
 	restart.setDefaultTimeout(30_000);
 	const clicks = await Clicks.on(restart);
 	await restart.goto(new URL('/alarms', operate.url()).href);
-	return { at: { station, operate, watch, restart, plant }, clicks };
+	return { at: { station, operate, state, watch, restart, plant }, clicks };
 }
 
 /** One story: what goes wrong, then from another page by what the pages say, until the station works by itself. */
@@ -369,9 +370,9 @@ for (const [plant, title, stories] of [
 		if (plant === undefined) throw new Error('no such station');
 		test.use({ shared: null, copied: plant.model });
 
-		test(title, async ({ operate, watch, station }) => {
+		test(title, async ({ operate, state, watch, station }) => {
 			test.setTimeout(60_000 + stories.length * 120_000);
-			const given = await counted(operate, watch, station, plant);
+			const given = await counted(operate, state, watch, station, plant);
 			for (const story of stories)
 				await test.step(story.name, async () => {
 					test.info().annotations.push({ type: story.name, description: await told(given, story) });

@@ -72,7 +72,7 @@ test('who signs in with the provider comes to the page that was asked for, and s
 	await expect(otto.getByTestId('who')).toContainText('Otto');
 	await otto.goto('/account');
 	await expect(otto.getByText('You sign in with Works ID, and have no password here.')).toBeVisible();
-	await expect(otto.getByLabel('Present password')).toHaveCount(0);
+	await expect(otto.getByLabel('Current password')).toHaveCount(0);
 
 	await otto.goto('/journal');
 	await signOut(otto);

@@ -25,6 +25,7 @@ async function order(page: Page, url: string): Promise<void> {
 
 test('without the robot it is said at once who can still do what, and the bolts are tightened by hand @theme @long', async ({
 	operate,
+	state,
 	station,
 	browse
 }) => {
@@ -32,10 +33,10 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	await expect(operate.getByTestId('mode')).toHaveAttribute('data-production', 'started', { timeout: 120_000 });
 	await takeControl(operate);
 	await order(operate, station.url);
-	const tightened = operate.locator('[data-variable^="bolts["][data-value="tightened"]');
-	await expect(operate.locator('[data-variable^="bolts["][data-value="placed"]')).not.toHaveCount(0, { timeout: 300_000 });
+	const tightened = state.locator('[data-variable^="bolts["][data-value="tightened"]');
+	await expect(state.locator('[data-variable^="bolts["][data-value="placed"]')).not.toHaveCount(0, { timeout: 300_000 });
 	await station.fault('robot slow 6'); // so that there are bolts left however slow this machine is
-	await expect(operate.locator('[data-variable="end_effector.tool"][data-value="ATLASTOOL"]')).toHaveCount(1, { timeout: 120_000 });
+	await expect(state.locator('[data-variable="end_effector.tool"][data-value="ATLASTOOL"]')).toHaveCount(1, { timeout: 120_000 });
 	await expect(tightened).not.toHaveCount(6);
 	await expect(operate.getByTestId('who-can')).toHaveCount(0);
 	await station.fault('robot offline');

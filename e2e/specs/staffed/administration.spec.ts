@@ -53,7 +53,7 @@ test('a backup is made and checked by keyboard, damage to one is seen, and the c
 	await expect(row).toContainText('Ada');
 	await expect(row).toContainText('whole, read just now');
 	const file = (await row.getAttribute('data-backup')) ?? '';
-	const folder = await ada.locator('dd code').innerText();
+	const folder = await ada.locator('dd code').first().innerText();
 	await expect(ada.getByRole('group', { name: 'To restore the backup' })).toContainText(`restore ${folder}/${file} `);
 	await examine(ada, 'backups');
 

@@ -5,7 +5,9 @@ import { ADA, ERIK, EVA, VERA, type Person } from '../../station/station.ts';
 import { DESK, expect, test } from '../../station/test.ts';
 
 const OPERATE = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/wall'];
-const ENGINEER = ['/model', '/station', '/pipelines', '/ros', '/abilities', '/check', '/what-if', '/deploy'];
+/** One page with much in it. */
+const MODEL = ['/model', '/model?view=graph', '/model?panel=guards', '/model?ability=robot.move_to_position(home)&panel=runs', '/model?panel=usages&entry=resources%2Frobot.yaml%23measured%23pose'];
+const ENGINEER = [...MODEL, '/operations', '/pipelines', '/ros', '/what-if', '/review'];
 const ADMIN = ['/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
 const WATCH = '/operator';
 /** Of each role the pages of its rail, and its own account. */

@@ -32,7 +32,7 @@ test('pages, variables and acts are found by a few letters, by keyboard alone', 
 	await page.keyboard.press('Control+k');
 	await typed.fill('why new engine');
 	await page.keyboard.press('Enter');
-	await expect(page.getByRole('dialog', { name: 'What New engine waits for' })).toBeVisible();
+	await expect(page.getByRole('dialog', { name: 'What “New engine” waits for' })).toBeVisible();
 	await page.keyboard.press('Escape');
 
 	await page.keyboard.press('Control+k');

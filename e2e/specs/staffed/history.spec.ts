@@ -1,5 +1,5 @@
 import { readFile } from 'node:fs/promises';
-import { examine } from '../../station/barriers.ts';
+import { examine, findings } from '../../station/barriers.ts';
 import { acknowledge, restsOnPerson } from '../../station/seen.ts';
 import { VERA } from '../../station/station.ts';
 import { expect, test } from '../../station/test.ts';
@@ -120,6 +120,20 @@ test('a link leads to a moment, and nobody is kept from it @long', async ({ oper
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-record', '3');
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-shown', '3', PREPARED);
 	await examine(operate, 'history');
+});
+
+test('in the hand the page alone is scrolled, with all that is on it', async ({ operate, watch, station }) => {
+	await restsOnPerson(operate, watch);
+	await operate.setViewportSize({ width: 390, height: 844 });
+	await operate.goto(`${station.url}/history`);
+	await operate.getByRole('list', { name: 'What happened, the newest first' }).scrollIntoViewIfNeeded();
+	await expect(operate.locator('[data-record]')).not.toHaveCount(0);
+	const scrolled = await operate.evaluate(() => {
+		const scrolls = (element: Element): boolean => /auto|scroll/.test(getComputedStyle(element).overflowY) && element.scrollHeight > element.clientHeight + 1;
+		return [...document.querySelectorAll('main *')].filter(scrolls).map((element) => `${element.tagName}.${element.className}`);
+	});
+	expect(scrolled).toEqual([]);
+	expect(await findings(operate)).toEqual([]);
 });
 
 test.describe('who only looks', () => {

@@ -43,7 +43,7 @@ test('a bolt pair is tightened with a paired watch, and the journal names who di
 		await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
 		const before = await tightenings(operate);
 		await acknowledge(watch);
-		await operate.getByRole('button', { name: 'Pause' }).click();
+		await operate.getByRole('button', { name: 'Pause', exact: true }).click();
 		await expect(operate.getByTestId('mode')).toContainText('Paused');
 		await operate.getByRole('button', { name: 'Continue' }).click();
 		await expect(operate.getByTestId('mode')).toContainText('Automatic');

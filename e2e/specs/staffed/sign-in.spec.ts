@@ -9,15 +9,19 @@ test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody
 const SOON = { timeout: 2000 };
 const STATION = 'Bolt tightening';
 
-/** Nothing of the station is on the page. */
+/** What belongs to the station: its devices, its work, how it is. */
+const WITHIN = ['Robot UR10', 'Smart nutrunner', 'Place bolt pair', 'Automatic', 'No alarms'];
+
+/** Of the station its title is on the page, below the picture and where one signs in, and nothing else. */
 async function expectEmpty(page: Page): Promise<void> {
 	await expect(page.getByRole('heading', { name: 'Sign in' })).toBeVisible();
 	await expect(page.locator('[data-variable], [data-step], [data-testid="strip"]')).toHaveCount(0);
-	await expect(page.locator('body')).not.toContainText(STATION);
+	await expect(page.getByText(STATION)).toHaveText([`Bolt tightening station · ${new URL(page.url()).host}`, 'Bolt tightening station']);
+	for (const each of WITHIN) await expect(page.locator('body')).not.toContainText(each);
 	await expect(page).toHaveTitle('Sign in · Sequence Planner');
 }
 
-test('who is not signed in sees nothing, is told nothing, and comes to the page that was asked for', async ({
+test('who is not signed in sees the title of the station and nothing else, and comes to the page that was asked for', async ({
 	browse,
 	station
 }) => {
@@ -50,7 +54,7 @@ test('who is not signed in sees nothing, is told nothing, and comes to the page 
 	expect(asked.filter((url) => new URL(url).host !== new URL(station.url).host)).toEqual([]);
 });
 
-test('signing out leaves nothing of the station in sight, neither by Back nor in another tab', async ({ browse }) => {
+test('signing out leaves nothing but the title of the station in sight, neither by Back nor in another tab', async ({ browse }) => {
 	const eva = await browse(EVA, '/');
 	await expect(eva.getByText(STATION).first()).toBeVisible();
 	const other = await eva.context().newPage();

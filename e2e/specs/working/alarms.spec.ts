@@ -27,14 +27,14 @@ test('a device falls silent: its alarm is acknowledged, shelved, taken back and 
 	await choose(other);
 	await expect(detail(other)).toContainText('Check that the node of Robot UR10 runs');
 	await expect(detail(other)).toContainText('How it came about');
-	await expect(detail(other).getByRole('link', { name: 'Topic /ur10/state' })).toHaveAttribute('href', /topic=%2Fur10/);
+	await expect(detail(other).getByRole('link', { name: 'Its 2 topics' })).toHaveAttribute('href', '/ros?show=wrong');
 
 	await alarm(operate).getByRole('button', { name: 'Acknowledge' }).click();
 	await stands('acknowledged');
 
 	await choose(operate);
 	const shelve = async (): Promise<void> => {
-		await detail(operate).getByRole('button', { name: 'Shelve' }).click();
+		await detail(operate).getByRole('button', { name: 'Shelve…' }).click();
 		const dialog = operate.getByRole('dialog');
 		await dialog.getByLabel('For how long').selectOption('1 hour');
 		await dialog.getByLabel('Reason').fill('Its cable is changed');

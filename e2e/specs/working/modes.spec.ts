@@ -1,19 +1,19 @@
 import { acknowledge, done, picture, restsOnPerson, takeControl, tightenings, variable } from '../../station/seen.ts';
 import { expect, test } from '../../station/test.ts';
 
-test('Pause starts nothing more, Continue goes on', async ({ operate, watch }) => {
+test('Pause starts nothing more, Continue goes on', async ({ operate, state, watch }) => {
 	await restsOnPerson(operate, watch);
 	const before = await tightenings(operate);
-	await operate.getByRole('button', { name: 'Pause' }).click();
+	await operate.getByRole('button', { name: 'Pause', exact: true }).click();
 	await expect(operate.getByTestId('mode')).toContainText('Paused');
 	// A hurried second press on the same place must not undo the first.
-	await operate.getByRole('button', { name: 'Pause' }).click({ force: true });
+	await operate.getByRole('button', { name: 'Pause', exact: true }).click({ force: true });
 
 	await acknowledge(watch);
 	await expect(done(watch)).toHaveCount(0);
 	await operate.waitForTimeout(2000);
 	await expect(operate.getByTestId('mode')).toContainText('Paused');
-	await expect(variable(operate, 'nutrunner.run_tool_forward')).toHaveAttribute('data-value', 'false');
+	await expect(variable(state, 'nutrunner.run_tool_forward')).toHaveAttribute('data-value', 'false');
 	await expect(operate.locator('[data-status="running"]')).toHaveCount(0);
 	expect(await tightenings(operate)).toBe(before);
 	await picture(operate, 'operate-paused');

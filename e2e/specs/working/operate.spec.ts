@@ -72,7 +72,7 @@ test('in forced colours what is active is still told from what is not', async ({
 test('why an operation waits is said in words, as often as it is asked @theme', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
 	await operate.getByRole('button', { name: 'Why? New engine' }).click();
-	const dialog = operate.getByRole('dialog', { name: 'What New engine waits for' });
+	const dialog = operate.getByRole('dialog', { name: 'What “New engine” waits for' });
 	await expect(dialog).toContainText(/(is|are) tight/);
 	await expect(dialog.locator('[data-involved]').first()).toContainText('Could be changed by');
 	await dialog.getByRole('button', { name: 'Ask again' }).click();
@@ -102,4 +102,17 @@ test('operations that differ in a pair alone are one row, which opens to each of
 		await operate.setViewportSize({ width, height: 640 });
 		expect(await overflow(operate)).toBe(0);
 	}
+});
+
+test('on a phone the bar stays over the plan, however far the page is scrolled', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.setViewportSize({ width: 390, height: 400 });
+	const name = operate.getByRole('region', { name: 'Plan' }).locator('.lane .name').last();
+	await name.evaluate((element) => scrollBy(0, element.getBoundingClientRect().top - 10));
+	await expect.poll(async () => (await name.boundingBox())?.y).toBeLessThan(40);
+	const over = await name.evaluate((element) => {
+		const { left, top, height } = element.getBoundingClientRect();
+		return element.contains(document.elementFromPoint(left + 4, top + height / 2));
+	});
+	expect(over).toBe(false);
 });

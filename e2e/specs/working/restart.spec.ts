@@ -137,6 +137,7 @@ test('an operation is reset by a plan that is looked at first, and refused once 
 interface Place {
 	readonly station: Station;
 	readonly operate: Page;
+	readonly state: Page;
 	readonly watch: Page;
 	readonly restart: Page;
 }
@@ -158,9 +159,9 @@ const clear = ({ station }: Place): Hands => ({ mend: () => station.fault('clear
 const LASTING = '[data-happened][data-lasts="true"]';
 
 /** The tool turns at a bolt pair. */
-async function turns({ operate, watch }: Place): Promise<void> {
-	const turning = operate.locator('[data-variable="nutrunner.tool_is_running_forward"][data-value="true"]');
-	const there = operate.locator('[data-variable="robot.pose"][data-value^="bolt_pair"]');
+async function turns({ state, watch }: Place): Promise<void> {
+	const turning = state.locator('[data-variable="nutrunner.tool_is_running_forward"][data-value="true"]');
+	const there = state.locator('[data-variable="robot.pose"][data-value^="bolt_pair"]');
 	await served(watch, async () => (await turning.count()) > 0 && (await there.count()) > 0, 40);
 }
 
@@ -177,8 +178,8 @@ async function alarms({ restart, watch }: Place): Promise<void> {
 }
 
 /** A bolt pair is placed, and nobody is wanted for a restart. */
-async function placesBolts({ operate, watch }: Place): Promise<void> {
-	const placed = operate.locator('[data-variable^="bolts["][data-value="placed"]');
+async function placesBolts({ operate, state, watch }: Place): Promise<void> {
+	const placed = state.locator('[data-variable^="bolts["][data-value="placed"]');
 	const before = await placed.count();
 	await served(watch, async () => (await placed.count()) > before, 40);
 	await expect(operate.getByTestId('restart-notice')).toBeHidden();
@@ -223,8 +224,8 @@ async function putBack({ restart }: Place, title: string): Promise<void> {
 }
 
 /** The bolt pair that a person is asked to place. */
-async function requested({ operate, watch }: Place): Promise<string> {
-	const pair = variable(operate, 'operator.requested_pair');
+async function requested({ state, watch }: Place): Promise<string> {
+	const pair = variable(state, 'operator.requested_pair');
 	await served(watch, async () => /^bolt_pair/.test((await pair.getAttribute('data-value')) ?? ''), 40);
 	return (await pair.getAttribute('data-value')) ?? '';
 }
@@ -336,12 +337,12 @@ const CHOSEN = NAMED === undefined ? FAULTS.slice(0, NUMBER) : FAULTS.filter(({ 
 test.describe('a station of its own', () => {
 	test.use({ shared: null });
 
-	test('from an alarm to production again, by this page alone', async ({ operate, watch, station }) => {
+	test('from an alarm to production again, by this page alone', async ({ operate, state, watch, station }) => {
 		test.setTimeout(60_000 + CHOSEN.length * 60_000);
 		await restsOnPerson(operate, watch);
 		await takeControl(operate);
 		const restart = await openRestart(operate);
-		const at: Place = { station, operate, watch, restart };
+		const at: Place = { station, operate, state, watch, restart };
 		const wrong: string[] = [];
 		for (const { name, strike, alarm, hands, asks } of CHOSEN)
 			await test.step(name, async () => {

@@ -13,7 +13,7 @@ const SCREENS = [
 /** Where text of twice the size must fit: on 320 pixels it would be that of a page enlarged eight times. */
 const ENLARGED = SCREENS.filter(([width]) => width > 320);
 
-const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/wall', '/ros', '/station', '/pipelines', '/account', '/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
+const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/wall', '/ros', '/operations', '/model', '/model?view=graph', '/pipelines', '/account', '/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
 
 /** Doubles the size of all text. */
 async function enlarge(page: Page): Promise<void> {
@@ -39,7 +39,7 @@ test('mode, alarms and Pause stay in sight wherever the page is scrolled to', as
 		await operate.evaluate(() => window.scrollTo(0, document.documentElement.scrollHeight));
 		await expect(operate.getByTestId('mode')).toBeInViewport({ ratio: 1 });
 		await expect(operate.getByTestId('alarm-count')).toBeInViewport({ ratio: 1 });
-		await expect(operate.getByRole('button', { name: 'Pause' })).toBeInViewport({ ratio: 1 });
+		await expect(operate.getByRole('button', { name: 'Pause', exact: true })).toBeInViewport({ ratio: 1 });
 	}
 });
 
@@ -54,7 +54,7 @@ test('no dialog covers mode, alarms, Pause and Hold, and the menu leads to the p
 		for (const each of [
 			operate.getByTestId('mode'),
 			operate.getByTestId('alarm-count'),
-			operate.getByRole('button', { name: 'Pause' }),
+			operate.getByRole('button', { name: 'Pause', exact: true }),
 			operate.getByRole('button', { name: 'Hold' })
 		]) {
 			await expect(each).toBeInViewport({ ratio: 1 });
@@ -99,6 +99,7 @@ test.describe('every page', () => {
 		['Swedish', 'sv-SE', ' @long']
 	] as const) {
 		test(`in ${language}${tag} has all there on small screens, in large text and in forced colours`, async ({ browse }) => {
+			test.setTimeout(240_000); // there are many
 			const page = await browse(ADA, '/', { ...DESK, locale });
 			for (const path of PAGES) {
 				await page.goto(path);

@@ -49,7 +49,7 @@ test('a variable is found by words of it, and seen to change @theme', async ({ o
 	const state = await browse(null, '/state?kind=estimated');
 	await expect(state.locator('[data-row]')).toHaveCount(3);
 	await state.getByLabel('Search', { exact: true }).fill('pair nowhere');
-	await expect(state.getByText('No variable is like that.')).toBeVisible();
+	await expect(state.getByText('No variable is like that')).toBeVisible();
 
 	await state.getByLabel('Search', { exact: true }).fill('empty bolts');
 	await expect(state.locator('[data-row]')).not.toHaveCount(0); // the one that a person is asked to place
@@ -194,4 +194,54 @@ test('from any page a correction is four presses away: control and restart mode 
 	await expect(page.getByTestId('last-correction')).toContainText('Tightened by hand, 45 Nm');
 	await ask(page, 'POST', 'restart/leave', {});
 	await ask(page, 'PUT', 'mode', { mode: 'automatic' });
+});
+
+test('variables are kept in sight, also when the page is opened again', async ({ operate, watch, browse, complaints }) => {
+	await restsOnPerson(operate, watch);
+	const state = await browse(null, '/state');
+	for (const name of ['robot.pose', BOLTS('bolt_pair_2')]) {
+		await state.goto(`/state?variable=${encodeURIComponent(name)}`);
+		await state.getByRole('dialog').getByRole('button', { name: 'Watch', exact: true }).click();
+		await state.getByRole('dialog').getByRole('button', { name: 'Close' }).first().click();
+	}
+	await expect(state.locator('[data-row]')).not.toHaveCount(2);
+	await state.getByTestId('watched').click();
+	await expect(state.locator('[data-row]')).toHaveCount(2);
+	await expect(state.locator('[data-row="robot.pose"]')).toBeVisible();
+	await state.reload();
+	await expect(state.getByTestId('watched')).toContainText('2');
+	expect(await findings(state)).toEqual([]);
+	expect(complaints).toEqual([]);
+});
+
+test('the station pauses at a breakpoint, says so, and goes on', async ({ operate, watch, browse, complaints }) => {
+	await restsOnPerson(operate, watch);
+	const state = await browse(null, `/state?variable=${encodeURIComponent('robot.pose')}`);
+	await state.getByRole('button', { name: 'Pause when…' }).click();
+	const dialog = state.getByRole('dialog', { name: 'Breakpoints' });
+	const condition = dialog.getByLabel('Pause when', { exact: true });
+	await expect(condition).toHaveValue(/^robot\.pose == /);
+	await condition.fill('robot.pose == abvoe_engine');
+	await condition.press('Enter');
+	await expect(dialog.locator('mark')).toHaveText('abvoe_engine');
+	await condition.fill('nutrunner.tool_is_running_forward');
+	await condition.press('Enter');
+	await expect(dialog.locator('[data-breakpoint="nutrunner.tool_is_running_forward"]')).toContainText('not yet');
+	expect(await findings(state)).toEqual([]);
+	await dialog.getByRole('button', { name: 'Close' }).click();
+	await expect(state.getByTestId('breakpoints')).toContainText('1');
+
+	await acknowledge(watch);
+	await expect(operate.getByTestId('mode')).toHaveAttribute('data-mode', 'paused', { timeout: 60_000 });
+	await expect(operate.getByTestId('at-breakpoint')).toBeVisible();
+	await state.getByTestId('breakpoints').click();
+	await expect(dialog.locator('[data-breakpoint="nutrunner.tool_is_running_forward"]')).toContainText('Stopped here');
+	await dialog.getByRole('button', { name: 'Remove nutrunner.tool_is_running_forward' }).click();
+	await expect(dialog).toContainText('There are none.');
+	await dialog.getByRole('button', { name: 'Close' }).click();
+	await takeControl(operate);
+	await operate.getByRole('button', { name: 'Continue' }).click();
+	await expect(operate.getByTestId('mode')).toHaveAttribute('data-mode', 'automatic');
+	await restsOnPerson(operate, watch);
+	expect(complaints.filter((each) => !each.includes('422'))).toEqual([]);
 });

@@ -6,6 +6,7 @@ const ROUNDS = PAIRS.length + 2;
 
 test('the operator acknowledges on the watch and three bolt pairs are tightened', async ({
 	operate,
+	state,
 	watch,
 	complaints
 }) => {
@@ -25,10 +26,10 @@ test('the operator acknowledges on the watch and three bolt pairs are tightened'
 		const built = await completed(operate, 'new_engine');
 		const pair = await acknowledge(watch);
 		// Looked for from now on: the robot may stand there for a moment only, while something else is looked at.
-		const arrives = expect(variable(operate, 'robot.pose')).toHaveAttribute('data-value', pair);
+		const arrives = expect(variable(state, 'robot.pose')).toHaveAttribute('data-value', pair);
 
 		// The plan runs: the tool is commanded to turn, the robot goes to the pair, and the picture of the plan says so.
-		await expect(variable(operate, 'nutrunner.run_tool_forward')).toHaveAttribute('data-value', 'true');
+		await expect(variable(state, 'nutrunner.run_tool_forward')).toHaveAttribute('data-value', 'true');
 		await expect(block('nutrunner.run_nut', 'running')).toBeVisible();
 		await picture(operate, `operate-running-${round}`);
 		expect(await place(), 'the plan changes, its place on the page does not').toEqual(before);
@@ -42,7 +43,7 @@ test('the operator acknowledges on the watch and three bolt pairs are tightened'
 		tightened.add(pair);
 		await restsOnPerson(operate, watch);
 		if ((await completed(operate, 'new_engine')) === built)
-			await expect(variable(operate, `bolts[${pair}]`)).toHaveAttribute('data-value', 'tightened');
+			await expect(variable(state, `bolts[${pair}]`)).toHaveAttribute('data-value', 'tightened');
 	}
 
 	expect([...tightened].sort()).toEqual([...PAIRS]);

@@ -1,45 +1,192 @@
 import { examine } from '../../station/barriers.ts';
-import { restsOnPerson } from '../../station/seen.ts';
+import { restsOnPerson, variable } from '../../station/seen.ts';
 import { expect, test } from '../../station/test.ts';
 
 /** The server prepares the model, then simulates, with what the machine has to spare. */
 const SIMULATED = { timeout: 60_000 };
 
-test('how the station would go on is simulated from now and from a record, and nothing of it happens @long', async ({
-	operate,
-	watch,
-	station
-}) => {
+test('the draft is tried in simulated time: on, back, otherwise, with faults, and nothing of it happens', async ({ operate, state, watch }) => {
 	await restsOnPerson(operate, watch);
-	const requested = operate.locator('[data-variable="operator.requested_pair"]');
+	const requested = variable(state, 'operator.requested_pair');
 	const before = await requested.getAttribute('data-value');
 	await operate.getByRole('link', { name: 'What-if' }).click();
 	const main = operate.locator('main');
+	const time = main.getByTestId('simulated-time');
+	const moment = main.getByRole('slider', { name: 'Moment' });
+	const seconds = async (): Promise<number> => Number(await time.getAttribute('data-seconds'));
 
-	await test.step('from the station as it is', async () => {
-		await main.getByLabel('For how many seconds').fill('30');
-		await main.getByRole('button', { name: 'Simulate' }).click();
-		await expect(main.getByRole('heading', { name: 'What would happen' })).toBeVisible(SIMULATED);
-		await expect(main).toContainText('30 seconds simulated');
-		// In simulated time people do what they are asked, so bolts are placed and tightened.
-		await expect(main.getByRole('table', { name: 'Runs of abilities' })).toContainText('Run the nutrunner');
-		await expect(main.locator('.lanes .bar')).not.toHaveCount(0);
-		await expect(main.getByRole('listitem').filter({ hasText: 'Tighten bolt pair' })).not.toHaveCount(0);
+	await main.getByRole('button', { name: 'In simulated time' }).click();
+
+	await test.step('its clock runs as fast as is wanted, and people do what they are asked', async () => {
+		await main.getByRole('combobox', { name: 'Speed' }).selectOption('10×', SIMULATED);
+		await main.getByRole('button', { name: 'Play' }).click();
+		await expect.poll(seconds, SIMULATED).toBeGreaterThan(10);
+		await expect(main.locator('.lanes .bar.past')).not.toHaveCount(0);
+		await main.getByRole('button', { name: 'Stop the clock' }).click();
+		await expect(main.getByRole('button', { name: 'Play' })).toBeVisible();
+	});
+
+	await test.step('until a condition holds; one that is none is refused', async () => {
+		const condition = main.getByRole('textbox', { name: 'Condition' });
+		await condition.fill(`bolts[${before}] == tigtened`);
+		await main.getByRole('button', { name: 'Run until' }).click();
+		await expect(main.getByRole('alert')).toContainText('tigtened', SIMULATED);
+		await condition.fill(`bolts[${before}] == tightened`);
+		await main.getByRole('button', { name: 'Reset' }).click();
+		await expect(time).toHaveAttribute('data-seconds', '0', SIMULATED);
+		await main.getByRole('button', { name: 'Run until' }).click();
+		await expect(main.getByText('The condition holds')).toBeVisible(SIMULATED);
+		await expect(main.getByRole('region', { name: 'State' })).toContainText('tight');
+	});
+
+	await test.step('back at a moment it goes on otherwise', async () => {
+		const end = await seconds();
+		await moment.press('ArrowLeft');
+		await moment.press('ArrowLeft');
+		await expect(time).toContainText('What you do now is done here');
+		await main.getByRole('combobox', { name: 'Device' }).selectOption({ label: 'Smart nutrunner' });
+		await main.getByRole('button', { name: 'Says nothing' }).click();
+		await expect(main.getByRole('list', { name: 'Faults' })).toContainText('Smart nutrunner says nothing', SIMULATED);
+		expect(await seconds()).toBeLessThan(end);
+		await main.getByRole('button', { name: 'End it: Smart nutrunner says nothing' }).click();
+		await expect(main.getByRole('list', { name: 'Faults' })).toHaveCount(0, SIMULATED);
+	});
+
+	await test.step('people wait until somebody says that they are done', async () => {
+		await main.getByRole('button', { name: 'Reset' }).click();
+		await expect(time).toHaveAttribute('data-seconds', '0', SIMULATED);
+		await main.getByRole('checkbox', { name: 'They do their tasks by themselves' }).uncheck();
+		await main.getByRole('button', { name: 'To what happens next' }).click();
+		await main.getByRole('list', { name: 'Tasks' }).getByRole('button').click(SIMULATED);
+		await expect(main.getByRole('region', { name: 'State' })).toContainText('acknowledged', SIMULATED);
 	});
 
 	await test.step('from a record of the past', async () => {
-		await main.getByLabel('A record of its history').check();
-		await main.getByLabel('Number of the record').fill('1000000000');
-		await main.getByRole('button', { name: 'Simulate' }).click();
+		await main.getByRole('combobox', { name: 'Begins with' }).selectOption('a record of its history');
+		await main.getByRole('spinbutton', { name: 'Number of the record' }).fill('1000000000');
+		await main.getByRole('button', { name: 'Reset' }).click();
 		await expect(main.getByRole('alert')).toContainText('no such record', SIMULATED);
-		await main.getByLabel('Number of the record').fill('1');
-		await main.getByLabel('For how many seconds').fill('5');
-		await main.getByRole('button', { name: 'Simulate' }).click();
-		await expect(main).toContainText('5 seconds simulated', SIMULATED);
-		await expect(main.getByRole('alert')).toBeEmpty();
 	});
 
 	await examine(operate, 'what-if');
-	await operate.goto(station.url);
 	await expect(requested).toHaveAttribute('data-value', before ?? '');
+});
+
+test('the station is led through the draft step by step, in branches, and until a condition holds', async ({ operate, state, watch }) => {
+	await restsOnPerson(operate, watch);
+	const requested = variable(state, 'operator.requested_pair');
+	const before = await requested.getAttribute('data-value');
+	await operate.getByRole('link', { name: 'What-if' }).click();
+	const main = operate.locator('main');
+	const step = main.getByRole('slider', { name: 'Step' });
+	const person = main.getByRole('button', { name: 'Take: the task is acknowledged' });
+
+	await test.step('what can happen next is offered, and one of it is taken', async () => {
+		await expect(step).toHaveAttribute('aria-valuenow', '0', SIMULATED);
+		await person.click();
+		await expect(step).toHaveAttribute('aria-valuenow', '1', SIMULATED);
+		await expect(main.getByRole('region', { name: 'State' })).toContainText('placed');
+	});
+
+	await test.step('back at the beginning it goes on otherwise, in a branch of its own', async () => {
+		await step.press('ArrowLeft');
+		await expect(step).toHaveAttribute('aria-valuenow', '0');
+		await main.getByRole('button', { name: 'New branch from here' }).click();
+		await expect(main.getByRole('list', { name: 'Branches' }).getByRole('listitem')).toHaveCount(2, SIMULATED);
+		await expect(person).toBeVisible();
+	});
+
+	await test.step('plans are followed until a condition holds', async () => {
+		await main.getByLabel('Condition', { exact: true }).fill(`bolts[${before}] == tightened`);
+		await main.getByRole('button', { name: 'Run until' }).click();
+		await expect(main.getByText('The condition holds.')).toBeVisible(SIMULATED);
+		await expect(main.getByRole('region', { name: 'State' })).toContainText('tight');
+		await main.getByLabel('Condition', { exact: true }).fill(`bolts[${before}] == tigtened`);
+		await main.getByRole('button', { name: 'Run until' }).click();
+		await expect(main.getByRole('alert')).toContainText('tigtened', SIMULATED);
+	});
+
+	await test.step('somebody loosens what is tight while the tool stands on it, and the station says where it is then', async () => {
+		await main.getByText('Disturb something').click();
+		await main.getByLabel('Variable', { exact: true }).selectOption(`bolts[${before}]`);
+		await main.getByLabel('Becomes').selectOption('placed');
+		await main.getByRole('button', { name: 'Let it be so' }).click();
+		await expect(main.getByText('outside the safe states')).toBeVisible(SIMULATED);
+	});
+
+	await examine(operate, 'what-if-steps');
+	await expect(requested).toHaveAttribute('data-value', before ?? '');
+});
+
+test('the state space of the draft is folded by chosen variables, with the plan on it and where starts are kept back', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.getByRole('link', { name: 'What-if' }).click();
+	const main = operate.locator('main');
+	await main.getByRole('button', { name: 'State space' }).click();
+	const picture = main.getByTestId('state-space');
+	const counts = main.getByTestId('space-counts');
+	const nodes = picture.locator('[data-node]');
+	const folded = main.getByRole('group', { name: 'Folded by' });
+
+	await test.step('a choice is made first, with the present and the plan on it', async () => {
+		await expect(picture).toHaveAttribute('data-laid', 'true', SIMULATED);
+		await expect(nodes.first()).toBeVisible();
+		await expect(picture.locator('[data-mark="present"]')).not.toHaveCount(0);
+		await expect(picture.locator('[data-mark="initial"]')).toHaveCount(1);
+		await expect(picture.locator('[data-mark="unsafe"]')).not.toHaveCount(0);
+		await expect(main.getByRole('region', { name: 'Plan on it' }).getByRole('listitem').first()).toContainText('The beginning');
+	});
+	await examine(operate, 'state-space');
+
+	await test.step('the keyboard leads from node to node and to what is said of one', async () => {
+		const stop = picture.locator('.svelte-flow__node[tabindex="0"]');
+		await expect(stop).toHaveCount(1);
+		await stop.focus();
+		await operate.keyboard.press('Home');
+		await expect(picture.locator('.svelte-flow__node[data-id="0"]')).toBeFocused();
+		await operate.keyboard.press('ArrowRight');
+		await expect(picture.locator('.svelte-flow__node[data-id="0"]')).not.toBeFocused();
+		await operate.keyboard.press('Enter');
+		await expect(main.getByRole('heading', { name: 'Node', exact: true })).toBeFocused();
+		await expect(main.getByRole('region', { name: 'Node', exact: true })).toContainText('Led to by');
+	});
+
+	await test.step('fewer variables make fewer nodes, and the supervisor nothing that is not safe', async () => {
+		await folded.getByRole('button', { name: 'Without bolt pair 1' }).click();
+		await expect(counts).toContainText('9 nodes', SIMULATED);
+		await main.getByRole('button', { name: 'With the supervisor' }).click();
+		await expect(picture.locator('[data-mark="unsafe"]')).toHaveCount(0, SIMULATED);
+		await folded.getByRole('combobox', { name: 'Fold by a further variable' }).selectOption({ label: 'the pose of the robot (6)' });
+		await expect(counts).not.toContainText(/^9 nodes/, SIMULATED);
+	});
+
+	await test.step('a table says the same', async () => {
+		await main.getByRole('button', { name: 'Table', exact: true }).click();
+		const rows = main.getByTestId('state-space-table').locator('tbody tr');
+		await expect(counts).toContainText(`${await rows.count()} nodes`);
+		await examine(operate, 'state-space-table');
+		await main.getByRole('button', { name: 'Picture', exact: true }).click();
+	});
+
+	await test.step('a condition that is none is refused, one that is met is planned for', async () => {
+		const until = main.getByRole('textbox', { name: 'Or until a condition holds' });
+		await until.fill('robot.pose == moon');
+		await main.getByRole('button', { name: 'Show', exact: true }).click();
+		await expect(main.getByRole('alert')).toContainText('moon', SIMULATED);
+		await until.fill('robot.pose == above_engine');
+		await main.getByRole('button', { name: 'Show', exact: true }).click();
+		await expect(main.getByText('moon')).toHaveCount(0, SIMULATED);
+		await expect(main.getByRole('button', { name: 'To the goals of what is active' })).toBeVisible();
+	});
+
+	await test.step('from the guards of the model to where a start is kept back', async () => {
+		await operate.getByRole('link', { name: 'Model', exact: true }).click();
+		await main.getByRole('tab', { name: /^Guards added/ }).click();
+		await main.getByRole('link', { name: 'Where it is kept back' }).first().click(SIMULATED);
+		await expect(main.getByText(/^Where the supervisor keeps it back/)).toBeVisible(SIMULATED);
+		await expect(picture).toHaveAttribute('data-laid', 'true', SIMULATED);
+		await expect(picture.locator('[data-mark="cut"]')).not.toHaveCount(0);
+		await main.getByRole('button', { name: 'Look at all again' }).click();
+		await expect(picture.locator('[data-mark="cut"]')).toHaveCount(0, SIMULATED);
+	});
 });

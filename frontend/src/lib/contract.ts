@@ -15,6 +15,7 @@ export type Address = Filled<keyof paths & string> | `${Filled<keyof paths & str
 
 type Schemas = components['schemas'];
 
+export type DraftChanges = Schemas['DraftChangesView'];
 export type StationView = Schemas['StationView'];
 export type Resource = Schemas['ResourceView'];
 export type Variable = Schemas['VariableView'];
@@ -29,6 +30,13 @@ export type PlanStep = Schemas['PlanStepView'];
 export type Replacement = Schemas['ReplacementView'];
 export type WhyNot = Schemas['WhyNotView'];
 export type Condition = Schemas['ConditionView'];
+export type ReasonTree = Schemas['ReasonTreeView'];
+export type Reason = Schemas['ReasonView'];
+export type VariableTrace = Schemas['TraceView'];
+export type TracedPipeline = Schemas['TracedPipelineView'];
+export type TracedStep = Schemas['TracedStepView'];
+export type TracedReader = Schemas['TracedReaderView'];
+export type TracedChange = Schemas['TracedChangeView'];
 export type Involved = Schemas['InvolvedView'];
 export type Changer = Schemas['ChangerView'];
 export type AbilityAutomaton = Schemas['AutomatonView'];
@@ -142,6 +150,27 @@ export type Branch = Schemas['BranchView'];
 export type BranchBody = Schemas['BranchBody'];
 export type WhatIf = Schemas['WhatIfView'];
 export type WhatIfBody = Schemas['WhatIfBody'];
+export type Steps = Schemas['StepsView'];
+export type StepsBody = Schemas['StepsBody'];
+export type Step = Schemas['StepView'];
+export type Tried = Schemas['SimulationView'];
+export type Advance = Schemas['Advance'];
+export type TryBody = Schemas['SimulationBody'];
+export type Scenarios = Schemas['ScenariosView'];
+export type ScenarioRun = Schemas['ScenarioRunView'];
+export type ScenarioExpectation = Schemas['ScenarioExpectation'];
+export type WrittenScenario = Schemas['WrittenScenarioView'];
+export type TriedMoment = Schemas['SimulationMomentView'];
+export type TriedModel = Schemas['SimulatedModelView'];
+export type StepMoment = Schemas['StepMomentView'];
+export type StepChoice = Schemas['ChoiceView'];
+export type StateSpaceTold = Schemas['StateSpaceView'];
+export type StateSpaceQuestion = Schemas['StateSpaceQuestion'];
+export type StateSpaceBody = Schemas['StateSpaceBody'];
+export type FoldedState = Schemas['FoldedStateView'];
+export type StateArrow = Schemas['StateArrowView'];
+export type StateCause = Schemas['StateCauseView'];
+export type SpaceExtent = Schemas['Extent'];
 export type Checkpoint = Schemas['Checkpoint'];
 
 export type FilesView = Schemas['FilesView'];
@@ -150,6 +179,7 @@ export type DraftView = Schemas['DraftView'];
 export type FileView = Schemas['FileView'];
 export type DraftChange = Schemas['ChangeView'];
 export type ModelCheck = Schemas['CheckView'];
+export type Fix = Schemas['FixDocument'];
 export type Finding = Schemas['FindingDocument'];
 export type Usages = Schemas['UsagesView'];
 export type Fold = Schemas['FoldView'];
@@ -162,6 +192,8 @@ export type WorkshopMessage = Schemas['WorkshopStreamMessage'];
 export type TraceStep = Schemas['StepDocument'];
 export type Revision = Schemas['RevisionView'];
 export type Revisions = Schemas['RevisionsView'];
+export type PlannedDeployment = Schemas['PlannedDeploymentView'];
+export type Comments = Schemas['CommentsView'];
 export type Comparison = Schemas['ComparisonView'];
 export type PartDifference = Schemas['PartDifference'];
 export type BehaviourDifference = Schemas['BehaviourDifference'];
@@ -181,6 +213,7 @@ const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	topics: true,
 	overrides: true,
 	forces: true,
+	breakpoints: true,
 	undecided: true,
 	approvals: true,
 	alarms: true
@@ -197,6 +230,7 @@ export type LiveEdge = Schemas['LiveEdgeView'];
 export type DraftVariable = Schemas['DraftVariableView'];
 export type DraftExample = Schemas['DraftExampleView'];
 export type PipelineFits = Schemas['FitsView'];
+export type PipelinePreview = Schemas['PreviewView'];
 export type StageOffer = Schemas['StageOfferView'];
 export type PipelineTarget = Schemas['TargetView'];
 export type SourceOffer = Schemas['SourceOfferView'];
@@ -211,6 +245,11 @@ export type FlowsMessage = Schemas['FlowsStreamMessage'];
 export type Attachment = Schemas['AttachmentAnswer'];
 
 export type Mimic = Schemas['MimicView'];
+export type DraftOperations = Schemas['DraftOperationsView'];
+export type DraftOperation = Schemas['DraftOperationView'];
+export type OperationCondition = Schemas['OperationConditionView'];
+export type OperationDefinition = Schemas['OperationDefinitionView'];
+export type OperationLink = Schemas['OperationLinkView'];
 export type DraftPicture = Schemas['DraftPictureView'];
 export type MimicSymbol = Schemas['MimicSymbol'];
 export type MimicTrack = Schemas['MimicTrack'];

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.texts.message import Message, message
 
 if TYPE_CHECKING:
     from sequence_planner.analysis.checks.evidence import Evidence
     from sequence_planner.analysis.checks.warning import ModelWarning
     from sequence_planner.synthesis.guards import SupervisorGuard
 
-FINDINGS = "the findings"
-GUARDS = "the guards"
-COUNTING = "the number of states"  # the last that is computed, where it is not soon done
+# What is being computed.
+SAFE: Final = message("pending.safe")
+WHY_NONE: Final = message("pending.why-none")
+FINDINGS: Final = message("pending.findings")
+FAR: Final = message("pending.far")
+GUARDS: Final = message("pending.guards")
+COUNTING: Final = message("pending.counting")  # the last that is computed, where it is not soon done
 
 
 @dataclass(frozen=True)
@@ -37,10 +42,11 @@ class Analysis:
     there is none. Counts are of the states of all variables that can be reached, without and with the supervisor; where
     the latter are not counted, they are no more than `supervised_at_most`. `guarded` are the starts that it restricts,
     `guards` what it adds to them for people to read, by ability or event.
-    `evidence` is what answers from afar rest on; it is said once.
+    `reached` are the states of what bears on safety that are reached with the supervisor, where they were needed for
+    the guards. `evidence` is what answers from afar rest on; it is said once.
     """
 
-    pending: str | None
+    pending: Message | None
     supervisor: Supervisor | None = None
     guarded: tuple[str, ...] | None = None
     guards: Mapping[str, SupervisorGuard] | None = None
@@ -49,4 +55,5 @@ class Analysis:
     supervised_at_most: int | None = None
     warnings: tuple[ModelWarning, ...] | None = None
     questions: QuestionCounts | None = None
+    reached: StateSet | None = None
     evidence: Evidence | None = None

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import prod
 
-from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
+from sequence_planner.analysis.analysis import COUNTING, FAR, FINDINGS, GUARDS, SAFE, WHY_NONE, Analysis
 from sequence_planner.analysis.checks.connections import Connections
 from sequence_planner.analysis.checks.evidence import Evidence
 from sequence_planner.analysis.checks.rules import CheckProgress, conflicting, looked
@@ -16,13 +16,12 @@ from sequence_planner.analysis.checks.unmeetable import unmeetable
 from sequence_planner.analysis.checks.warning import ModelWarning, place
 from sequence_planner.analysis.store import name_key, read
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.synthesis.diagnosis import why_unmeetable
 from sequence_planner.synthesis.guards import Restrictions
 from sequence_planner.synthesis.supervisor import Supervision, alike, relevant, supervisor
 from sequence_planner.synthesis.transition_relation import NodeLimit, Plant, TooMuchError
 
-FAR = "the findings that too many states bear on"
 MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other things to do
 _SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not notice
 
@@ -41,12 +40,12 @@ def analyses(
     guards come before it; but with `evidence` of the model before an edit it is soon proven again, and is looked at
     first. Without `guards` these are what is left at last.
     """
-    found = Analysis("the safe states")
+    found = Analysis(SAFE)
     yield found
     known = evidence.supervisor if evidence is not None and alike(evidence.automaton, automaton) else None
     supervision = Supervision(Plant(automaton, relevant(automaton)), None if known is None else known.safe)
     if not supervision.possible:
-        found = replace(found, pending="why they are none")
+        found = replace(found, pending=WHY_NONE)
         yield found
         found = replace(found, warnings=(_unmet(supervision),))
     else:
@@ -71,7 +70,8 @@ def analyses(
         if guards:
             found = replace(found, pending=GUARDS)
             yield found
-            found = replace(found, guards={name: restrictions.guard(name) for name in restrictions.starts})
+            texts = {name: restrictions.guard(name) for name in restrictions.starts}
+            found = replace(found, guards=texts, reached=_reached(supervision, restrictions))
         if far and asked.left:
             found = replace(found, pending=FAR)
             yield found
@@ -104,7 +104,7 @@ def without_numbers(
 
 def guards_of(automaton: Automaton, names: frozenset[str], known: Supervisor | None = None) -> Iterator[Analysis]:
     """The guards that the supervisor, which may be `known`, adds to the abilities of these names, and nothing else."""
-    found = Analysis("the safe states")
+    found = Analysis(SAFE)
     yield found
     supervision = Supervision(Plant(automaton, relevant(automaton)), None if known is None else known.safe)
     if not supervision.possible:
@@ -114,7 +114,8 @@ def guards_of(automaton: Automaton, names: frozenset[str], known: Supervisor | N
     yield found
     restrictions = Restrictions(supervision)
     wanted = [name for name, starts in restrictions.starts.items() if not names.isdisjoint(starts)]
-    yield replace(found, pending=None, guards={name: restrictions.guard(name) for name in wanted})
+    texts = {name: restrictions.guard(name) for name in wanted}
+    yield replace(found, pending=None, guards=texts, reached=_reached(supervision, restrictions))
 
 
 def everything(
@@ -128,6 +129,13 @@ def everything(
     if synthesis:
         yield from without_numbers(automaton, guards=False, far=True, evidence=evidence)
     yield from conflicting(automaton)
+
+
+def _reached(supervision: Supervision, restrictions: Restrictions) -> StateSet | None:
+    """Return what is reached with the supervisor; None where the guards had to do without."""
+    if restrictions.of_safe:
+        return None
+    return supervision.plant.diagrams.exported(supervision.reachable(supervised=True))
 
 
 def _unmet(supervision: Supervision) -> ModelWarning:

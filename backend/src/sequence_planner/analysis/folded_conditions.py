@@ -15,8 +15,9 @@ from sequence_planner.analysis.checks.warning import ModelWarning, shortened
 from sequence_planner.automaton.declarations import Declarations
 from sequence_planner.automaton.findings import Binding, Findings, instance_name
 from sequence_planner.language.evaluator import holds
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
+from sequence_planner.language.resolver import resolve_predicate
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.syntax import And, Constant, Expression, ExpressionError, Span, occurrences
 from sequence_planner.language.types import Place
@@ -24,6 +25,7 @@ from sequence_planner.model.documents import AbilityDocument
 from sequence_planner.model.fields import RESERVED
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
+from sequence_planner.texts.message import message
 
 MOST_VALUES = 1000  # of what a condition reads, all combinations
 
@@ -55,11 +57,8 @@ def check_folded(station: Station) -> Iterator[ModelWarning]:
                 found.setdefault(place, (written, set()))[1].add(truth)
     for place, (written, truths) in sorted(found.items()):
         if truths in ({True}, {False}):
-            when, advice = ("always", "leave it out, or write") if truths == {True} else ("never", "write")
-            message = (
-                f"{shortened(written)} {when} holds, whatever the values of its variables: {advice} what was meant"
-            )
-            yield ModelWarning(place, f"{when}-holds", message)
+            kind = "always-holds" if truths == {True} else "never-holds"
+            yield ModelWarning(place, kind, message(f"found.{kind}", condition=shortened(written)))
 
 
 def _conditions(station: Station, declarations: Declarations) -> Iterator[_Condition]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.process.memory_limit import memory_limit
 from sequence_planner.process.task import BackgroundTask, TooLargeError
+from sequence_planner.texts.message import message
 
 if TYPE_CHECKING:
     from sequence_planner.analysis.analysis import Analysis
@@ -51,7 +52,4 @@ def _work(work: Callable[..., Iterator[Any]], *arguments: object) -> Iterator[An
     try:
         yield from work(*arguments)
     except MemoryError:
-        raise TooLargeError(
-            "the sets of states have outgrown the memory set aside for them: let fewer or smaller variables bear on "
-            "the specifications and on `rest`"
-        ) from None
+        raise TooLargeError(message("work.outgrown")) from None

@@ -1,5 +1,5 @@
-"""What is suspicious in a station as it is written: names that nothing uses, quantifiers that say nothing, and values
-that no message gives. The automaton knows nothing of it any more.
+"""What is suspicious in a station as it is written: names that nothing uses, quantifiers that say nothing, values that
+no message gives, and time limits that are too short. The automaton knows nothing of it any more.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterator
 from pydantic import BaseModel
 
 from sequence_planner.analysis.checks.ungiven_values import check_never_given
-from sequence_planner.analysis.checks.warning import ModelWarning
+from sequence_planner.analysis.checks.warning import ModelWarning, families
+from sequence_planner.analysis.checks.warning import place as place_of
 from sequence_planner.analysis.folded_conditions import check_folded
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
@@ -25,6 +26,7 @@ from sequence_planner.model.documents import SetDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import ExpandedText, SourceText
 from sequence_planner.pipelines.graph import StationPipelines
+from sequence_planner.texts.message import message
 
 # The sections that declare names for something longer, each with what one of it is.
 _SECTIONS = {"sets": "set", "relations": "relation", "maps": "map", "predicates": "predicate"}
@@ -49,6 +51,23 @@ def suspicious_in(station: Station | None, automaton: Automaton, pipelines: Stat
         for finding in unshown_of(automaton, station):
             yield ModelWarning(finding.place, "not-shown", finding.message)
     yield from check_never_given(automaton, pipelines)
+    yield from _late(automaton)
+
+
+# Time limits that are shorter than what takes so long.
+
+
+def _late(automaton: Automaton) -> Iterator[ModelWarning]:
+    """Abilities of which an alarm says that they are late though they take as long as they usually do; of instances of
+    one, the first.
+    """
+    for written, (name, *_) in families(automaton.abilities).items():
+        limit, usual = automaton.abilities[name].timeouts.finish, automaton.abilities[name].duration
+        if limit is None or usual is None or usual[1] <= limit:
+            continue
+        id_ = "found.always-late" if usual[0] > limit else "found.often-late"
+        seconds = {"shortest": f"{usual[0]:g}", "longest": f"{usual[1]:g}", "limit": f"{limit:g}"}
+        yield ModelWarning(place_of(automaton, name), "too-late", message(id_, ability=written, **seconds))
 
 
 # Names that nothing uses.
@@ -63,19 +82,25 @@ def _unused(station: Station) -> Iterator[ModelWarning]:
     idle: dict[Place, tuple[str, SourceText]] = {}
     for section, what in _SECTIONS.items():
         for name, declared in getattr(station.station, section).items():
-            speaks = isinstance(declared, SetDocument) and declared.title is not None
-            if str(name) not in used and not speaks:
+            if str(name) not in used and not _speaks(declared):
                 idle[name.place] = what, name
-    predicates: dict[Place, list[tuple[str, SourceText]]] = defaultdict(list)
+    own: dict[Place, list[tuple[str, str, SourceText]]] = defaultdict(list)
     for resource, document in station.resources.items():
-        for name in document.predicates:
-            predicates[name.place._replace(instance="")].append((resource, name))
-    for place, everywhere in predicates.items():
+        for section, what in _SECTIONS.items():
+            for name, declared in getattr(document, section).items():
+                if not _speaks(declared):
+                    own[name.place._replace(instance="")].append((what, f"{resource}.{name}", name))
+    for place, everywhere in own.items():
         brought = place.file.startswith(str(station.folder / _PACKAGES))  # for whoever else has the package
-        if not brought and not any(f"{resource}.{name}" in used for resource, name in everywhere):
-            idle[place] = "predicate", everywhere[0][1]
+        if not brought and not any(full in used for _, full, _ in everywhere):
+            idle[place] = everywhere[0][0], everywhere[0][2]
     for place, (what, name) in idle.items():
-        yield ModelWarning(place, "never-used", f"nothing uses the {what} `{name}`: leave it out, or use it")
+        said = message("found.never-used", what=message(f"found.never-used.{what}"), name=str(name))
+        yield ModelWarning(place, "never-used", said)
+
+
+def _speaks(declared: object) -> bool:
+    return isinstance(declared, SetDocument) and declared.title is not None
 
 
 def _used(station: Station) -> set[str]:
@@ -132,8 +157,8 @@ def _always_true(station: Station, vocabulary: Vocabulary) -> Iterator[ModelWarn
             decided = decided_by_number(quantified, vocabulary)
             if decided is not None and decided.always and not _is_given(part, quantified):
                 found[part.at(quantified.span)._replace(instance=""), decided.message] = None
-    for place, message in sorted(found):
-        yield ModelWarning(place, "always-holds", message)
+    for place, said in sorted(found):
+        yield ModelWarning(place, "always-holds", said)
 
 
 def _counting(text: SourceText) -> Iterator[Quantified]:

@@ -206,6 +206,12 @@ def administrator_exists(connection: Connection, *, but: str | None = None) -> b
     return connection.execute(counted).scalar_one() > 0
 
 
+def anybody_exists(connection: Connection) -> bool:
+    """Return whether there is somebody who may sign in."""
+    counted = select(func.count()).select_from(PEOPLE).where(PEOPLE.c.disabled.is_(False))
+    return connection.execute(counted).scalar_one() > 0
+
+
 def get_user(connection: Connection, id: str) -> Person:
     """The person with this id. Raises `IdentityRefused` (`no-user`, 404)."""
     person = find(connection, id)

@@ -8,6 +8,9 @@ from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.core.immutable import Immutable, uncompared
+from sequence_planner.language.names.scope import NameScope
+from sequence_planner.language.parser import parse, parse_assignment
+from sequence_planner.language.resolver import resolve_assignment, resolve_predicate
 from sequence_planner.language.shorthand.titles import NO_TITLES, Titles, Words
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.syntax import (
@@ -97,7 +100,7 @@ class Ability(Immutable):
     """A ground ability. `finish_guard` is None when it is done at its start.
 
     `cancel_actions` are taken when a running ability is called off; `duration` is the shortest and longest time in
-    seconds that a run is estimated to take.
+    seconds that a run is estimated to take. People are not told that something `moves` where nothing does.
     """
 
     name: str
@@ -116,6 +119,7 @@ class Ability(Immutable):
     duration: tuple[float, float] | None = None
     cancel_actions: tuple[Assignment, ...] = ()
     instruction: Instruction | None = uncompared(default=None)
+    moves: bool = uncompared(default=True)
 
     def flag(self, which: str) -> str:
         """The full name of its flag `enabled`, `executing` or `finished`."""
@@ -138,9 +142,24 @@ class Turn(Immutable):
     after: tuple[str, ...]
     beside: tuple[str, ...]
 
-    def __str__(self) -> str:
-        words = (("behind", self.after), ("beside", self.beside))
-        return " and ".join(f"{word} {', '.join(f'`{each}`' for each in names)}" for word, names in words if names)
+
+class GroupKind(StrEnum):
+    """How operations belong together in a sequence that does not put them one behind the other."""
+
+    PARALLEL = "parallel"
+    ALTERNATIVE = "alternative"
+    ARBITRARY = "arbitrary"
+
+
+class OperationGroup(Immutable):
+    """Operations that a sequence, or with `for_jobs` a work master, of this name puts beside one another. It bears on
+    nothing: what follows from it stands in preconditions and in jobs.
+    """
+
+    kind: GroupKind
+    operations: tuple[str, ...]
+    name: str
+    for_jobs: bool
 
 
 class Operation(Immutable):
@@ -217,9 +236,10 @@ class Automaton(Immutable):
     finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
     `initial` describes the initial states of one that has several; each declared initial value then is that of one of
     them. `goals` are formulas over its runs. `alarms` bear on nothing that it does. `places` says where a part was
-    written, by its name; `reactions` which effects are written with an ability; `vocabulary` what its texts say, and
-    `indices` the parameters of what was written once for several, each with what it ranges over, by its name: `bolts`,
-    `robot.move`, `operation.tighten`, `specification.never`; `titles` what it calls its parts when it speaks to people.
+    written, by its name; `groups` which operations sequences put beside one another; `reactions` which effects are
+    written with an ability; `vocabulary` what its texts say, and `indices` the parameters of what was written once for
+    several, each with what it ranges over, by its name: `bolts`, `robot.move`, `operation.tighten`,
+    `specification.never`; `titles` what it calls its parts when it speaks to people.
     """
 
     name: str
@@ -239,6 +259,7 @@ class Automaton(Immutable):
     goals: tuple[Expression, ...] = ()
     alarms: Mapping[str, AlarmDeclaration] = uncompared(default={})
     places: Mapping[str, Place] = uncompared(default={})
+    groups: tuple[OperationGroup, ...] = uncompared(default=())
     reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
     vocabulary: Vocabulary = uncompared(default=NO_VOCABULARY)
     indices: Mapping[str, Mapping[str, str]] = uncompared(default={})
@@ -271,6 +292,19 @@ class Automaton(Immutable):
         """The type of each variable and flag."""
         types: dict[str, Type] = {name: variable.type for name, variable in self.variables.items()}
         return types | dict.fromkeys((flag.name for flag in self.flags), BOOLEAN)
+
+    @cached_property
+    def scope(self) -> NameScope:
+        """The meaning of names in a text about the whole station."""
+        return NameScope(self.types, vocabulary=self.vocabulary)
+
+    def read_condition(self, text: str) -> Expression:
+        """A condition that somebody writes about the whole station. Raises `ExpressionError`."""
+        return resolve_predicate(parse(text), self.scope)
+
+    def read_action(self, text: str) -> Assignment:
+        """An action that somebody writes about the whole station. Raises `ExpressionError`."""
+        return resolve_assignment(parse_assignment(text), self.scope)
 
     @cached_property
     def flag_predicates(self) -> Mapping[str, Expression]:

@@ -392,6 +392,9 @@ class CompiledTick:
         self.effect_guards = _by_name(compiler.predicates, {name: e.guard for name, e in effects.items()})
         self.effect_actions = _actions(compiler, {name: e.actions for name, e in effects.items()})
 
+    def __deepcopy__(self, memo: object) -> CompiledTick:
+        return self
+
 
 def _start_guard(automaton: Automaton, ability: Ability) -> Expression:
     """Return what must hold for a start, the supervisor apart: the flag `enabled`, its predicate and the written

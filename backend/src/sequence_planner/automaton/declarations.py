@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from typing import NamedTuple
 
-from sequence_planner.automaton.automaton import Ability, Effect, Kind, VariableDeclaration
+from sequence_planner.automaton.automaton import Ability, Effect, Kind, OperationGroup, VariableDeclaration
 from sequence_planner.automaton.findings import Binding, Findings, instance_name, without_arguments
 from sequence_planner.automaton.lifting.titles import TitleReader
 from sequence_planner.automaton.shorthand import (
@@ -19,7 +19,7 @@ from sequence_planner.automaton.shorthand import (
     written_predicates,
 )
 from sequence_planner.language.lexer import MOST_DIGITS
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.shorthand.vocabulary import Vocabulary
 from sequence_planner.language.types import (
     BOOLEAN,
@@ -31,11 +31,18 @@ from sequence_planner.language.types import (
     contains,
 )
 from sequence_planner.model import fields
-from sequence_planner.model.documents import AbilityDocument, EnumerationDocument, Parameters, VariableDocument
+from sequence_planner.model.documents import (
+    AbilityDocument,
+    EffectDocument,
+    EnumerationDocument,
+    Parameters,
+    VariableDocument,
+)
 from sequence_planner.model.fields import SHORT, Predicate, fault_of_name
 from sequence_planner.model.loader import Station
 from sequence_planner.model.paths import parse_path
 from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.texts.message import message
 
 FLAGS = fields.FLAGS
 OPERATION = fields.OPERATION
@@ -60,6 +67,7 @@ class Declarations:
         self.variables: dict[str, VariableDeclaration] = {}
         self.types: dict[str, Type] = {}
         self.places: dict[str, Place] = {}
+        self.groups: list[OperationGroup] = []
         self.broken: set[str] = set()
         self.unusable: set[str] = set()
         self.removed = dict(_removed(station))
@@ -120,7 +128,9 @@ class Declarations:
         for resource, document in station.resources.items():
             for kind in _KINDS:
                 found |= {f"{resource}.{name}": each.each for name, each in getattr(document, kind.value).items()}
-            found |= {f"{resource}.{name}": ability.parameters for name, ability in document.abilities.items()}
+            for name, ability in document.abilities.items():
+                found[f"{resource}.{name}"] = ability.parameters
+                found |= {f"{resource}.{name}.{each}": effect.each for each, effect in ability.effects.items()}
         return {name: {str(word): str(of) for word, of in each.items()} for name, each in found.items() if each}
 
     def bindings(self, parameters: Parameters) -> list[Binding]:
@@ -132,6 +142,11 @@ class Declarations:
             {str(name): (value, type_) for name, value, type_ in zip(parameters, values, types, strict=True)}
             for values in product(*(type_.values for type_ in types))
         ]
+
+    def domain_in(self, name: SourceText, resource: str | None) -> SourceText:
+        """The name of an enumeration or a set in full: within a resource its sets have short ones."""
+        full = f"{resource}.{name}"
+        return SourceText(full, name.place, name.raw) if full in self.enumerations else name
 
     def check_name(self, name: SourceText, kind: str) -> bool:
         """Return whether a part of this kind can have a name; what is wrong with it is noted."""
@@ -147,16 +162,15 @@ class Declarations:
         for name, enumeration in parameters.items():
             self.check_name(name, "parameter")
             if name in values:
-                message = f"the parameter `{name}` hides the value `{name}` of `{values[name]}`: rename one of them"
-                self._findings.add(name, message)
+                hidden = str(values[name])
+                self._findings.add(name, message("wrong.hides-value", name=str(name), enumeration=hidden))
             for hidden in (f"{prefix}{name}" for prefix in (*prefixes, "")):
                 if hidden in self.types or hidden in self.broken:
-                    self._findings.add(
-                        name, f"the parameter `{name}` hides the variable `{hidden}`: rename one of them"
-                    )
+                    self._findings.add(name, message("wrong.hides-variable", name=str(name), variable=hidden))
             if enumeration not in self.enumerations and enumeration not in self.unusable:
                 near = suggestion(enumeration, self.enumerations)
-                self._findings.add(enumeration, f"unknown enumeration `{enumeration}`{near}")
+                said = message("wrong.unknown-enumeration", name=str(enumeration), hint=near)
+                self._findings.add(enumeration, said)
 
     def _check_resources(self) -> None:
         for name in self._station.resources:
@@ -166,8 +180,7 @@ class Declarations:
     def _declare(self, name: str, key: SourceText) -> bool:
         """Return whether `name` is new; a second declaration is a finding."""
         if name in self.places:
-            message = f"duplicate name `{name}`, first declared at {self.places[name]}: rename one of them"
-            self._findings.add(key, message)
+            self._findings.add(key, message("wrong.declared", name=name, place=str(self.places[name])))
             return False
         self.places[name] = key.place
         return True
@@ -179,12 +192,14 @@ class Declarations:
             for index, value in enumerate(values):
                 self.check_name(value, "value")
                 if value in values[:index]:
-                    self._findings.add(value, f"duplicate value `{value}` in `{name}`")
+                    self._findings.add(value, message("wrong.duplicate-value", value=str(value), name=str(name)))
         self.enumerations |= read_enumerations(self._station, self._findings, self.unusable)
         for name, type_ in ShorthandReader(self, self._station, self._findings).read_sets():
-            self.check_name(name, "set")
-            if name in self._station.station.enumerations:
-                self._findings.add(name, f"`{name}` is an enumeration already: give the set another name")
+            own = name.rpartition(".")[2]
+            self.check_name(SourceText(own, name.place, name.raw), "set")
+            if own in self._station.station.enumerations:
+                self._findings.add(name, message("wrong.set-is-enumeration", name=own))
+                self.unusable |= {str(name)} - {own}
             else:
                 self.enumerations[str(name)] = type_
 
@@ -235,8 +250,8 @@ class Declarations:
                 for resource in (None, *self._resources_with(str(enumeration))):
                     variable = value if resource is None else f"{resource}.{value}"
                     if variable in self.places:
-                        message = f"the value `{value}` of `{enumeration}` has the name of the variable `{variable}`"
-                        self._findings.add(value, f"{message}, which hides it: rename one of them")
+                        names = {"value": str(value), "enumeration": str(enumeration), "variable": variable}
+                        self._findings.add(value, message("wrong.hidden-value", **names))
 
     def _resources_with(self, enumeration: str) -> list[str]:
         """The resources with a variable of the type, or an ability with a parameter of it."""
@@ -269,9 +284,8 @@ class Declarations:
     def type_of(self, name: SourceText, text: SourceText | None, kind: Kind | None) -> Type | None:
         """The type of the variable `name` that `text` means; if it means none, that is noted."""
         if text is None:
-            what = "write type: bool, a range such as 0..3, or an enumeration"
-            why = "" if kind is Kind.ESTIMATED else f", and no field of a topic has one for `{name}`"
-            self._findings.add(name, f"`{name}` needs a type{why}: {what}")
+            id_ = "wrong.needs-type" if kind is Kind.ESTIMATED else "wrong.needs-type-or-field"
+            self._findings.add(name, message(id_, name=str(name)))
             return None
         if text == "bool":
             return BOOLEAN
@@ -281,8 +295,7 @@ class Declarations:
             return None
         if text not in self.enumerations:
             near = suggestion(text, ["bool", *self.enumerations])
-            message = f"unknown type `{text}`: write bool, a range such as 0..3, or an enumeration{near}"
-            self._findings.add(text, message)
+            self._findings.add(text, message("wrong.unknown-type", name=str(text), hint=near))
             return None
         return self.enumerations[text]
 
@@ -294,18 +307,17 @@ class Declarations:
         if not contains(type_, initial):
             where = written if isinstance(written, SourceText) else name
             near = suggestion(str(initial), map(str, type_.domain))
-            message = f"`{initial}` is no initial value of `{full}`, which ranges over {type_}{near}"
-            self._findings.add(where, message)
+            said = message("wrong.no-initial", value=str(initial), name=str(full), range=str(type_), hint=near)
+            self._findings.add(where, said)
         return initial
 
     def _range(self, text: SourceText, low: int, high: int) -> IntegerRange | None:
         if low > high:
-            self._findings.add(text, f"the range {text} is empty: write the smaller number first")
+            self._findings.add(text, message("wrong.empty-range", range=str(text)))
         elif high - low >= MOST_VALUES:
-            message = f"the range {text} has more than {MOST_VALUES} values: use a coarser measure"
-            self._findings.add(text, message)
+            self._findings.add(text, message("wrong.large-range", range=str(text), most=MOST_VALUES))
         elif max(-low, high) >= 10**MOST_DIGITS:
-            self._findings.add(text, f"integers have at most {MOST_DIGITS} digits")
+            self._findings.add(text, message("wrong.integer-digits", most=MOST_DIGITS))
         else:
             return IntegerRange(low, high)
         return None
@@ -315,11 +327,20 @@ class Declarations:
             for name, ability in document.abilities.items():
                 self.check_name(name, "ability")
                 self.check_parameters(ability.parameters, f"{resource}.")
+                for effect in ability.effects.values():
+                    self._check_effect(resource, ability, effect)
                 if self._declare(f"{resource}.{name}", name) and not self.bindings(ability.parameters):
                     self.broken.add(f"{resource}.{name}")
         for resource, name, _, binding in self.abilities():
             full = instance_name(f"{resource}.{name}", binding)
             self.types |= {f"{full}.{flag}": BOOLEAN for flag in FLAGS}
+
+    def _check_effect(self, resource: str, ability: AbilityDocument, effect: EffectDocument) -> None:
+        """Note what is wrong with the words for which an effect is written once."""
+        self.check_parameters(effect.each, f"{resource}.")
+        for word in effect.each:
+            if word in ability.parameters:
+                self._findings.add(word, message("wrong.parameter-taken", word=str(word)))
 
     def _declare_activities(self) -> None:
         for name, document in self._station.operations.items():
@@ -334,7 +355,7 @@ class Declarations:
 
 # What abilities meant when they were ground before, for as long as the names in them mean the same.
 
-_NAMED_SECTIONS = (*(kind.value for kind in _KINDS), "abilities", "predicates", "relations", "maps")
+_NAMED_SECTIONS = (*(kind.value for kind in _KINDS), "abilities", "predicates", "relations", "maps", "sets")
 
 
 def _removed(station: Station) -> Iterator[tuple[str, Place]]:

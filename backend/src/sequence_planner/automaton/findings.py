@@ -11,7 +11,7 @@ from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import EnumerationType, Place
 from sequence_planner.model.fields import Words, WordsDocument, by_language, main_text
 from sequence_planner.model.source import Finding, SourceText
-from sequence_planner.texts.message import Title
+from sequence_planner.texts.message import Title, message
 from sequence_planner.texts.names import in_words
 
 # What each parameter is: its value, and the enumeration it is of.
@@ -52,10 +52,12 @@ def told_where_removed(findings: Iterable[Finding]) -> list[Finding]:
             others.append(finding)
     for (removed, word), places in uses.items():
         first, count = min(places), len(places) - 1
-        beside = f" and {count} other place{'s' if count > 1 else ''}" if count else ""
-        use, these = ("use", "these") if count else ("uses", "that")
-        advice = f"remove {these} as well, or keep it"
-        others.append(Finding(removed, f"`{word}` is removed here, and {first}{beside} {use} it: {advice}"))
+        said = (
+            message("wrong.removed-and-used.several", name=word, place=str(first), count=count)
+            if count
+            else message("wrong.removed-and-used", name=word, place=str(first))
+        )
+        others.append(Finding(removed, said))
     return others
 
 

@@ -9,8 +9,8 @@ from typing import Any, Protocol, TypeVar
 
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.findings import Findings
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.shorthand.vocabulary import NamedPredicate, ValueMap, ValueRelation
 from sequence_planner.language.syntax import FALSE, TRUE, Expression, ExpressionError
 from sequence_planner.language.types import EnumerationType, Place, Type, Value, contains
@@ -25,6 +25,7 @@ from sequence_planner.model.documents import (
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import message
 
 D = TypeVar("D")
 
@@ -61,9 +62,11 @@ def check_included(name: SourceText, document: EnumerationDocument, station: Sta
     enumerations = station.station.enumerations
     for each in document.includes:
         if each not in enumerations:
-            findings.add(each, f"unknown enumeration `{each}`{suggestion(each, enumerations)}")
+            findings.add(
+                each, message("wrong.unknown-enumeration", name=str(each), hint=suggestion(each, enumerations))
+            )
         elif name in _reached(each, station):
-            findings.add(each, f"`{name}` would include itself")
+            findings.add(each, message("wrong.includes-itself", name=str(name)))
 
 
 def _reached(name: str, station: Station) -> set[str]:
@@ -103,13 +106,14 @@ class ShorthandReader:
         self._unusable = declarations.unusable
 
     def read_sets(self) -> Iterator[tuple[SourceText, EnumerationType]]:
-        """Each named set with its values, in the order of its enumeration."""
-        pending = dict(self._station.sets)
+        """Each named set with its values, in the order of its enumeration; those of resources by their full names."""
+        written = written_in(self._station.sets, self._of_resources("sets"))
+        pending = {SourceText(full, name.place, name.raw): document for full, name, document in written}
         while pending:
             ready = [name for name, document in pending.items() if not self._needs(document) & set(map(str, pending))]
             for name in ready or pending:
                 if not ready:
-                    self._findings.add(name, f"`{name}` would be a part of itself")
+                    self._findings.add(name, message("wrong.part-of-itself", name=str(name)))
                     self._unusable.add(str(name))
                 elif (type_ := self.read_set(name, pending[name])) is None:
                     self._unusable.add(str(name))
@@ -132,7 +136,7 @@ class ShorthandReader:
         is_kept = document.values is not None
         values = tuple(value for value in whole.values if (value in named) is is_kept)
         if not values:
-            self._findings.add(name, f"no value of `{document.of}` is left in `{name}`: a set has at least one")
+            self._findings.add(name, message("wrong.empty-set", of=str(document.of), name=str(name)))
             return None
         return EnumerationType(values)
 
@@ -145,18 +149,20 @@ class ShorthandReader:
             elif str(text) in self._domains:
                 found |= dict.fromkeys(value for value in self._domains[str(text)].values if value in whole.values)
                 if strangers := [value for value in self._domains[str(text)].values if value not in whole.values]:
-                    self._findings.add(text, f"`{text}` has values that do not belong here, such as `{strangers[0]}`")
+                    self._findings.add(text, message("wrong.strangers", name=str(text), value=strangers[0]))
             elif str(text) not in self._unusable:
                 owner = next((name for name, each in self._domains.items() if text in each.values), None)
                 near = suggestion(text, [*whole.values, *self._domains])
-                near = near if owner is None else f"; it is one of `{owner}`"
-                self._findings.add(text, f"`{text}` is no value of {_shortly(whole)} and no set{near}")
+                near = near if owner is None else message("hint.one-of-set", name=owner)
+                self._findings.add(
+                    text, message("wrong.no-value-and-no-set", name=str(text), values=_shortly(whole), hint=near)
+                )
         return found
 
     def _domain(self, name: SourceText) -> EnumerationType | None:
         if str(name) not in self._domains and str(name) not in self._unusable:
             near = suggestion(name, self._domains)
-            self._findings.add(name, f"unknown enumeration or set `{name}`{near}")
+            self._findings.add(name, message("wrong.unknown-domain", name=str(name), hint=near))
         return self._domains.get(str(name))
 
     # Relations and maps
@@ -180,8 +186,8 @@ class ShorthandReader:
                     if document.symmetric:
                         pairs.add((right, left))
         if document.symmetric and set(first.values) != set(second.values):
-            message = f"a symmetric relation is between the same values, not {_shortly(first)} and {_shortly(second)}"
-            self._findings.add(document.between[1], message)
+            said = message("wrong.symmetric", one=_shortly(first), other=_shortly(second))
+            self._findings.add(document.between[1], said)
         return ValueRelation((first, second), frozenset(pairs))
 
     def read_maps(self) -> Iterator[tuple[str, ValueMap]]:
@@ -211,7 +217,7 @@ class ShorthandReader:
             self._check_value(key, value, target)
             for each in self._values_among([key], source):
                 if each in table:
-                    self._findings.add(key, f"`{each}` has a value in `{name}` already: write it once")
+                    self._findings.add(key, message("wrong.mapped-already", value=each, name=str(name)))
                 table[each] = str(value) if isinstance(value, SourceText) else value
         missing = [value for value in source.values if value not in table]
         if document.otherwise is not None:
@@ -219,9 +225,9 @@ class ShorthandReader:
             rest = document.otherwise
             table |= dict.fromkeys(missing, str(rest) if isinstance(rest, SourceText) else rest)
         elif missing and is_whole and len(self._findings.all) == before:
-            shown = ", ".join(f"`{value}`" for value in missing[:3]) + (" and others" if len(missing) > 3 else "")
-            them = "it" if len(missing) == 1 else "them"
-            self._findings.add(name, f"`{name}` says nothing for {shown}: add {them}, or `otherwise`")
+            shown = [f"`{value}`" for value in missing]
+            said = message("wrong.nothing-for", name=str(name), values=shown, count=len(missing))
+            self._findings.add(name, said)
         return table
 
     def _check_value(self, key: SourceText, value: Value | SourceText, target: Type) -> None:
@@ -229,7 +235,7 @@ class ShorthandReader:
         if not contains(target, plain):
             where = value if isinstance(value, SourceText) else key
             near = suggestion(str(plain), map(str, target.domain))
-            self._findings.add(where, f"`{plain}` is not in {target}{near}")
+            self._findings.add(where, message("wrong.not-in", value=str(plain), range=str(target), hint=near))
 
     # Predicates
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis, QuestionCounts
+from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, SAFE, Analysis, QuestionCounts
 from sequence_planner.analysis.report import AnalysisDocument, FindingDocument, TraceDocument, document_of
 from sequence_planner.analysis.store import key, known_supervisor, name_key, read, write
 from sequence_planner.automaton.automaton import Automaton
@@ -213,7 +213,7 @@ class _Hearing:
     work: Work
     unwanted: Collection[str]
     after: str | None = None
-    analysis: Analysis = field(default_factory=lambda: Analysis("the safe states"))
+    analysis: Analysis = field(default_factory=lambda: Analysis(SAFE))
     suspicious: set[ModelWarning] = field(default_factory=set)
     evidence: Evidence | None = None
     _pending: str | None = None
@@ -259,6 +259,11 @@ class _Hearing:
 # Findings for people: where, what, and a run that shows it.
 
 _LONG = 10  # steps: of a run that is longer it is only said how long it is
+
+
+def finding_document(finding: FindingDocument) -> dict[str, object]:
+    """A finding for programs: in English alone."""
+    return finding.model_dump(exclude={"said"})
 
 
 def finding_lines(finding: FindingDocument, runs: bool = False) -> list[str]:

@@ -14,7 +14,7 @@ import typer
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise
 from sequence_planner.cli.options import refuse
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import contains
 
 T = TypeVar("T")

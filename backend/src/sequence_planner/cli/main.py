@@ -30,6 +30,11 @@ COMMANDS = (
         "and what is suspicious in it.",
     ),
     LazyCommand(
+        "test",
+        "model.scenarios:test",
+        "Carry out the scenarios of a station, which stand in its `tests`, in simulated time with emulated devices.",
+    ),
+    LazyCommand(
         "synthesize",
         "model.synthesize:synthesize",
         "Compute the supervisor of a model: how many states can be reached with and without it, "

@@ -15,6 +15,7 @@ from sequence_planner.controller.features.control_lock import ControlLock
 from sequence_planner.controller.features.failures import Failures
 from sequence_planner.controller.features.jobs import JobHandler, JobViews
 from sequence_planner.controller.features.modes import Modes
+from sequence_planner.controller.features.plan import KIND as OPERATIONS
 from sequence_planner.controller.features.plan import LivePlan, Operations
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler
@@ -22,13 +23,13 @@ from sequence_planner.controller.features.variables import KIND as BELIEFS
 from sequence_planner.controller.features.variables import Beliefs, Variables
 from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.ticks import Ticker
-from sequence_planner.controller.io.traffic import LivePicture, PipelineTraffic, WrittenShifts
 from sequence_planner.controller.metrics import Figures
 from sequence_planner.controller.planner_client import AdvisorClient, PlannerQuestions
 from sequence_planner.controller.recovery.build import build_recovery
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.manual import ByHand
 from sequence_planner.controller.restore import RestoredState
+from sequence_planner.controller.tracing.build import build_lookers
 from sequence_planner.controller.views.builder import ViewBuilder
 from sequence_planner.controller.views.station import StationIdentity
 from sequence_planner.db.database import Database
@@ -74,7 +75,7 @@ def build_controller(
     planner = PlannerQuestions(execution, outside, take_news)
     viewing = ViewBuilder(identity, execution)
     variables = Variables(execution, devices.feeds.heard_on, beliefs)
-    around, forces, approvals, recovery = build_recovery(
+    around, forces, breakpoints, approvals, recovery = build_recovery(
         execution,
         advisor,
         beliefs,
@@ -82,13 +83,17 @@ def build_controller(
         watching.still,
         in_control,
         devices.feeds.heard_on,
+        station.pipelines.timed,
         variables.since,
         lambda: viewing.guards,
         devices.real_devices,
         lambda command, moment: bus.perform(command, moment),  # noqa: PLW0108
     )
     plan = LivePlan(execution, consequences, around, lambda: planner.trouble, lambda: links.untold)
-    operations = Operations(execution, plan.timetable)
+    operations = Operations(
+        execution, plan.timetable, known.progress, partial(records.add_note, OPERATIONS, lasts=True)
+    )
+    records.recorder.know(OPERATIONS, operations.journalled())
     jobs = JobViews(
         execution,
         lambda: records.jobs,
@@ -100,6 +105,7 @@ def build_controller(
     )
     modes = Modes(execution, outside, devices, links, consistency, alarms, jobs.waits, records.add_note)
     ticker.listeners += [each.after_tick for each in (variables, watching.abilities, operations, plan)]
+    ticker.listeners.append(breakpoints.take_note)
     features = (  # in this order their alarms are looked at, and then shown
         links,
         watching.who_can,
@@ -113,6 +119,7 @@ def build_controller(
         watching.beginning,
         consistency,
         forces,
+        breakpoints,
         OpenTasks(execution, tasks, modes.goes_on, consequences.waiting_for),
         ByHand(execution, station.pipelines, records.add_note),
         watching.of_model,
@@ -126,9 +133,7 @@ def build_controller(
         *recovery,
         approvals,
         in_control,
-        PipelineTraffic(station.pipelines, devices),
-        LivePicture(station),
-        WrittenShifts(station),
+        *build_lookers(execution, station, devices, variables, around),
         devices,
         devices.overrides,
         Figures(
@@ -152,6 +157,8 @@ def build_controller(
         ("sending commands", records.repeat),
         ("looking for contradictions", lambda moment: consistency.look()),
         ("looking after alarms", alarms.look),
+        ("pausing after the product", modes.stop_after_cycle),
+        ("pausing at a breakpoint", breakpoints.pause),
         ("noting how it stands", modes.note_standing),
         ("asking the planner", lambda moment: planner.ask(moment.monotonic)),
     )

@@ -16,7 +16,7 @@ from functools import partial
 
 import structlog
 
-from sequence_planner.controller.commands.bus import CommandBus, QueryBus
+from sequence_planner.controller.commands.bus import CommandBus, Made, QueryBus
 from sequence_planner.controller.commands.command import Command
 from sequence_planner.controller.features.records import Records
 from sequence_planner.controller.io.devices import Devices
@@ -119,8 +119,9 @@ class Controller:
         self.records.writer.start()
         self._parts.ticker.again()
 
-    async def command(self, command: Command) -> None:
-        """Carry out a command. Raises `CommandRefused`."""
-        self._parts.commands.execute(command, Timestamp.now())
+    async def command(self, command: Command) -> Made:
+        """Carry out a command, and return what it makes. Raises `CommandRefused`."""
+        made = self._parts.commands.execute(command, Timestamp.now())
         LOG.info("command", **command.model_dump(mode="json"))
         self._parts.ticker.again()
+        return made

@@ -122,13 +122,15 @@ class AnswerMessage(LinkMessage):
 class Reply(LinkMessage):
     """A message about what became of a command, or that an ask is refused; `problem` is there when `ok` is false.
 
-    `recorded` is false as long as the journal does not have what was carried out.
+    `recorded` is false as long as the journal does not have what was carried out. `made` is the document of what a
+    command `makes`.
     """
 
     kind: Literal["reply"] = "reply"
     id: int | None
     ok: bool
     recorded: bool = True
+    made: dict[str, JsonValue] | None = None
     problem: Refusal | None = None
 
 
@@ -241,8 +243,16 @@ SHORTEST_INTERVAL = 0.05  # seconds between two views to the same peer
 MOST_PEERS = 8
 MOST_COMMANDS = 32  # of one peer, being carried out at the same time
 
-# Carries a command out; false where the journal does not have it yet.
-Handle = Callable[[Command], Awaitable[bool | None]]
+
+@dataclass(frozen=True)
+class CarriedOut:
+    """A command was, and perhaps `made` something; whether the journal has it."""
+
+    recorded: bool = True
+    made: DataModel | None = None
+
+
+Handle = Callable[[Command], Awaitable[CarriedOut | None]]
 Answer = Callable[[Query[Any]], Awaitable[DataModel]]
 
 
@@ -411,13 +421,14 @@ class ControllerLink:
             return refusal(message.id, expired())
         try:
             with structlog.contextvars.bound_contextvars(**_named(message.request)):
-                recorded = await self._handle(message.command)
+                done = await self._handle(message.command) or CarriedOut()
         except CommandRefused as refused:
             return refusal(message.id, refused)
         except Exception:
             LOG.exception("a command failed", command=message.command.kind)
             return refusal(message.id, failed())
-        return Reply(id=message.id, ok=True, recorded=recorded is not False)
+        made = None if done.made is None else done.made.model_dump(mode="json")
+        return Reply(id=message.id, ok=True, recorded=done.recorded, made=made)
 
     async def _told(self, message: AskMessage) -> LinkMessage:
         try:
@@ -535,6 +546,14 @@ class ControllerClient:
         Raises `CommandRefused`: with the controller's own words, `controller-unavailable` (503) when it was never
         sent, `controller-timeout` (504) when it is not known what became of it.
         """
+        return (await self._send(command)).recorded
+
+    async def produce(self, command: Command) -> DataModel:
+        """Have `command` carried out, and return what it made. Raises `CommandRefused` as `send` does."""
+        assert command.makes is not None
+        return command.makes.model_validate((await self._send(command)).made)
+
+    async def _send(self, command: Command) -> Reply:
         expires = time.monotonic() + self._reply_deadline
         request: str | None = structlog.contextvars.get_contextvars().get("request")
         unknown = message("refused.controller-timeout.command")
@@ -543,7 +562,8 @@ class ControllerClient:
             self._reply_deadline,
             unknown,
         )
-        return not isinstance(reply, Reply) or reply.recorded
+        assert isinstance(reply, Reply)
+        return reply
 
     async def ask(self, ask: Query[Told]) -> Told:
         """Return what answers `ask`. Raises `CommandRefused` as `send` does; asking has changed nothing then."""

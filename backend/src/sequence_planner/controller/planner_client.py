@@ -73,11 +73,9 @@ class AdvisorClient:
         except TimeoutError:
             raise CommandRefused("advisor-timeout", message("refused.advisor-timeout.again"), 504) from None
         except (PlannerError, WorkerError) as error:
-            why = str(error)
+            why = error.why if isinstance(error, WorkerError) else str(error)
             raise CommandRefused(
-                "advisor-unavailable",
-                message("refused.advisor-unavailable.again", why=f"{why[:1].upper()}{why[1:]}"),
-                503,
+                "advisor-unavailable", message("refused.advisor-unavailable.again", why=why), 503
             ) from None
 
 

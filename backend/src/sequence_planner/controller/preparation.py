@@ -39,7 +39,7 @@ from sequence_planner.model.source import Finding
 from sequence_planner.process.task import TooLargeError, WorkerError
 from sequence_planner.simulation.device_state import standing_file
 from sequence_planner.synthesis.guards import SupervisorGuard
-from sequence_planner.texts.message import as_it_was, message
+from sequence_planner.texts.message import as_it_was, joined, message
 
 # Another model in the place of the one that runs: its files are put into the folder of the model, and the controller
 # begins anew.
@@ -244,6 +244,7 @@ class UnusableModel:
 
 _UNSUPERVISED = AnalysisDocument(
     pending=None,
+    pending_message=None,
     supervised=False,
     reachable_states=None,
     supervised_states=None,
@@ -268,7 +269,9 @@ class Preparation:
         self.too_large = False
         if unusable is not None:
             self.supervisor.set_result(None)
-            self.trouble = "; ".join(map(str, unusable.findings))
+            self.trouble = joined(
+                message("obstacle.at", place=str(each.place), what=each.message) for each in unusable.findings
+            )
             findings = [error_document(finding) for finding in unusable.findings]
             self.analysis = _UNSUPERVISED.model_copy(update={"findings": findings})
         self.controller: Controller | None = None
@@ -281,7 +284,7 @@ class Preparation:
         if found.supervisor is not None and not self.supervisor.done():
             self.supervisor.set_result(found.supervisor)
         elif found.supervisor is None and found.warnings is not None and not self.supervisor.done():
-            self.trouble = "; ".join(warning.message for warning in found.warnings)
+            self.trouble = joined(warning.message for warning in found.warnings)
             self.supervisor.set_result(None)
         if self.controller is not None:
             self.controller.viewing.know(analysis, self._guards)
@@ -315,13 +318,13 @@ class Preparation:
         """No more will be found."""
         if not self.supervisor.done():
             if isinstance(why, TooLargeError):  # a controller that begins anew would come no further
-                self.too_large, self.trouble = True, str(why)
+                self.too_large, self.trouble = True, why.why
                 self.analysis = _UNSUPERVISED
                 self.supervisor.set_result(None)
             else:
                 self.supervisor.set_exception(why)
         if self.analysis is not None:
-            self.analysis = self.analysis.model_copy(update={"pending": None})
+            self.analysis = self.analysis.model_copy(update={"pending": None, "pending_message": None})
             if self.controller is not None:
                 self.controller.viewing.know(self.analysis, self._guards)
 
@@ -385,9 +388,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
         preparation.end(ended)
     except TimeoutError:
         LOG.warning("not all was found of the station", within=ANALYSIS_DEADLINE)
-        late = f"the safe states could not be computed within {ANALYSIS_DEADLINE:g} s: let fewer variables bear on "
-        late += "them, or have `sequence-planner plan` find them with a longer --deadline before the next start"
-        preparation.end(TooLargeError(late))
+        preparation.end(TooLargeError(message("work.unsafe", seconds=f"{ANALYSIS_DEADLINE:g}")))
     except Exception as error:
         LOG.exception("synthesis failed")
         preparation.end(WorkerError(f"the safe states could not be computed ({type(error).__name__}: {error})"))

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping, Set
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Final
+from typing import Final, TypeVar
 
+from pydantic import JsonValue
 from sqlalchemy import Connection
 
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.controller.alarms.alarm import KIND as ASIDE
 from sequence_planner.controller.alarms.alarm import aside_from
+from sequence_planner.controller.features.plan import KIND as OPERATIONS
+from sequence_planner.controller.features.plan import progress_from
 from sequence_planner.controller.features.variables import KIND as BELIEFS
 from sequence_planner.controller.features.variables import beliefs_from
 from sequence_planner.controller.restore import RestoredState, beginning, last_mode
-from sequence_planner.controller.views.station import BeliefView
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace as replaced
 from sequence_planner.db.database import Database
@@ -28,6 +31,8 @@ from sequence_planner.journal import run_journal
 from sequence_planner.journal.entry import described
 from sequence_planner.journal.last_accepted import LastEnding, LastWord, Word, ending
 
+Told = TypeVar("Told")
+
 _PAGE: Final = 50  # records read at once
 _FURTHEST: Final = 2 * SNAPSHOT_EVERY  # records of beliefs between two that have all
 
@@ -37,25 +42,32 @@ def what_is_known(database: Database, automaton: Automaton) -> RestoredState:
     with database.reading() as connection:
         restored = beginning(connection, automaton, Timestamp.now())
         aside = run_journal.last(connection, ASIDE)
-        beliefs, produced = _beliefs(connection, automaton), _produced(connection)
+        beliefs = _last_told(connection, BELIEFS, set(automaton.names(Kind.ESTIMATED)), beliefs_from)
+        progress = _last_told(connection, OPERATIONS, automaton.operations.keys(), progress_from)
+        produced = _produced(connection)
     return RestoredState(
         restored.beginning if restored else None,
         {} if aside is None else aside_from(json.loads(aside.content)),
         beliefs,
+        progress,
         restored.left_out if restored else (),
         produced,
     )
 
 
-def _beliefs(connection: Connection, automaton: Automaton) -> dict[str, BeliefView]:
-    """All that were told, the newest of each: a record with all is not further back than the newest snapshot."""
-    estimates, found = set(automaton.names(Kind.ESTIMATED)), dict[str, BeliefView]()
+def _last_told(
+    connection: Connection, kind: str, names: Set[str], read: Callable[[Mapping[str, JsonValue]], dict[str, Told]]
+) -> dict[str, Told]:
+    """The newest that records of the kind say of each name: one with all is not further back than the newest
+    snapshot.
+    """
+    found = dict[str, Told]()
     number = None
     for _ in range(0, _FURTHEST, _PAGE):
-        for record in (page := run_journal.before(connection, number, _PAGE, {BELIEFS})):
-            told = beliefs_from(json.loads(record.content))
+        for record in (page := run_journal.before(connection, number, _PAGE, {kind})):
+            told = read(json.loads(record.content))
             found = {**told, **found}
-            if estimates <= told.keys():
+            if names <= told.keys():
                 return found
             number = record.number
         if len(page) < _PAGE:

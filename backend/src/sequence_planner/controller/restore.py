@@ -15,7 +15,7 @@ from sqlalchemy import Connection
 from sequence_planner.automaton.automaton import Automaton, Kind
 from sequence_planner.controller.alarms.alarm import PutAside
 from sequence_planner.controller.views.part import ControlView
-from sequence_planner.controller.views.station import BeliefView, DeploymentView
+from sequence_planner.controller.views.station import BeliefView, DeploymentView, OperationProgress
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.core.storage_error import StorageError
@@ -35,8 +35,8 @@ from sequence_planner.texts.message import Message, message
 
 @dataclass(frozen=True)
 class RestoredState:
-    """The state that came back from the journal: estimates and why they were believed, outputs, service, and alarms put
-    aside.
+    """The state that came back from the journal: estimates and why they were believed, outputs, service, how far
+    operations were, and alarms put aside.
 
     `left_out` says what did not come back, and why; `produced` that production had been started. `control` is who is
     in control, and `deployment` the last one, where the controller begins because of one. `halted` says why the station
@@ -46,6 +46,7 @@ class RestoredState:
     beginning: InitialState | None = None
     aside: Mapping[str, PutAside] = field(default_factory=dict)
     beliefs: Mapping[str, BeliefView] = field(default_factory=dict)
+    progress: Mapping[str, OperationProgress] = field(default_factory=dict)
     left_out: tuple[Message, ...] = ()
     produced: bool = False
     control: ControlView | None = None

@@ -23,7 +23,7 @@ from sequence_planner.controller.controller import Controller
 from sequence_planner.controller.durability import Lasting
 from sequence_planner.controller.features.automatic_start import go_on, start_when_alone
 from sequence_planner.controller.io.network import NetworkWatch, network_steps
-from sequence_planner.controller.ipc import ControllerLink
+from sequence_planner.controller.ipc import CarriedOut, ControllerLink
 from sequence_planner.controller.lease import held_lease, standby_view, stands_by
 from sequence_planner.controller.preparation import (
     PREPARING,
@@ -49,7 +49,7 @@ from sequence_planner.ros.transports.routing import gated
 from sequence_planner.simulation.supported import emulation_findings
 from sequence_planner.standby.lease import LeaseKeeper
 from sequence_planner.station import ReadyStation
-from sequence_planner.texts.message import message
+from sequence_planner.texts.message import Title, message
 
 LOG = structlog.get_logger(__name__)
 
@@ -285,8 +285,9 @@ class _Life:
             async with _beside(go_on(controller, self._handle, keeper.taken_from)):
                 await asyncio.Event().wait()
 
-    async def _act(self, command: Command) -> None:
-        """Carry out a command that is recorded. Raises `CommandRefused`."""
+    async def _act(self, command: Command) -> DataModel | None:
+        """Carry out a command that is recorded, and return what it makes. Raises `CommandRefused`."""
+        made: DataModel | None = None
         preparation, keeper = self._preparation, self.keeper
         # Who commands may stop the station though it cannot renew its lease: nothing is said to a device meanwhile.
         if keeper is not None and not keeper.held and (keeper.epoch is None or not command.harmless):
@@ -300,22 +301,29 @@ class _Life:
             if preparation.trouble is None or not isinstance(command, Deploy):
                 raise self._not_yet(command, self._refusal())
         else:
-            await preparation.controller.command(command)
+            made = await preparation.controller.command(command)
         if isinstance(command, Deploy):
             control = None if preparation.controller is None else preparation.controller.view().control
             await self._deploying.carry_out(command, control, time.time())
+        return made
 
-    async def _handle(self, command: Command) -> bool:
-        """Record a command and carry it out; whether the journal has what it did. Raises `CommandRefused`."""
+    async def _handle(self, command: Command) -> CarriedOut:
+        """Record a command and carry it out. Raises `CommandRefused`."""
+        made: DataModel | None = None
+
+        async def act(command: Command) -> None:
+            nonlocal made
+            made = await self._act(command)
+
         controller = self._preparation.controller
         before = 0 if controller is None else controller.records.newest
-        audited = await self._recording.carry_out(command, self._preparation.tasks, self._act)
+        audited = await self._recording.carry_out(command, self._preparation.tasks, act)
         if controller is None:
-            return True
+            return CarriedOut(made=made)
         view = self._seen(controller)
         self._shown.note(view)
         self._link.publish(view)
-        return await self._lasting.settle(command, controller, before, audited)
+        return CarriedOut(await self._lasting.settle(command, controller, before, audited), made)
 
     async def _answer(self, query: Query[Any]) -> DataModel:
         """Return what is told only when somebody asks for it. Raises `CommandRefused`."""
@@ -443,12 +451,19 @@ def _identity(running: Running, transport: str) -> StationIdentity:
     station = running.station
     if isinstance(station, UnusableModel):
         return StationIdentity(
-            name=station.name, title=station.name, description="", transport=transport, emulated=running.emulated
+            name=station.name,
+            title=station.name,
+            titles={"": station.name},
+            description="",
+            transport=transport,
+            emulated=running.emulated,
         )
     automaton = station.automaton
+    title = automaton.title
     return StationIdentity(
         name=automaton.name,
-        title=automaton.title,
+        title=title,
+        titles=dict(title.words) if isinstance(title, Title) else {"": title},
         description=automaton.description,
         transport=transport,
         emulated=running.emulated,

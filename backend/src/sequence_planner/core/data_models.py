@@ -7,6 +7,8 @@ from typing import Any, Final
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from sequence_planner.texts.message import Message, message
+
 
 class DataModel(BaseModel):
     """Base of data models: immutable, and nothing beside what is declared. The validator of one is built when it is
@@ -19,59 +21,66 @@ class DataModel(BaseModel):
 
 # What was expected, by pydantic's name for the error or by the first word of it.
 _EXPECTED: Final = {
-    "bool": "true or false",
-    "bytes": "a text",
-    "date": "a date",
-    "datetime": "a date and a time",
-    "dict": "an object with named members",
-    "finite": "a finite number",
-    "float": "a number",
-    "frozen": "a list",
-    "int": "an integer",
-    "is": "a text",
-    "list": "a list",
-    "mapping": "an object with named members",
-    "model": "an object with named members",
+    "bool": "truth-value",
+    "bytes": "text",
+    "date": "date",
+    "datetime": "moment",
+    "dict": "object",
+    "finite": "finite",
+    "float": "number",
+    "frozen": "list",
+    "int": "integer",
+    "is": "text",
+    "list": "list",
+    "mapping": "object",
+    "model": "object",
     "none": "null",
-    "set": "a list",
-    "string": "a text",
-    "string_unicode": "a text that UTF-8 can write, without half of a surrogate pair",
-    "tuple": "a list",
-    "url": "an address",
-    "uuid": "a UUID",
+    "set": "list",
+    "string": "text",
+    "string_unicode": "unicode",
+    "tuple": "list",
+    "url": "address",
+    "uuid": "uuid",
 }
 
 
 def expectation(details: Mapping[str, Any], others: Mapping[str, str] | None = None) -> str:
-    """What was expected where pydantic found an error, as in `a text`; `others` say some of it in other words."""
+    """What was expected where pydantic found an error, as in `a text`; `others` call some of it otherwise."""
     limits, kind = details.get("ctx", {}), details["type"]
     match kind:
         case "literal_error" | "enum":
-            return str(limits["expected"]).replace("'", "`")
+            return _one_of(str(limits["expected"]).replace("'", "`"))
         case "union_tag_invalid":
             return f"{limits['discriminator']} to be one of {limits['expected_tags']}".replace("'", "`")
         case "greater_than":
-            return f"a number greater than {limits['gt']:g}"
+            return message("expected.greater", than=f"{limits['gt']:g}")
         case "greater_than_equal":
-            return f"a number of at least {limits['ge']:g}"
+            return message("expected.at-least", least=f"{limits['ge']:g}")
         case "less_than":
-            return f"a number less than {limits['lt']:g}"
+            return message("expected.less", than=f"{limits['lt']:g}")
         case "less_than_equal":
-            return f"a number of at most {limits['le']:g}"
+            return message("expected.at-most", most=f"{limits['le']:g}")
         case "string_too_short":
-            return f"a text of at least {_counted(limits['min_length'], 'character', 'characters')}"
+            return message("expected.longer", count=limits["min_length"])
         case "string_too_long":
-            return f"a text of at most {_counted(limits['max_length'], 'character', 'characters')}"
+            return message("expected.shorter", count=limits["max_length"])
         case "string_pattern_mismatch":
-            return f"a text like `{limits['pattern']}`"
+            return message("expected.like", pattern=limits["pattern"])
         case "too_short":
             least = limits["min_length"]
-            return "at least one entry" if least == 1 else f"at least {least} entries"
+            return message("expected.an-entry") if least == 1 else message("expected.entries", least=least)
         case "too_long":
-            return f"at most {_counted(limits['max_length'], 'entry', 'entries')}"
+            return message("expected.most-entries", count=limits["max_length"])
     first = kind.partition("_")[0]
     found = (words.get(key) for key in (kind, first) for words in (others or {}, _EXPECTED))
-    return next((words for words in found if words is not None), details["msg"])
+    called = next((each for each in found if each is not None), None)
+    return details["msg"] if called is None else message(f"expected.{called}")
+
+
+def _one_of(written: str) -> str:
+    """Values as pydantic lists them: `a`, `b` or `c`."""
+    most, _, last = written.rpartition(" or ")
+    return message("list.or", most=most, last=last) if most else written
 
 
 def complained(details: Mapping[str, Any]) -> str:
@@ -80,7 +89,8 @@ def complained(details: Mapping[str, Any]) -> str:
     """
     match details["type"]:
         case "value_error" | "assertion_error":
-            return str(details["msg"]).partition(", ")[2]
+            said = next(iter(getattr(details.get("ctx", {}).get("error"), "args", ())), None)
+            return said if isinstance(said, Message) else str(details["msg"]).partition(", ")[2]
         case "extra_forbidden":
             return "this is not known here"
         case "missing":
@@ -94,7 +104,3 @@ def in_a_line(error: ValidationError) -> str:
     """The first few of the errors, each with its place."""
     found = error.errors(include_url=False, include_input=False)[:5]
     return "; ".join(f"{'.'.join(map(str, each['loc'])) or 'it'}: {complained(each)}" for each in found)
-
-
-def _counted(number: int, one: str, several: str) -> str:
-    return f"{number} {one if number == 1 else several}"

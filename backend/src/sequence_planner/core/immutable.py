@@ -74,6 +74,9 @@ class Immutable:
     def __repr__(self) -> str:
         return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in self._compared)})"
 
+    def __deepcopy__(self: ImmutableType, memo: object) -> ImmutableType:
+        return self  # nobody can tell a copy from it
+
     def __getstate__(self) -> dict[str, Any]:
         # What is found of a value is kept with it, and may be found just as another thread makes a pickle of it.
         return vars(self).copy()

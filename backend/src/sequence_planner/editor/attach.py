@@ -15,6 +15,7 @@ from typing import Literal
 
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.record import (
     FieldType as RecordFieldType,
 )
@@ -25,11 +26,10 @@ from sequence_planner.language.records.record import (
     RecordType,
     TextType,
 )
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, IntegerRange
 from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.paths import EditError
-from sequence_planner.model.yaml.editor import Layout, in_brackets, insert, replace, same
+from sequence_planner.model.yaml.editor import comment, in_brackets, insert, replace
 from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.model.yaml.saving import digest, edit_file
 from sequence_planner.pipelines.inference import MOST_VALUES
@@ -369,16 +369,11 @@ def _with_entries(text: str, section: str, entries: Mapping[str, object]) -> str
 
 def with_proposals(text: str, topic: FoundTopic, proposals: Sequence[StageProposal]) -> str:
     """The text with comments above the topic that propose stages: where they belong to it, and leave with it."""
-    layout = Layout.of(text)
-    if layout is None or not proposals:
+    if not proposals:
         return text
-    at = layout.line_start(layout.entry(layout.find(("topics", topic.name))).start)
-    line = text[at : layout.line_end(at)]
-    margin = line[: len(line) - len(line.lstrip(" "))]
-    lines = [f"{margin}# {_INTRODUCTION[topic.direction]}", *(f"{margin}#   - {_stage(each)}" for each in proposals)]
-    commented = text[:at] + "".join(f"{line}\n" for line in lines) + text[at:]
-    unchanged = same(read_text(text, "the document").content, read_text(commented, "the document").content)
-    return commented if unchanged else text
+    return comment(
+        text, ("topics", topic.name), [_INTRODUCTION[topic.direction], *(f"  - {_stage(each)}" for each in proposals)]
+    )
 
 
 def _stage(proposal: StageProposal) -> str:

@@ -1,13 +1,13 @@
-"""Check of a draft: errors, warnings, supervisor guards and example runs, and comparison of models."""
+"""Check of a draft: errors, warnings, supervisor guards and example runs; transfer to it, and simulation of it."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Collection, Iterator, Mapping
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.checks.rules import check_automaton
-from sequence_planner.analysis.finding import analyses
 from sequence_planner.analysis.kept import documents
 from sequence_planner.analysis.report import (
     FindingDocument,
@@ -19,16 +19,18 @@ from sequence_planner.automaton.automaton import Ability, Automaton
 from sequence_planner.controller.views.automaton_diagram import Drawing
 from sequence_planner.controller.views.details import AutomatonView
 from sequence_planner.controller.views.part import View
-from sequence_planner.editor.diff import (
-    Meant,
-    behaviour_differences,
-    differences,
-    plan_differences,
-    text_differences,
+from sequence_planner.editor.schemas.check import (
+    CheckedView,
+    CheckState,
+    CheckView,
+    SummaryView,
+    doing,
+    listed,
+    waiting,
 )
-from sequence_planner.editor.schemas.check import CheckState, CheckView, SummaryView, listed, waiting
-from sequence_planner.editor.schemas.diff import ComparisonView, TransferView
+from sequence_planner.editor.schemas.diff import TransferView
 from sequence_planner.editor.schemas.what_if import WhatIfView, transfer, transferred, untransferred
+from sequence_planner.editor.usable import UnusableModelError, prepared, station_in
 from sequence_planner.editor.what_if import what_if
 from sequence_planner.language.types import Value
 from sequence_planner.model.files import Files, write_files
@@ -36,7 +38,8 @@ from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.source import ModelError
 from sequence_planner.process.gc_tuning import collection_put_off
 from sequence_planner.simulation.start_findings import start_findings
-from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.station import prepare_station
+from sequence_planner.texts.message import message
 
 # What is found in a draft: that it cannot be used, or what is suspicious in it and what its supervisor adds.
 #
@@ -50,19 +53,35 @@ def checked(number: int, files: Files, stages: Path | None, start: StartNeeds, f
     """
     write_files(files, folder, stages)
     with contextlib.chdir(folder):  # so that places bear the names that files have in the model
-        begun = waiting(number).model_copy(update={"state": CheckState.CHECKING, "doing": "reading it"})
-        yield from _found(begun, start)
+        begun = waiting(number).model_copy(update={"state": CheckState.CHECKING, **doing(message("pending.reading"))})
+        yield from _timed(_found(begun, start))
+
+
+def _timed(views: Iterable[CheckView]) -> Iterator[CheckView]:
+    """Yield them with what was looked for, and how long that took."""
+    looked: list[CheckedView] = []
+    last: CheckView | None = None
+    began = time.monotonic()
+    for view in views:
+        if last is not None and view.doing != last.doing:
+            now = time.monotonic()
+            seconds, began = now - began, now
+            looked.append(CheckedView(what=last.doing, what_message=last.doing_message, seconds=seconds))
+        last = view
+        yield view.model_copy(update={"looked": list(looked)})
 
 
 def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
     yield view
     try:
         station = prepare_station(Path())
+        view = view.model_copy(update=doing(message("pending.examples")))
+        yield view
         if wrong := station.failures() or start_findings(station, start):
             raise ModelError(wrong)
     except ModelError as error:
         errors = [error_document(finding) for finding in error.findings]
-        yield view.model_copy(update={"state": CheckState.DONE, "doing": "", "findings": listed(errors)})
+        yield view.model_copy(update={"state": CheckState.DONE, **doing(None), "findings": listed(errors)})
         return
     automaton = station.automaton
     summary = SummaryView(
@@ -71,8 +90,9 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
         abilities=len(automaton.abilities),
         operations=len(automaton.operations),
         specifications=len(automaton.specifications),
+        examples=len(station.examples),
     )
-    view = view.model_copy(update={"summary": summary, "doing": "what is suspicious"})
+    view = view.model_copy(update={"summary": summary, **doing(message("pending.suspicious"))})
     yield view
     with collection_put_off():
         warnings = findings_of(automaton, check_automaton(automaton, station.connections), station.suspicions())
@@ -81,7 +101,7 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
         found = sorted([*warnings, *(document.findings or ())], key=_place)
         more = {
             "findings": listed(found),
-            "doing": document.pending or "",
+            **doing(document.pending_message),
             "state": CheckState.DONE if document.pending is None else CheckState.CHECKING,
             "analysis": document.model_copy(update={"findings": None}),
         }
@@ -115,32 +135,10 @@ def _values(trace: TraceDocument) -> Iterator[Mapping[str, Value | None]]:
 # What is found of whole models beside a check: each takes a while, and is done in a process of its own.
 
 
-class UnusableModelError(Exception):
-    """A model that cannot be used, and why."""
-
-
 def told(name: str, *arguments: object) -> Iterator[str]:
     """Yield what the task `name` finds, as JSON."""
     for each in _TOLD[name](*arguments):
         yield each.model_dump_json()
-
-
-def compared(old: Files, new: Files, stages: Path | None, folder: Path) -> Iterator[ComparisonView]:
-    """Tell how two models differ; `folder` is empty."""
-    text = text_differences(old, new)
-    try:
-        before = _meant("the older one", old, stages, folder / "old")
-        after = _meant("the newer one", new, stages, folder / "new")
-    except UnusableModelError as error:
-        yield ComparisonView(text=text, parts=None, behaviour=None, plans=None, obstacle=str(error))
-        return
-    yield ComparisonView(
-        text=text,
-        parts=differences(before, after),
-        behaviour=list(behaviour_differences(before, after)),
-        plans=list(plan_differences(before, after)),
-        obstacle=None,
-    )
 
 
 def fitted(
@@ -156,12 +154,12 @@ def fitted(
     `reset`; `folder` is empty.
     """
     try:
-        after = _meant("the model", new, stages, folder / "new")
+        after = prepared("whole", new, stages, folder / "new")
     except UnusableModelError as error:
-        yield untransferred(str(error))
+        yield untransferred(error.why)
         return
     try:
-        before = _station(old, stages, folder / "old").automaton
+        before = station_in(old, stages, folder / "old").automaton
     except ModelError:
         before = None
     yield transfer(before, after.automaton, after.supervisor, present, running, reset=reset)
@@ -177,7 +175,7 @@ def simulated(
 ) -> Iterator[WhatIfView]:
     """Tell how a station would go on with a model from a state; `folder` is empty."""
     try:
-        meant = _meant("the model", files, stages, folder / "new")
+        meant = prepared("whole", files, stages, folder / "new")
     except UnusableModelError as error:
         yield WhatIfView(
             seconds=0.0,
@@ -188,7 +186,9 @@ def simulated(
             after={},
             active=[],
             unplanned="",
-            obstacle=str(error),
+            unplanned_message=None,
+            obstacle=error.why,
+            obstacle_message=error.why,
         )
         return
     yield what_if(meant.station, meant.supervisor, present, seconds, deadline)
@@ -199,38 +199,13 @@ def drawn(
 ) -> Iterator[list[AutomatonView] | str]:
     """Tell how an ability goes through a run, or why nobody can say; `folder` is empty."""
     try:
-        automaton = _station(files, stages, folder / "new").automaton
+        automaton = station_in(files, stages, folder / "new").automaton
     except ModelError as error:
-        yield f"the model cannot be used: {error.findings[0]}"
+        first = error.findings[0]
+        yield message("edit.unusable", place=str(first.place), what=first.message)
         return
     found = automaton.abilities.get(ability)
-    yield f"the model has no ability `{ability}`" if found is None else played(automaton, found, trace)
+    yield message("edit.no-ability", name=ability) if found is None else played(automaton, found, trace)
 
 
-_TOLD: Mapping[str, Callable[..., Iterator[View]]] = {
-    "compared": compared,
-    "fitted": fitted,
-    "simulated": simulated,
-}
-
-
-def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
-    """Return what a model means. Raises `UnusableModelError`."""
-    try:
-        station = _station(files, stages, folder)
-    except ModelError as error:
-        raise UnusableModelError(f"{what} cannot be used: {error.findings[0]}") from error
-    found = None
-    for found in analyses(station.automaton):
-        if found.supervisor is not None and found.guards is not None:
-            return Meant(station, found.supervisor, found.guards)
-    why = "; ".join(warning.message for warning in (found.warnings if found else None) or ())
-    raise UnusableModelError(f"{what} has no supervisor: {why}")
-
-
-def _station(files: Files, stages: Path | None, folder: Path) -> ReadyStation:
-    """Raises `ModelError`."""
-    folder.mkdir()
-    write_files(files, folder, stages)
-    with contextlib.chdir(folder):
-        return prepare_station(Path())
+_TOLD: Mapping[str, Callable[..., Iterator[View]]] = {"fitted": fitted, "simulated": simulated}

@@ -37,8 +37,10 @@ from sequence_planner.editor.merging import MergeConflictError, merged
 from sequence_planner.model.files import Files, check_path, check_size, check_text
 from sequence_planner.model.paths import EditError, shown_path
 from sequence_planner.model.yaml import editor
+from sequence_planner.model.yaml.content import same
 from sequence_planner.model.yaml.order import declared_order
 from sequence_planner.model.yaml.reader import EntryPath
+from sequence_planner.texts.message import message
 
 # What an engineer does to a draft, and what becomes of its files.
 #
@@ -55,14 +57,14 @@ Text = Annotated[str, Field(max_length=1_000_000)]
 class PartChangedError(EditError):
     """A mismatch of what is to be edited and what the edit was made from; `path` is empty for a file as a whole."""
 
-    def __init__(self, file: str, path: EntryPath, message: str) -> None:
-        super().__init__(message)
+    def __init__(self, file: str, path: EntryPath, why: str) -> None:
+        super().__init__(why)
         self.file = file
         self.path = path
 
     def __reduce__(self) -> tuple[type[PartChangedError], tuple[str, EntryPath, str]]:
         """Say how it comes from the process in which the edit was made."""
-        return PartChangedError, (self.file, self.path, str(self))
+        return PartChangedError, (self.file, self.path, self.why)
 
 
 class EditBase(DataModel):
@@ -151,14 +153,15 @@ def _written(files: Files, edit: WriteText) -> str | None:
     try:
         return merged(edit.was, edit.text, now)
     except MergeConflictError as error:
-        raise PartChangedError(edit.file, (), f"{edit.file} was changed meanwhile {error}") from None
+        why = message("edit.file-changed", file=edit.file, how=error.how)
+        raise PartChangedError(edit.file, (), why) from None
 
 
 def _edited(files: Files, edit: SetEntry | AddEntry | RemoveEntry | MoveEntry) -> str:
     text, path = files.get(edit.file), tuple(edit.path)
     if text is None:
         if not isinstance(edit, AddEntry):
-            raise PartChangedError(edit.file, path, f"{edit.file} is not there any more")
+            raise PartChangedError(edit.file, path, message("edit.file-gone", file=edit.file))
         text = ""
     if not isinstance(edit, AddEntry):
         _require_unchanged(text, edit, path)
@@ -219,9 +222,10 @@ def _require_unchanged(text: str, edit: SetEntry | RemoveEntry | MoveEntry, path
     try:
         now = editor.value_at(text, path)
     except EditError:
-        raise PartChangedError(edit.file, path, f"`{shown_path(path)}` is not there any more in {edit.file}") from None
-    if not editor.same(now, edit.was):
-        raise PartChangedError(edit.file, path, f"`{shown_path(path)}` of {edit.file} was changed meanwhile")
+        why = message("edit.part-gone", part=shown_path(path), file=edit.file)
+        raise PartChangedError(edit.file, path, why) from None
+    if not same(now, edit.was):
+        raise PartChangedError(edit.file, path, message("edit.part-changed", part=shown_path(path), file=edit.file))
 
 
 # The tables of the draft: the one of the station, and who changed what in it. Times are seconds since the epoch.
@@ -393,6 +397,11 @@ def differences_of(connection: Connection, change: DraftChange) -> Differences:
     written = connection.execute(select(DRAFT_CHANGES.c.files).where(DRAFT_CHANGES.c.number == change.number))
     found: dict[str, list[str | None]] = json.loads(written.scalar_one())
     return {path: (before, after) for path, (before, after) in found.items()}
+
+
+def accounts(connection: Connection, limit: int) -> list[tuple[DraftChange, Differences]]:
+    """The last changes, each with what it did, newest first."""
+    return [(change, differences_of(connection, change)) for change in changes(connection, limit)]
 
 
 def changes(connection: Connection, limit: int) -> list[DraftChange]:

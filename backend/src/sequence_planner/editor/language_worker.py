@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.report import FindingDocument, error_document
-from sequence_planner.editor.draft import digest
 from sequence_planner.editor.language.draft import LanguageDraft
 from sequence_planner.editor.language.schemas import CompletionView
 from sequence_planner.editor.language.service import completion_view, hover_view, problem_view
@@ -23,12 +22,11 @@ from sequence_planner.editor.processes import (
     encoded,
 )
 from sequence_planner.editor.schemas.check import listed
-from sequence_planner.editor.schemas.draft import DraftPictureView, UsagesView, UsageView
+from sequence_planner.editor.schemas.draft import UsagesView, UsageView
+from sequence_planner.editor.schemas.operations import operations_view
+from sequence_planner.editor.schemas.picture import pictured
 from sequence_planner.editor.symbols.index import parse_part
 from sequence_planner.editor.symbols.rename import Usage, dependants, renamed, usages
-from sequence_planner.mimic.picture import picture_of
-from sequence_planner.mimic.picture_file import picture_file
-from sequence_planner.model.source import ModelError
 
 # Files that are others since the last question, none for those that are gone; what is asked, and about what.
 LanguageQuestion = tuple[Mapping[str, str | None], str, tuple[object, ...]]
@@ -88,23 +86,11 @@ def tied(draft: LanguageDraft, number: int) -> str:
     return graph_view(number, found, *station_of(draft.files)).model_dump_json()
 
 
-def pictured(draft: LanguageDraft, number: int) -> DraftPictureView:
-    """Return the picture of the draft after change `number`."""
-    text = draft.files.get("mimic.yaml")
-    mark = None if text is None else digest(text)
-    try:
-        meant = draft.meant()
-    except ModelError:
-        return DraftPictureView(number=number, usable=False, digest=mark, picture=None, titles={}, file=None)
-    picture = picture_of(meant.automaton, meant.station)
-    return DraftPictureView(
-        number=number,
-        usable=True,
-        digest=mark,
-        picture=picture,
-        titles=dict(meant.automaton.resources),
-        file=picture_file(picture) if text is None else None,
-    )
+def sequenced(draft: LanguageDraft, number: int) -> str:
+    """Return the operations of the draft after change `number` and their order, as JSON of a `DraftOperationsView`."""
+    usable = not draft.errors()
+    automaton = None if draft.meant_last is None else draft.meant_last.automaton
+    return operations_view(number, automaton, usable=usable).model_dump_json()
 
 
 def _usage_view(usage: Usage) -> UsageView:
@@ -125,6 +111,7 @@ def _usage_view(usage: Usage) -> UsageView:
 _ANSWERS: Mapping[str, Callable[..., object]] = {
     "answer": answer,
     "errors": errors,
+    "sequenced": sequenced,
     "pictured": pictured,
     "renamed_files": renamed_files,
     "tied": tied,

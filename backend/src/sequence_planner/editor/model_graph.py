@@ -30,7 +30,7 @@ from sequence_planner.editor.symbols.texts import (
     title_at,
 )
 from sequence_planner.editor.symbols.types import type_part
-from sequence_planner.model.paths import resource_of, shown_path, type_of
+from sequence_planner.model.paths import has_scenarios, resource_of, shown_path, type_of
 from sequence_planner.model.source import Finding
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.graph import GOAL_STATE
@@ -63,7 +63,15 @@ _OF_STATION = {
     "estimated": "variable",
     "alarms": "alarm",
 }
-_OF_RESOURCE = {"abilities": "ability", "flows": "flow", "alarms": "alarm", "predicates": "predicate"}
+_OF_RESOURCE = {
+    "abilities": "ability",
+    "flows": "flow",
+    "alarms": "alarm",
+    "sets": "set",
+    "relations": "relation",
+    "maps": "map",
+    "predicates": "predicate",
+}
 _OF_SECTION = {"topics": "topic", "services": "service", "actions": "action"}
 
 
@@ -161,7 +169,8 @@ def _ties(declared: Declared, gathered: Gathered) -> tuple[ModelEdge, ...]:
     for each in gathered.occurrences:
         if each.declares or each.text is None or each.part.kind == "word":
             continue
-        if each.where.file == MIMIC:  # a picture shows the station, and is no part of what it does
+        # A picture shows the station, and scenarios test it: they are no part of what it does.
+        if each.where.file == MIMIC or has_scenarios(each.where.file):
             continue
         place, where = each.text.at(each.span), each.where
         by = user(where)
@@ -243,14 +252,16 @@ class _Things:
                 return parse_part(owner)
             case "parameter":
                 holders = {"ability": self._declared.abilities, "predicate": self._declared.predicates}
-                return parse_part(f"{next((kind for kind in holders if owner in holders[kind]), 'variable')}:{owner}")
+                kind = next((kind for kind in holders if owner in holders[kind]), "variable")
+                is_effect = parse_part(f"effect:{owner}") in self._homes
+                return parse_part(f"{'effect' if is_effect else kind}:{owner}")
             case "variable" if self._is_passing(part):
                 return self._first[part].by
         return None
 
     def _resource(self, part: ModelPart, where: Where | None, place: Usage | None) -> str | None:
         """The resource to which it belongs: for what is of ROS 2, that in whose file it stands."""
-        if part.kind in ("variable", "ability", "flow", "alarm", "predicate"):
+        if part.kind == "variable" or part.kind in _OF_RESOURCE.values():
             return part.owner
         if part.kind == "resource":
             return part.name

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import hashlib
 import json
 import tempfile
+import time
+from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from enum import StrEnum
@@ -17,7 +21,8 @@ from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.controller.views.part import View
 from sequence_planner.editor.draft import FilePath, Steps
 from sequence_planner.editor.language.schemas import CompletionView, HoverView, ProblemView
-from sequence_planner.editor.schemas.check import CheckState, CheckView, waiting
+from sequence_planner.editor.schemas.check import CheckState, CheckView, doing, waiting
+from sequence_planner.editor.schemas.diff import comparison_begun
 from sequence_planner.model.files import Files
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
@@ -25,6 +30,7 @@ from sequence_planner.model.validation import members
 from sequence_planner.process.memory_limit import memory_limit
 from sequence_planner.process.task import NO_ANSWER, BackgroundTask, WorkerError
 from sequence_planner.process.worker import FOLDER, Worker, WorkerLateError
+from sequence_planner.texts.message import message
 
 # Bodies of requests that may be large: each is read by the process that does what it asks for.
 #
@@ -76,13 +82,17 @@ _NICENESS = 15  # ticks come first, then whoever waits for an answer
 @asynccontextmanager
 async def working(name: str, *arguments: object) -> AsyncIterator[AsyncIterator[object]]:
     """Give what `name` of the checks finds, until the block is left; its last argument is the path of an empty folder.
+    What another module of the editor finds is named as in `module:name`.
 
     Iterating raises `WorkerError`.
     """
     with tempfile.TemporaryDirectory(prefix="sequence-planner-workshop-") as folder:
         # Named and not handed over: the server does without what that imports.
-        work = f"sequence_planner.editor.checks:{name}"
-        task: BackgroundTask[object] = BackgroundTask(work, (*arguments, Path(folder)), name, _NICENESS, memory_limit())
+        module, _, function = name.rpartition(":")
+        work = f"sequence_planner.editor.{module or 'checks'}:{function}"
+        task: BackgroundTask[object] = BackgroundTask(
+            work, (*arguments, Path(folder)), function, _NICENESS, memory_limit()
+        )
         async with task.telling() as found:
             yield found
 
@@ -93,7 +103,7 @@ async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> o
         async with asyncio.timeout(patience), working(name, *arguments) as found:
             return await anext(found)
     except TimeoutError:
-        raise WorkerError(f"it took more than {patience:g} s and was given up") from None
+        raise WorkerError(message("work.given-up", seconds=f"{patience:g}")) from None
 
 
 # A process that is asked about the draft again and again, and knows its files from one question to the next.
@@ -129,7 +139,7 @@ def encoded(found: object) -> object:
 class DraftAnswering:
     """Asks by `module` of the editor about several versions of a model. Used from one event loop."""
 
-    def __init__(self, module: str, versions: int) -> None:
+    def __init__(self, module: str, versions: int, rests_after: float = RESTS_AFTER) -> None:
         self._process: Worker[object, object] = Worker(
             f"sequence_planner.editor.{module}:answering",  # named: the server does without what that imports
             FOLDER,
@@ -138,7 +148,7 @@ class DraftAnswering:
             errors=(EditError, BodyError),
             late=0.0,
             starting=None,
-            rests_after=RESTS_AFTER,
+            rests_after=rests_after,
             kept=False,
         )
         self._turn = asyncio.Lock()
@@ -158,7 +168,7 @@ class DraftAnswering:
             try:
                 return await self._process.ask(asked, patience)
             except WorkerLateError:
-                raise WorkerError(f"there was no answer within {patience:g} s") from None
+                raise WorkerError(message("work.late", seconds=f"{patience:g}")) from None
             except WorkerError:
                 raise WorkerError(NO_ANSWER) from None
 
@@ -170,8 +180,8 @@ class DraftAnswering:
 class DraftProcess:
     """Keeps what it has read of the draft, and answers at once what `module` can be asked about it."""
 
-    def __init__(self, module: str = "language_worker") -> None:
-        self._process = DraftAnswering(module, 1)
+    def __init__(self, module: str = "language_worker", *, rests_after: float = RESTS_AFTER) -> None:
+        self._process = DraftAnswering(module, 1, rests_after)
 
     def close(self) -> None:
         """End the process."""
@@ -262,7 +272,7 @@ class CheckDesk:
                 continue
             if errors:
                 self._tell(
-                    waiting(number).model_copy(update={"state": CheckState.DONE, "doing": "", "findings": errors})
+                    waiting(number).model_copy(update={"state": CheckState.DONE, **doing(None), "findings": errors})
                 )
             else:
                 self._checking = asyncio.create_task(self._checked(number, files, self._checking))
@@ -282,10 +292,134 @@ class CheckDesk:
                     if view.state is CheckState.DONE:
                         break
         except TimeoutError:
-            doing = f"it took more than {self._deadline:g} s and was given up"
-            self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": doing}))
+            late = message("work.given-up", seconds=f"{self._deadline:g}")
+            self._tell(view.model_copy(update={"state": CheckState.FAILED, **doing(late)}))
         except WorkerError as ended:
-            self._tell(view.model_copy(update={"state": CheckState.FAILED, "doing": str(ended)}))
+            self._tell(view.model_copy(update={"state": CheckState.FAILED, **doing(ended.why)}))
+
+
+# Comparisons of versions of the model, each for all who ask about the same two.
+#
+# One goes on as long as somebody asks for it, and what came of the last ones is known.
+
+LEFT_AFTER = 3.0  # seconds without a question, after which nobody waits for a comparison any more
+MOST_KNOWN = 6  # comparisons that have ended
+
+Pair = tuple[bytes, bytes, bool]  # which models, and whether only what is written in them
+
+
+class Comparing:
+    """One comparison under way, or what came of it."""
+
+    def __init__(self) -> None:
+        self.told: str | None = None  # JSON of a `ComparisonView`
+        self.whole = False
+        self.ended = asyncio.Event()
+        self.trouble: WorkerError | None = None
+        self.asking = 0
+        self.left = time.monotonic()
+        self.task: asyncio.Task[None] | None = None
+
+    @property
+    def abandoned(self) -> bool:
+        """True once nobody has asked for it for a while."""
+        return not self.asking and time.monotonic() - self.left > LEFT_AFTER
+
+
+class ComparisonDesk:
+    """Compares models with the Python stages of the model `stages`, from one event loop."""
+
+    def __init__(self, stages: Path | None) -> None:
+        self._stages = stages
+        self._known: OrderedDict[Pair, Comparing] = OrderedDict()
+        self._prepared: bytes | None = None
+        self._preparing: asyncio.Task[None] | None = None
+
+    def warm_up(self, running: Files) -> None:
+        """Find out about the model that runs what others are compared with: it is known then, whoever compares it."""
+        if (digest := _digest(running)) != self._prepared:
+            self._prepared = digest
+            if self._preparing is not None:
+                self._preparing.cancel()
+            self._preparing = asyncio.create_task(self._prepare(dict(running)))
+
+    async def _prepare(self, running: Files) -> None:
+        with contextlib.suppress(WorkerError):  # who compares it finds out why
+            await worked("comparing.comparison:made_known", running, self._stages)
+
+    async def compare(self, old: Files, new: Files, patience: float, *, written_only: bool = False) -> str:
+        """Return what is known within so many seconds of how two models differ, or only of how that is written, as JSON
+        of a `ComparisonView`.
+
+        Raises `WorkerError`.
+        """
+        pair = _digest(old), _digest(new), written_only
+        comparing = self._known.get(pair)
+        if comparing is None:
+            comparing = self._known[pair] = Comparing()
+            comparing.task = asyncio.create_task(self._work(pair, comparing, old, new))
+        self._known.move_to_end(pair)
+        comparing.asking += 1
+        try:
+            async with asyncio.timeout(patience):
+                await comparing.ended.wait()
+        except TimeoutError:
+            pass  # what is known by now
+        finally:
+            comparing.asking -= 1
+            comparing.left = time.monotonic()
+        if comparing.trouble is not None:
+            raise comparing.trouble
+        return comparing.told or comparison_begun({}).model_dump_json()
+
+    async def close(self) -> None:
+        """End what is being compared."""
+        tasks = [task for task in (self._preparing, *(each.task for each in self._known.values())) if task is not None]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _work(self, pair: Pair, comparing: Comparing, old: Files, new: Files) -> None:
+        """Compare two models, until that is done or nobody asks for it any more."""
+        telling = asyncio.create_task(self._tell(comparing, dict(old), dict(new), written_only=pair[2]))
+        try:
+            while not telling.done() and not comparing.abandoned:
+                await asyncio.wait((telling,), timeout=LEFT_AFTER)
+            if telling.done():
+                await telling
+        except WorkerError as error:
+            comparing.trouble = error
+        finally:
+            telling.cancel()
+            await asyncio.gather(telling, return_exceptions=True)
+            comparing.ended.set()
+            if not comparing.whole:
+                self._known.pop(pair, None)  # whoever asks again wants it tried again
+            self._forget()
+
+    async def _tell(self, comparing: Comparing, old: Files, new: Files, *, written_only: bool) -> None:
+        asked = old, new, written_only, self._stages
+        try:
+            async with asyncio.timeout(PATIENCE), working("comparing.comparison:comparison", *asked) as found:
+                async for told in found:
+                    assert isinstance(told, tuple)
+                    comparing.told, comparing.whole = told
+        except TimeoutError:
+            raise WorkerError(message("work.given-up", seconds=f"{PATIENCE:g}")) from None
+
+    def _forget(self) -> None:
+        """Keep no more of what has ended than the last ones."""
+        ended = [pair for pair, each in self._known.items() if each.ended.is_set()]
+        for pair in ended[:-MOST_KNOWN]:
+            del self._known[pair]
+
+
+def _digest(files: Files) -> bytes:
+    total = hashlib.sha256()
+    for path, text in sorted(files.items()):
+        for each in (path.encode(), text.encode()):
+            total.update(len(each).to_bytes(8) + each)
+    return total.digest()
 
 
 # What is asked about texts of the draft while they are written, and what is answered.

@@ -22,6 +22,7 @@ from sequence_planner.core.actor import SYSTEM, Actor
 from sequence_planner.editor.revision import Revision
 from sequence_planner.model.files import Files, content_of, text_of
 from sequence_planner.model.paths import EditError
+from sequence_planner.texts.message import message
 
 BRANCH = Ref(b"refs/heads/main")
 LONGEST_NAME = 100  # characters
@@ -36,22 +37,22 @@ class Revisions:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
-    def save(self, files: Files, base: Files, name: str, message: str, by: Actor, now: float) -> Revision:
+    def save(self, files: Files, base: Files, name: str, text: str, by: Actor, now: float) -> Revision:
         """Save `files` under a name; the first one follows `base`, the files that it was made from. Raises `EditError`
         for a name that is empty, too long or taken, and where nothing differs from the last revision.
         """
         name = " ".join(name.split())
         if not 0 < len(name) <= LONGEST_NAME:
-            raise EditError(f"a revision needs a name of up to {LONGEST_NAME} characters")
+            raise EditError(message("edit.revision-name", most=LONGEST_NAME))
         known = list(self.all())
         if any(each.name == name for each in known):
-            raise EditError(f"there is a revision “{name}” already: choose another name")
+            raise EditError(message("edit.revision-taken", name=name))
         if known and known[0].tree == tree_of(files):
-            raise EditError(f"nothing differs from the revision “{known[0].name}”")
+            raise EditError(message("edit.revision-same", name=known[0].name))
         with self._repository() as repository:
             if not known and base and base != files:
                 _commit(repository, base, BEFORE, "", SYSTEM, now)
-            return _revision(_commit(repository, files, name, message.strip(), by, now))
+            return _revision(_commit(repository, files, name, text.strip(), by, now))
 
     def all(self) -> Iterator[Revision]:
         """All of them, newest first."""
@@ -66,7 +67,7 @@ class Revisions:
         """One of them. Raises `EditError` where there is none."""
         found = next((each for each in self.all() if each.id == id), None) if _ID.fullmatch(id) else None
         if found is None:
-            raise EditError(f"there is no revision {id}")
+            raise EditError(message("edit.no-revision", revision=id))
         return found
 
     def files(self, id: str) -> dict[str, str]:

@@ -11,12 +11,13 @@ from collections.abc import Mapping
 
 from sequence_planner.automaton.automaton import State
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.controller.views.wording import reason_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.editor.schemas.what_if import Completed, Run, WhatIfView, transferred
 from sequence_planner.execution.events import Heard
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import PlanStatus
-from sequence_planner.history.simulation import SimulatedStation
+from sequence_planner.history.simulated_station import SimulatedStation
 from sequence_planner.language.types import Value
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation
@@ -87,6 +88,7 @@ def what_if(
         done += step
     diary.end()
     after = execution.state
+    unplanned = simulated.unplanned or (execution.plan.reason if execution.plan.status is PlanStatus.NONE else "")
     return WhatIfView(
         seconds=done,
         safe=supervisor.safe.includes(state),
@@ -95,6 +97,8 @@ def what_if(
         before={name: state[name] for name in automaton.variables},
         after={name: after[name] for name in automaton.variables},
         active=sorted(execution.active),
-        unplanned=simulated.unplanned or (execution.plan.reason if execution.plan.status is PlanStatus.NONE else ""),
+        unplanned=unplanned,
+        unplanned_message=reason_text(unplanned) if unplanned else None,
         obstacle=None,
+        obstacle_message=None,
     )

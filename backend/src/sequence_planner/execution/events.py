@@ -75,6 +75,15 @@ class CalledOff(Immutable):
     now: Timestamp
 
 
+class CycleStopChanged(Immutable):
+    """The station is to pause when the product that is in work is done, or is not to any more."""
+
+    on: bool
+    by: str
+    why: str
+    now: Timestamp
+
+
 class SteppingChanged(Immutable):
     """From now on every start waits for a step, or none does."""
 
@@ -201,6 +210,7 @@ Event = (
     | ProductionStarted
     | ModeChanged
     | CalledOff
+    | CycleStopChanged
     | SteppingChanged
     | StepTaken
     | ServiceChanged

@@ -19,6 +19,7 @@ from sequence_planner.execution.events import (
     CalledOff,
     Confirmed,
     Corrected,
+    CycleStopChanged,
     Event,
     Explained,
     Forced,
@@ -41,12 +42,13 @@ from sequence_planner.execution.events import (
 )
 from sequence_planner.execution.jobs import Job, JobAct, Waits
 from sequence_planner.execution.plan_tracker import ExecutionSnapshot, PlanTracker
-from sequence_planner.execution.products import kept_back, lacking, still_written
+from sequence_planner.execution.products import final_operations, kept_back, lacking, still_written
 from sequence_planner.execution.state import (
     NAME as OPERATOR_PLAN,
 )
 from sequence_planner.execution.state import (
     ActiveGoals,
+    CycleStop,
     ExecutionState,
     Force,
     InitialState,
@@ -56,7 +58,7 @@ from sequence_planner.execution.state import (
     writing,
 )
 from sequence_planner.execution.timeouts import Late, after_another_try, cancelled, overdue, to_call_off
-from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
+from sequence_planner.execution.vocabulary import JobState, Mode, Production, ServiceKind
 from sequence_planner.language.evaluator import holds
 from sequence_planner.language.types import Value
 from sequence_planner.planning.diagnosis import Diagnosis
@@ -197,6 +199,8 @@ class ExecutorBase:
         """Return what has to be otherwise before what the product of this job brings can be so, in words."""
         master = self.automaton.work_masters[job.work_master]
         found = list(still_written(self.automaton, master, self.running()))
+        if self.conduct.cycle_stop is not None:
+            found.append(message("waits.cycle-stop", by=self.conduct.cycle_stop.by))
         if brought := lacking(master, self.state):
             found = [*kept_back(self.conduct), *found]
             if not found and not self._is_safe_with(brought):
@@ -249,6 +253,7 @@ class ExecutorBase:
         ended = tuple(name for name in finishing.finished if self.plan.order.finish(name, now))
         called_off, given_up = self._check_running(ended, now)
         activated, completed = self._update_operations(now)
+        self._check_cycle_stop(completed)
         self._check_operator_plan(now)
         self._heed_supervisor()
         started = self._start(now)
@@ -341,6 +346,18 @@ class ExecutorBase:
         if self.operator_plan is None:
             self.plan.settle(active, self._operations.hopeful)
         return activated, completed
+
+    def _check_cycle_stop(self, completed: frozenset[str]) -> None:
+        """Notice that the product which was in work is done: no job is running, or its last operation is completed."""
+        stop = self.conduct.cycle_stop
+        if stop is None or stop.reached:
+            return
+        if self.conduct.jobs.by_order:
+            reached = all(job.state is not JobState.RUNNING for job in self.conduct.jobs.under_way)
+        else:
+            reached = not completed.isdisjoint(final_operations(self.automaton))
+        if reached:
+            self._change(cycle_stop=replace(stop, reached=True))
 
     def _advance_jobs(self, active: frozenset[str], now: Timestamp) -> frozenset[str]:
         """Let what was eligible for a job in step 4 begin, or be completed where its goal holds; return the latter."""
@@ -472,9 +489,8 @@ class ExecutorBase:
 
     def drop_caches(self) -> None:
         """Drop what was remembered only to be quick, so that who goes on from a copy of this goes on the same way."""
-        self._supervised.face(self.circumstances)
-        if self._free is not None:
-            self._free[0].face(self.circumstances)
+        for each in (self._supervised, self._curious, *(self._free or ())):
+            each.face(self.circumstances)
 
     def _write(self, values: Mapping[str, Value | None]) -> None:
         self._run.sense(values)
@@ -577,7 +593,11 @@ class Executor(ExecutorBase):
         if mode is Mode.HOLD:
             self._call_off(now)
         restarts = Mode.RESTART in (mode, self.mode)
-        self._change(mode=mode, steps=0)  # a step is for what can be seen now
+        # A step is for what can be seen now, and a wish to stop after the product for this mode; one that is reached
+        # says why it is paused.
+        stop = self.conduct.cycle_stop
+        stays = stop is not None and stop.reached and (self.mode, mode) == (Mode.AUTOMATIC, Mode.PAUSED)
+        self._change(mode=mode, steps=0, cycle_stop=stop if stays else None)
         if restarts:
             self.plan.drop(message("plan.in-restart" if mode is Mode.RESTART else "plan.restart-left"))
         self._emit(ModeChanged(mode, by, now), before)
@@ -589,6 +609,11 @@ class Executor(ExecutorBase):
         self._change(steps=0)
         self._call_off(now)
         self._emit(CalledOff(by, now), before)
+
+    def set_cycle_stop(self, on: bool, by: str, why: str, now: Timestamp) -> None:
+        """From now on nothing starts once the product that is in work is done, or things start as ever."""
+        self._change(cycle_stop=CycleStop(by, why, now) if on else None)
+        self._emit(CycleStopChanged(on, by, why, now), self.state)
 
     def set_stepping(self, on: bool) -> None:
         """From now on every start waits for a step, or none does."""

@@ -57,6 +57,7 @@ class Forecast:
 
     def update(self, now: float) -> None:
         """After a tick: remember how long has taken what ended, and look through a plan that is new."""
+        self.look_through(now)
         order = self._execution.plan.order
         if self._execution.mode is not Mode.AUTOMATIC or self._execution.operator_plan is not None:
             self._disturbed |= {step.number for step in order.past if step.number not in self._counted}
@@ -65,6 +66,10 @@ class Forecast:
             self._learn(ended[number])
         self._counted = frozenset(ended)
         self._disturbed &= {step.number for step in order.past}
+
+    def look_through(self, now: float) -> None:
+        """Look through the plan that is followed, where it is a new one: plans are taken between ticks, too."""
+        order = self._execution.plan.order
         if order.plan is not self._outlook.plan:
             self._outlook = simulate_plan(order, self._execution.simulated(), self._execution.automaton)
             self._began = now

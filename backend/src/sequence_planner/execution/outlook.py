@@ -43,6 +43,24 @@ class Outlook(Immutable):
         """The seconds from one tick to a later one."""
         return sum(self.waits.get(each, 0.0) for each in range(tick + 1, later + 1))
 
+    def steps_for(self, operation: str) -> frozenset[int]:
+        """The steps that serve an operation: all from its first to its last but those that others wait for alone."""
+        if operation not in self.serves:
+            return frozenset()
+        first, last = self.serves[operation]
+        others = {step for other in self.serves if other != operation for step in self._waited_for(other)}
+        return frozenset(range(first, last + 1)) - others | self._waited_for(operation)
+
+    def _waited_for(self, operation: str) -> frozenset[int]:
+        """The last step for an operation, and those by which it became possible, one by another."""
+        first, last = self.serves[operation]
+        found: list[int] = []
+        step: int | None = last
+        while step is not None and step >= first:
+            found.append(step)
+            step = self.after.get(step)
+        return frozenset(found)
+
 
 def simulate_plan(order: PlanCursor, run: CompiledRun, automaton: Automaton) -> Outlook:
     """Simulate what is left of the plan from where `run` stands; the run is changed by it."""

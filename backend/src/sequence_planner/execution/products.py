@@ -4,7 +4,7 @@ before.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Ability, Automaton, State, WorkMaster, target
 from sequence_planner.execution.state import ExecutionState
@@ -22,6 +22,19 @@ def lacking(master: WorkMaster, state: State) -> dict[str, Value]:
         if state[target(action)] != action.value.value:
             brought[target(action)] = action.value.value
     return brought
+
+
+def final_operations(automaton: Automaton) -> frozenset[str]:
+    """The operations with which products are done: the final one of each work master, where it has one."""
+    found = (final_operation(master.operations) for master in automaton.work_masters.values())
+    return frozenset(name for name in found if name is not None)
+
+
+def final_operation(before: Mapping[str, Collection[str]]) -> str | None:
+    """The operation that comes after all others, each of which has those `before` it; None where there is none."""
+    others = {each for names in before.values() for each in names}
+    ends = [name for name in before if name not in others]
+    return ends[0] if len(ends) == 1 else None
 
 
 def kept_back(conduct: ExecutionState) -> Iterator[str]:

@@ -116,6 +116,17 @@ class LastOperatorPlan(Immutable):
     ability: str | None = None
 
 
+class CycleStop(Immutable):
+    """A wish that the station pauses when the product that is in work is done. From when that is `reached` nothing
+    starts, and it lasts as long as the pause.
+    """
+
+    by: str
+    why: str
+    asked: Timestamp
+    reached: bool = False
+
+
 Service = Mapping[tuple[ServiceKind, str], OutOfService]
 
 NOTHING: Final[Mapping[Any, Any]] = MappingProxyType({})
@@ -168,6 +179,7 @@ class ExecutionState(Immutable):
     silent: frozenset[str] = frozenset()  # resources that are not heard
     jobs: Jobs = Jobs()
     answers: Mapping[str, Value] = NOTHING
+    cycle_stop: CycleStop | None = None
 
     @property
     def executes_operations(self) -> bool:
@@ -180,7 +192,7 @@ class ExecutionState(Immutable):
         if self.production is not Production.STARTED or (self.stepping and not self.steps):
             return False
         if self.operator_plan is None:
-            return self.mode is Mode.AUTOMATIC
+            return self.mode is Mode.AUTOMATIC and not (self.cycle_stop and self.cycle_stop.reached)
         return self.mode is Mode.RESTART or (self.mode is Mode.PAUSED and not self.operator_plan.restart)
 
     def idle_operations(

@@ -9,6 +9,7 @@ from sequence_planner.execution.record.codec import HistoryError
 from sequence_planner.history.timeline import Answer, Question
 from sequence_planner.process.task import WorkerError
 from sequence_planner.process.worker import Worker, WorkerLateError
+from sequence_planner.texts.message import message
 
 IDLE: Final = 300.0  # seconds without a question, after which the process is ended
 _NICENESS: Final = 10  # ticks come first, and plans
@@ -38,10 +39,10 @@ class HistoryProcess:
             return await self._process.ask(question, patience)
         except WorkerLateError:
             raise HistoryError(
-                "history-timeout", f"there was no answer within {patience:g} s: ask for less, or try again later"
+                "history-timeout", message("refused.history-timeout.late", seconds=f"{patience:g}")
             ) from None
         except WorkerError:
-            raise HistoryError("history-failed", "the process that looks back has ended: try again") from None
+            raise HistoryError("history-failed", message("refused.history-failed.ended")) from None
 
     def close(self) -> None:
         """End the process."""

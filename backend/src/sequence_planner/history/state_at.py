@@ -14,6 +14,7 @@ from sequence_planner.execution.record.codec import HistoryError
 from sequence_planner.execution.record.replay import Replayed, replay
 from sequence_planner.history.timeline import MomentView, PastPlanView, PastStepView, PastView, record_view
 from sequence_planner.journal.full_run import WholeRun
+from sequence_planner.texts.message import message
 
 # How the station was at any record of the journal.
 
@@ -25,18 +26,20 @@ def looking_back(run: WholeRun, automaton: Automaton, supervisor: Supervisor, nu
     """
     if run.get(number) is None:
         begin = run.last_trimmed.number
-        detail = f": records up to {begin} were cut off" if number <= begin else ""
-        raise HistoryError("no-record", f"the journal has no record {number}{detail}")
+        raise HistoryError(
+            "no-record",
+            message("refused.no-record.trimmed", number=number, begin=begin)
+            if number <= begin
+            else message("refused.no-record.number", number=number),
+        )
     last: Replayed | None = None
     for last in replay(run, automaton, supervisor, number, number):
         if last.difference is not None:
             raise HistoryError(
-                "history-differs", f"the run cannot be replayed up to record {number}: {last.difference}"
+                "history-differs", message("refused.history-differs.record", number=number, why=last.difference)
             )
     if last is None or last.record.number != number:
-        raise HistoryError(
-            "history-gone", f"nothing tells how the station was at record {number}: what was before it was cut off"
-        )
+        raise HistoryError("history-gone", message("refused.history-gone.record", number=number))
     return last
 
 

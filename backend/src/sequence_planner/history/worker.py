@@ -33,6 +33,7 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.process.budget import Budget
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervisor import SynthesisError
+from sequence_planner.texts.message import message
 
 LOG = structlog.get_logger(__name__)
 MOST_TOLD = 5000  # records of a branch
@@ -81,14 +82,19 @@ def work(asked: tuple[Path, str, Path | None]) -> Callable[[Question, Budget], A
         except HistoryError:
             raise
         except ArchiveError as error:
-            raise HistoryError("archive-unreadable", str(error)) from None
+            raise HistoryError(
+                "archive-unreadable", message("refused.archive-unreadable.why", why=str(error).rstrip("."))
+            ) from None
         except StorageError as error:
-            raise HistoryError("storage-unavailable", str(error)) from None
+            raise HistoryError(
+                "storage-unavailable", message("refused.archive-unreadable.why", why=str(error).rstrip("."))
+            ) from None
         except (ModelError, SynthesisError) as error:
-            why = f"the model as it is now cannot be replayed with: {error}"
-            raise HistoryError("model-changed", why) from None
+            raise HistoryError("model-changed", message("refused.model-changed.replay", why=str(error))) from None
         except Exception as error:
             LOG.exception("a look back failed")
-            raise HistoryError("history-failed", f"the replay failed: {type(error).__name__}: {error}") from None
+            raise HistoryError(
+                "history-failed", message("refused.history-failed.replay", why=f"{type(error).__name__}: {error}")
+            ) from None
 
     return answer

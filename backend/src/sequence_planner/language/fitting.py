@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from math import prod
+from typing import TYPE_CHECKING
 
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.language.evaluator import evaluate, holds
@@ -30,6 +31,10 @@ from sequence_planner.language.syntax import (
     variables,
 )
 from sequence_planner.language.types import EnumerationType, IntegerRange, Type, Value, contains
+from sequence_planner.texts.late import message
+
+if TYPE_CHECKING:
+    from sequence_planner.texts.message import Message
 
 # How many combinations of values are tried; beyond them, conditions are left out.
 MOST_COMBINATIONS = 20_000
@@ -49,11 +54,15 @@ class Misfit(Immutable):
     value: Value
 
     def __str__(self) -> str:
+        return str(self.in_words())
+
+    def in_words(self) -> Message:
+        """It, as people are told."""
         target = self.action.target
         state = " and ".join(f"{name} == {print_value(value)}" for name, value in self.valuation.items())
-        domain = target.type if isinstance(target, Variable) else "its domain"
-        where = f" where {state}" if state else ""
-        return f"`{print_assignment(self.action)}` may write {print_value(self.value)}{where}, which is not in {domain}"
+        domain = str(target.type) if isinstance(target, Variable) else "its domain"
+        said = {"action": print_assignment(self.action), "value": print_value(self.value), "domain": domain}
+        return message("wrong.may-write-where", **said, state=state) if state else message("wrong.may-write", **said)
 
 
 def misfit(action: Assignment, guard: Expression) -> Misfit | None:

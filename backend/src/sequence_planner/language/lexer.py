@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple
 
 from sequence_planner.language.syntax import ExpressionError, Span
+from sequence_planner.texts.late import message
 
 KEYWORDS = frozenset({"and", "or", "not", "implies", "in", "if", "true", "false"})
 
@@ -73,8 +74,10 @@ class Dialect:
     def meaningless(self, word: str) -> str:
         """Say what to write instead of a word that is none here."""
         if word == "'" and "'" not in self._habits:
-            return "a text ends with a single quote"
-        return f"`{word}` has no meaning here" + (f"; write {self._habits[word]}" if word in self._habits else "")
+            return message("wrong.open-text")
+        if word in self._habits:
+            return message("wrong.foreign", word=word, meant=self._habits[word])
+        return message("wrong.meaningless", word=word)
 
 
 # Conditions, actions and formulas. Solvers and tables compute with 32 bits; sums of integers of these digits fit.
@@ -100,7 +103,12 @@ class Token(NamedTuple):
         return Span(self.start, self.end)
 
     def __str__(self) -> str:
-        return "the end of the text" if self.kind == "end" else f"`{self.text}`"
+        return str(self.as_found)
+
+    @property
+    def as_found(self) -> str:
+        """The word, as people are told of it."""
+        return message("token.end-of-text") if self.kind == "end" else f"`{self.text}`"
 
 
 def tokens(text: str, dialect: Dialect = GUARDS) -> list[Token]:
@@ -117,8 +125,8 @@ def tokens(text: str, dialect: Dialect = GUARDS) -> list[Token]:
         elif group == _NUMBER:
             kind = "number"
             if len(word) > dialect.most_digits:
-                message = f"a number has at most {dialect.most_digits} digits, found {len(word)}"
-                raise ExpressionError(message, Span(start, end))
+                too_long = message("wrong.digits", most=dialect.most_digits, found=len(word))
+                raise ExpressionError(too_long, Span(start, end))
         elif group != _SIGN:
             if group == _HABIT or len(word) == 1:
                 raise ExpressionError(dialect.meaningless(word), Span(start, end))

@@ -29,9 +29,9 @@ or `F(x).done`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import NoReturn, TypeVar
+from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 from sequence_planner.language.lexer import (
     COLON,
@@ -69,6 +69,10 @@ from sequence_planner.language.syntax import (
     UnaryTemporal,
     first_temporal,
 )
+from sequence_planner.texts.late import message
+
+if TYPE_CHECKING:
+    from sequence_planner.texts.message import Message
 
 T = TypeVar("T")
 
@@ -82,6 +86,28 @@ _OPERATORS = _PRODUCTS | {"+", "-"}
 _OPERAND_BEGINS = frozenset({"name", "number", "text", "(", "not", "true", "false"})
 
 QUANTIFIERS = frozenset({"all", "any", "none", "count"})
+
+# What is expected somewhere, where it is no sign.
+WANTED: Mapping[str, Callable[[], Message]] = {
+    "name": lambda: message("token.name"),
+    "number": lambda: message("token.number"),
+    "field": lambda: message("token.field"),
+    "end": lambda: message("token.end"),
+    "each value": lambda: message("token.each-value"),
+    "name or value": lambda: message("token.name-or-value"),
+    "field or value": lambda: message("token.field-or-value"),
+    "value or parameter": lambda: message("token.value-or-parameter"),
+    "a named set": lambda: message("token.named-set"),
+    "an enumeration or a named set": lambda: message("token.set"),
+    "the name of a set": lambda: message("token.set-name"),
+    "a value": lambda: message("token.value"),
+    "in": lambda: message("token.as-in", sign="in", example="all p in poses: …"),
+    "{": lambda: message("token.as-in", sign="{", example="pose in {home, above}"),
+    ": or where": lambda: message("list.or", most="`:`", last="`where`"),
+    ", or )": lambda: message("list.or", most="`,`", last="`)`"),
+    ", or ]": lambda: message("list.or", most="`,`", last="`]`"),
+    ", or }": lambda: message("list.or", most="`,`", last="`}`"),
+}
 
 # Quantifiers of other languages.
 _FOREIGN_QUANTIFIERS = {
@@ -173,8 +199,12 @@ def _misplaced_temporal(text: str, rule: Callable[[_Parser], T]) -> ExpressionEr
 
 def temporal_refused(operator: str, span: Span) -> ExpressionError:
     """The complaint about a temporal operator in an ordinary predicate or an action."""
-    where = "temporal operators stand only in `local` formulas of operations and in goals of plain automata"
-    return ExpressionError(f"`{operator}` is a temporal operator here: {where}", span)
+    return ExpressionError(message("wrong.temporal", operator=operator), span)
+
+
+def _wanted(what: str) -> str:
+    """What is expected, as people are told of it."""
+    return WANTED[what]() if what in WANTED else what
 
 
 class _Parser:
@@ -190,7 +220,7 @@ class _Parser:
     def whole(self, rule: Callable[[_Parser], T]) -> T:
         result = rule(self)
         if self._token.kind != "end":
-            self._no_operator("the end")
+            self._no_operator("end")
         return result
 
     # Words
@@ -212,7 +242,7 @@ class _Parser:
     def _deeper(self, opening: Token) -> None:
         self._depth += 1
         if self._depth > MOST_NESTED:
-            raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", opening.span)
+            raise ExpressionError(message("wrong.nested", most=MOST_NESTED), opening.span)
 
     def _nested(self, rule: Callable[[], Expression], opening: Token) -> Expression:
         self._deeper(opening)
@@ -226,10 +256,12 @@ class _Parser:
         token = self._token
         hint = ""
         if token.kind == "if":
-            hint = "; `if` stands only in actions, a condition says a implies b"
-        elif token.kind in KEYWORDS and what == "a name":
-            hint = f"; `{token.text}` is a word of the language"
-        raise ExpressionError(f"expected {what}, found {token}{hint}", token.span)
+            hint = message("hint.if-in-actions")
+        elif token.kind in KEYWORDS and what == "name":
+            hint = message("hint.word-of-language", word=token.text)
+        raise ExpressionError(
+            message("wrong.expected", wanted=_wanted(what), found=token.as_found, hint=hint), token.span
+        )
 
     def _no_operator(self, end: str) -> NoReturn:
         """Something else than an operator, or what ends the expression, stands behind an expression."""
@@ -238,33 +270,35 @@ class _Parser:
         for word in (token, last) if token.kind in _OPERAND_BEGINS else ():
             meant = _FOREIGN.get(word.text.lower()) or (self._temporal and _LETTERS.get(word.text.lower()))
             if word.kind == "name" and meant:
-                raise ExpressionError(f"`{word.text}` has no meaning here; write {meant}", word.span)
+                raise ExpressionError(message("wrong.foreign", word=word.text, meant=meant), word.span)
         if token.kind == ":":
             raise ExpressionError(COLON, token.span)
         if last.text.lower() == "for" and token.text in QUANTIFIERS:
-            raise ExpressionError(f"`{last.text}` has no meaning here; write {token.text} …: …", last.span)
+            raise ExpressionError(message("wrong.foreign", word=last.text, meant=f"{token.text} …: …"), last.span)
         if token.kind == "name" and after[0].kind == "in" and last.text.lower() in _FOREIGN_QUANTIFIERS:
             meant = _FOREIGN_QUANTIFIERS[last.text.lower()]
-            raise ExpressionError(f"`{last.text}` has no meaning here; write {meant}", last.span)
+            raise ExpressionError(message("wrong.foreign", word=last.text, meant=meant), last.span)
         hint = ""
         if "where" in (token.text, last.text):
-            hint = "; `where` stands before the colon, as in all p in poses where p != home: …"
+            hint = message("hint.where-before-colon")
         elif last.text in QUANTIFIERS and token.kind == "name":
-            hint = f"; a quantifier is written {last.text} word in set: …"
+            hint = message("hint.quantifier", word=last.text)
         elif token.kind in _RELATIONS or token.kind == "in":
-            hint = "; comparisons do not chain: join two with and"
+            hint = message("hint.no-chain")
         elif token.kind == ":=":
-            hint = "; a condition compares with =="
+            hint = message("hint.compares")
         elif token.kind == "if":
-            hint = "; `if` stands once, at the end of an action"
+            hint = message("hint.if-once")
         elif token.kind == "not" and after[0].kind == "in":
-            hint = "; write not x in {...}"
+            hint = message("hint.write", what="not x in {...}")
         elif token.kind == "." and last.kind == "number" and not self._over_records:
-            hint = "; numbers are integers"
+            hint = message("hint.integers")
         elif self._temporal and last.text in INFIX_LETTERS and self._tokens[self._next - 2].text in PREFIX_LETTERS:
             name = self._tokens[self._next - 2].text
-            hint = f"; if `{name}` is a name, write ({name}) {last.text} {token.text}"
-        raise ExpressionError(f"expected an operator or {end}, found {token}{hint}", token.span)
+            hint = message("hint.if-a-name", name=name, what=f"({name}) {last.text} {token.text}")
+        raise ExpressionError(
+            message("wrong.expected-operator", end=_wanted(end), found=token.as_found, hint=hint), token.span
+        )
 
     # Rules
 
@@ -356,14 +390,14 @@ class _Parser:
         if kind == "in":
             self._advance()
             if self._token.kind == "name" and not self._over_records:
-                return NamedMembership(left, self._word("a named set"), self._since(start))
+                return NamedMembership(left, self._domain("a named set"), self._since(start))
             return Membership(left, self._options(), self._since(start))
         return left
 
     def _options(self) -> tuple[Expression, ...]:
-        self._expect("{", "`{`, as in `pose in {home, above}`")
+        self._expect("{", "{")
         options = self._sums()
-        self._expect("}", "`,` or `}`")
+        self._expect("}", ", or }")
         return options
 
     def _sums(self) -> tuple[Expression, ...]:
@@ -384,7 +418,7 @@ class _Parser:
             operator = self._advance()
             self._operations += 1
             if self._operations > MOST_OPERATIONS:
-                raise ExpressionError(f"more than {MOST_OPERATIONS} operations in one expression", operator.span)
+                raise ExpressionError(message("wrong.operations", most=MOST_OPERATIONS), operator.span)
             begin = self._token.start
             right = self.atom()
             if operator.kind not in _PRODUCTS:
@@ -408,7 +442,7 @@ class _Parser:
         if kind == "text":
             return RecordConstant(self._advance().text[1:-1].replace("''", "'"), token.span)
         if kind != "(":
-            self._unfit("a field, a value or `(`" if self._over_records else "a name, a value or `(`")
+            self._unfit("field or value" if self._over_records else "name or value")
         inner = self._nested(self.expression, self._advance())
         if self._token.kind != ")":
             self._no_operator("`)`")
@@ -435,11 +469,11 @@ class _Parser:
         if quantifier == "at":
             quantifier = f"at {self._advance().text}"
         if quantifier not in QUANTIFIERS:
-            number = int(self._expect("number", "a number").text)
+            number = int(self._expect("number", "number").text)
         binders, where = self._bound()
         body = self._nested(self.expression, opening)
         if self._token.kind in _RELATIONS or self._token.kind == "in":
-            self._no_operator("the end")  # the body goes on as far as it can: this would compare it once more
+            self._no_operator("end")  # the body goes on as far as it can: this would compare it once more
         return Quantified(quantifier, number, binders, where, body, self._since(opening.start))
 
     def _bound(self) -> tuple[tuple[Binder, ...], Expression | None]:
@@ -448,17 +482,17 @@ class _Parser:
         while not binders or self._token.kind == ",":
             if binders:
                 self._advance()
-            words = [self._expect("name", "a word for each value, as in `all p in poses: …`")]
+            words = [self._expect("name", "each value")]
             while self._token.kind == ",":
                 self._advance()
-                words.append(self._expect("name", "a name"))
-            self._expect("in", "`in`, as in `all p in poses: …`")
-            domain = self._word("an enumeration or a named set") if self._token.kind != "{" else self._values()
+                words.append(self._expect("name", "name"))
+            self._expect("in", "in")
+            domain = self._domain("an enumeration or a named set") if self._token.kind != "{" else self._values()
             binders += [Binder(word.text, domain, word.span) for word in words]
         where = None
         if self._token.text == "where":
             where = self._nested(self.expression, self._advance())
-        self._expect(":", "`:`" if where is not None else "`:` or `where`")
+        self._expect(":", "`:`" if where is not None else ": or where")
         return tuple(binders), where
 
     def _values(self) -> tuple[Name, ...]:
@@ -467,12 +501,21 @@ class _Parser:
         while self._token.kind == ",":
             self._advance()
             values.append(self._word("a value"))
-        self._expect("}", "`,` or `}`")
+        self._expect("}", ", or }")
         return tuple(values)
 
     def _word(self, what: str) -> Name:
         token = self._expect("name", what)
         return Name((Component(token.text),), token.span)
+
+    def _domain(self, what: str) -> Name:
+        """An enumeration or a set; one that belongs to a resource has the name of that before it."""
+        start = self._token.start
+        parts = [Component(self._expect("name", what).text)]
+        while self._token.kind == ".":
+            self._advance()
+            parts.append(Component(self._expect("name", "the name of a set").text))
+        return Name(tuple(parts), self._since(start))
 
     def _negative(self, sign: Token) -> Expression:
         if not self._over_records or self._token.kind == "number":
@@ -481,26 +524,27 @@ class _Parser:
         return Arithmetic("-", nothing, self._nested(self.atom, sign), self._since(sign.start))
 
     def _number(self, sign: int, start: int) -> Expression:
-        token = self._expect("number", "a number")
+        token = self._expect("number", "number")
         if token.text.isdigit():
             return Constant(sign * int(token.text), self._since(start))
         real = sign * float(token.text)
         if not math.isfinite(real):
-            raise ExpressionError("the number is too large", token.span)
+            raise ExpressionError(message("wrong.large-number"), token.span)
         return RecordConstant(real, self._since(start))
 
     def path(self) -> Expression:
         start, depth = self._token.start, self._depth
         path: Expression = Name((Component(self._advance().text),), self._since(start))
-        while self._token.kind in (".", "["):
+        while self._token.kind in (".", "[", "("):
             self._deeper(opening := self._advance())
             at: str | tuple[Expression, ...]
             if opening.kind == ".":
-                at = self._expect("name", "the name of a field").text
+                at = self._expect("name", "field").text
             else:
                 at = self._sums()
-                self._expect("]", "`]`")
-            path = Selection(path, at, self._since(start))
+                closing = "]" if opening.kind == "[" else ")"
+                self._expect(closing, f"`{closing}`")
+            path = Selection(path, at, self._since(start), opening.kind == "(")
         self._depth = depth
         return path
 
@@ -513,7 +557,7 @@ class _Parser:
         return Name(tuple(parts), self._since(start))
 
     def component(self) -> Component:
-        word = self._expect("name", "a name").text
+        word = self._expect("name", "name").text
         opening = self._token.kind
         if opening not in ("(", "["):
             return Component(word)
@@ -522,18 +566,18 @@ class _Parser:
         while not arguments or self._token.kind == ",":
             self._advance()
             arguments.append(self._argument())
-        self._expect(closing, f"`,` or `{closing}`")
+        self._expect(closing, f", or {closing}")
         return Component(word, tuple(arguments), opening == "[")
 
     def _argument(self) -> str | Name:
         if self._token.kind != "name":
-            self._unfit("a value or parameter")
+            self._unfit("value or parameter")
         if self._tokens[self._next + 1].kind in (",", ")", "]"):
             word = self._advance()
             return ArgumentWord(word.text, word.span)
         self._depth += 1
         if self._depth > MOST_NESTED:
-            raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", self._token.span)
+            raise ExpressionError(message("wrong.nested", most=MOST_NESTED), self._token.span)
         name = self.name()
         self._depth -= 1
         return name

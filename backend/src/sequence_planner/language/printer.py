@@ -92,8 +92,10 @@ def _text(expression: Expression) -> tuple[str, int]:
             return f"{_print(left, strength)} {operator} {_print(right, strength + 1)}", strength
         case RecordConstant(value):
             return repr(value) if isinstance(value, float) else "'" + value.replace("'", "''") + "'", _ATOM
-        case Selection(whole, at):
-            inside = f".{at}" if isinstance(at, str) else f"[{', '.join(_print(each, _SUM) for each in at)}]"
+        case Selection(whole, at, _, called):
+            opening, closing = "()" if called else "[]"
+            listed = "" if isinstance(at, str) else ", ".join(_print(each, _SUM) for each in at)
+            inside = f".{at}" if isinstance(at, str) else f"{opening}{listed}{closing}"
             return f"{_print(whole, _ATOM)}{inside}", _ATOM
         case UnaryTemporal(operator, operand):
             return f"{operator} {_under_letter(operand)}", _NOT

@@ -1,7 +1,6 @@
 """From names to variables and values, with types checked, and with all that is written for short written out.
 
-A name is looked up in this order: a parameter of the construct, then relative to its ability and its resource, then in
-the whole station. A name beside a value of an enumeration may also be one of that enumeration's values.
+Names mean what `language.names.scope` finds; one beside a value of an enumeration may also be one of its values.
 
 Quantifiers become conjunctions, disjunctions and the like over the values of their words; named sets, relations, maps,
 predicates and the functions of ordered enumerations what they stand for. Where an index or an argument is a variable,
@@ -10,14 +9,13 @@ there is a case for each of its values. What has no value, as what comes before 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from sequence_planner.core.immutable import Immutable, replace
 from sequence_planner.language.evaluator import RELATIONS
-from sequence_planner.language.lexer import KEYWORDS, PREFIX_LETTERS
+from sequence_planner.language.names.scope import ENDS, STEPS, NameScope, require_usable, unknown_name
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.parser import temporal_refused
 from sequence_planner.language.shorthand.cases import (
     BY_CASES,
@@ -34,18 +32,10 @@ from sequence_planner.language.shorthand.cases import (
     require_few,
     truth_of,
 )
-from sequence_planner.language.shorthand.misuse import (
-    decided_by_number,
-    hint_of_truth,
-    not_among,
-    other_form,
-    unfit,
-    unordered,
-)
-from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, NamedPredicate, Vocabulary
+from sequence_planner.language.shorthand.misuse import decided_by_number, hint_of_truth, not_among, unfit, unordered
+from sequence_planner.language.shorthand.vocabulary import NamedPredicate
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import placed_at
-from sequence_planner.language.suggestions import beginning_with, meant, nearest, nearest_of
 from sequence_planner.language.syntax import (
     FALSE,
     TRUE,
@@ -86,89 +76,18 @@ from sequence_planner.language.types import (
     described,
     overlap,
 )
+from sequence_planner.texts.late import message
+
+if TYPE_CHECKING:
+    from sequence_planner.texts.message import Message
 
 T = TypeVar("T")
 
-# What is asked of the order of an enumeration.
-STEPS = {"previous": -1, "next": 1}
-ENDS = {"first": 0, "last": -1}
+# An argument that has no name.
+_A_VALUE = ""
 
 # What a comparison is with its sides exchanged.
 MIRRORED = {"==": "==", "!=": "!=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
-
-
-class NameScope(Immutable):
-    """The meaning of names at one place of a model.
-
-    `variables` maps full names to types; `prefixes` are tried in order before the bare name (such as
-    `nutrunner.run_nut.` and `nutrunner.`); `parameters` maps a parameter to its value and the enumeration it is of.
-    Names that begin with what is `unsuggested` are found, and never what somebody may have meant.
-    """
-
-    variables: Mapping[str, Type]
-    prefixes: tuple[str, ...] = ()
-    parameters: Mapping[str, tuple[str, EnumerationType]] = {}
-    vocabulary: Vocabulary = NO_VOCABULARY
-    copies: int = 1
-    """How often what is resolved here is written out, by the quantifiers around it."""
-    unsuggested: str | None = None
-
-    def binding(self, parameters: Mapping[str, tuple[str, EnumerationType]], copies: int = 1) -> NameScope:
-        """The same with further parameters."""
-        return replace(self, parameters={**self.parameters, **parameters}, copies=self.copies * copies)
-
-    def not_suggesting(self, beginning: str) -> NameScope:
-        """The same, where no name that begins so is told to be meant."""
-        return replace(self, unsuggested=beginning)
-
-    def substitute(self, name: Name) -> Name:
-        """`name` with the parameters among its arguments replaced by their values."""
-        if not self.parameters or name.is_word:
-            return name
-        parts = tuple(
-            Component(part.name, tuple(self._argument(word) for word in part.arguments), part.indexed)
-            for part in name.path
-        )
-        return Name(parts, name.span)
-
-    def find(self, name: Name) -> Variable | None:
-        """The variable of that name, or None."""
-        found = self._full(name)
-        return None if found is None else Variable(found, self.variables[found], name.span)
-
-    def type_of(self, name: Name) -> Type | None:
-        """The type of the variable of that name, or None."""
-        found = self._full(name)
-        return None if found is None else self.variables[found]
-
-    def _full(self, name: Name) -> str | None:
-        """The full name of the variable of that name, looked for once; None where there is none."""
-        written = str(name)
-        try:
-            return self._fulls[written]
-        except KeyError:
-            text = str(self.substitute(name))
-            full = (each for prefix in (*self.prefixes, "") if (each := prefix + text) in self.variables)
-            return self._fulls.setdefault(written, next(full, None))
-
-    @cached_property
-    def _fulls(self) -> dict[str, str | None]:
-        return {}
-
-    def _argument(self, word: str | Name) -> str | Name:
-        return self.parameters[word][0] if isinstance(word, str) and word in self.parameters else word
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """The full names of all variables that somebody may have meant."""
-        if self.unsuggested is None:
-            return tuple(self.variables)
-        return tuple(name for name in self.variables if not name.startswith(self.unsuggested))
-
-    def short(self, beginning: str = "") -> list[str]:
-        """Return what names that begin so are here without a prefix."""
-        found = ((prefix, beginning_with(prefix + beginning, self.names)) for prefix in self.prefixes)
-        return [name.removeprefix(prefix) for prefix, names in found for name in names]
 
 
 def resolve_predicate(expression: Expression, scope: NameScope) -> Expression:
@@ -199,8 +118,7 @@ def resolve_formula(formula: Expression, scope: NameScope) -> Expression:
         case Quantified():
             return _quantified(formula, scope, resolve_formula)
     if (inside := first_temporal(formula)) is not None:
-        what = "a temporal formula is no part of a comparison, a sum or `in {...}`"
-        raise ExpressionError(f"`{inside.operator}` is a temporal operator here: {what}", inside.span)
+        raise ExpressionError(message("wrong.temporal-inside", operator=inside.operator), inside.span)
     return resolve_predicate(formula, scope)
 
 
@@ -224,7 +142,7 @@ def resolve_assignment(action: Assignment, scope: NameScope) -> Assignment:
     if not isinstance(action.target, Name):
         raise TypeError("the action is resolved already")
     if str(action.target) in scope.parameters:
-        raise ExpressionError(f"`{action.target}` is a parameter: only variables are written", action.target.span)
+        raise ExpressionError(message("wrong.written-parameter", name=str(action.target)), action.target.span)
     target = _target(action.target, scope)
     value = _written(action.value, scope, target.type)
     condition = None if action.condition is None else resolve_predicate(action.condition, scope)
@@ -236,24 +154,17 @@ def _target(name: Name, scope: NameScope) -> Variable:
     if (found := scope.find(name)) is not None:
         return found
     if _predicate(name, scope) is not None:
-        raise ExpressionError(f"`{name}` is a predicate, and only variables are written", name.span)
+        raise ExpressionError(message("wrong.written-predicate", name=str(name)), name.span)
     if isinstance(dependent := _dynamic(name, scope), tuple) and isinstance(dependent[0], Variable):
         return dependent[0]
     if dependent is not None:
-        message = f"which variable `{name}` is depends on the state: write `all word in set where …: …`"
-        raise ExpressionError(message, name.span)
-    raise _unknown(name, scope, ())
+        raise ExpressionError(message("wrong.which-variable", name=str(name)), name.span)
+    raise unknown_name(name, scope, ())
 
 
-def type_of(expression: Expression, scope: NameScope) -> Type:
+def expression_type(expression: Expression, scope: NameScope) -> Type:
     """The type of an expression with names. Raises `ExpressionError`."""
     return _typed(expression, scope, None)[1]
-
-
-def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> str:
-    """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
-    every = list(candidates)
-    return meant(word, every, nearest(word, every, likeness))
 
 
 def _truth(expression: Expression, scope: NameScope) -> Expression:
@@ -267,8 +178,7 @@ def _written(expression: Expression, scope: NameScope, expected: Type) -> Expres
     resolved, found = _typed(expression, scope, expected)
     if isinstance(resolved, BY_CASES):
         if not isinstance(found, BooleanType):
-            advice = "give the ability a parameter for the case, and let its condition say which case it is"
-            raise ExpressionError(f"`{print_name(expression)}` depends on the state: {advice}", expression.span)
+            raise ExpressionError(message("wrong.depends", name=print_name(expression)), expression.span)
         resolved = truth_of(resolved, expression.span)
     fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else overlap(found, expected)
     if not fits:
@@ -312,9 +222,7 @@ def _typed(expression: Expression, scope: NameScope, expected: Type | None) -> t
         case Arithmetic("+" | "-" as operator, left, right):
             return _arithmetic(operator, left, right, span, scope)
         case Arithmetic() | RecordConstant() | Selection():
-            raise ExpressionError(
-                "products, real numbers, texts and items stand only in expressions over records", span
-            )
+            raise ExpressionError(message("wrong.over-records"), span)
         case UnaryTemporal(operator) | BinaryTemporal(operator):
             raise temporal_refused(operator, span)
 
@@ -345,7 +253,7 @@ def _named_membership(left: Expression, domain: Name, span: Span, scope: NameSco
     else:
         subject, found = _typed(left, scope, None)
         if not overlap(found, type_):
-            raise ExpressionError(f"cannot compare {described(found)} with {described(type_)}", domain.span)
+            raise _incomparable(found, type_, domain.span)
     return _membership(subject, tuple(Constant(value, domain.span) for value in type_.values), span)
 
 
@@ -353,13 +261,12 @@ def _domain(name: Name, scope: NameScope) -> EnumerationType:
     """The values of a named set or enumeration."""
     domains = scope.vocabulary.domains
     word = str(name)
-    if word not in domains:
-        _require_usable(word, name.span, scope)
-        what = "`in` needs values in braces, an enumeration or a named set"
+    if (full := scope.vocabulary.domain_named(word, scope.prefixes)) is None:
+        require_usable(word, name.span, scope)
         is_value = any(word in type_.values for type_ in domains.values())
-        hint = f"; write {{{word}}} for a single value" if is_value else suggestion(word, domains)
-        raise ExpressionError(f"there is no set `{word}`: {what}{hint}", name.span)
-    return domains[word]
+        hint = message("hint.single-value", value=word) if is_value else suggestion(word, domains)
+        raise ExpressionError(message("wrong.no-set", name=word, hint=hint), name.span)
+    return domains[full]
 
 
 # Quantifiers.
@@ -392,13 +299,15 @@ def _bound_type(binder: Binder, before: Mapping[str, EnumerationType], scope: Na
         known = dict.fromkeys(value for domain in scope.vocabulary.domains.values() for value in domain.values)
         for value in binder.domain:
             if str(value) not in known:
-                raise ExpressionError(f"`{value}` is no value{suggestion(str(value), known)}", value.span)
+                raise ExpressionError(
+                    message("wrong.not-a-value", value=str(value), hint=suggestion(str(value), known)), value.span
+                )
     if word in before or word in scope.parameters:
-        raise ExpressionError(f"`{word}` stands for something else here already: take another word", binder.span)
+        raise ExpressionError(message("wrong.word-taken", word=word), binder.span)
     if (hidden := scope.find(Name((Component(word),)))) is not None:
-        raise ExpressionError(f"`{word}` hides the variable `{hidden.name}`: take another word", binder.span)
+        raise ExpressionError(message("wrong.word-hides-variable", word=word, variable=hidden.name), binder.span)
     if any(word in domain.values for domain in (type_, *scope.vocabulary.domains.values())):
-        raise ExpressionError(f"`{word}` hides the value `{word}`: take another word", binder.span)
+        raise ExpressionError(message("wrong.word-hides-value", word=word), binder.span)
     return type_
 
 
@@ -414,7 +323,7 @@ def _quantified(quantified: Quantified, scope: NameScope, resolve: _Resolve) -> 
     """A quantifier written out; its body is resolved with `resolve`."""
     span = quantified.span
     instances = list(_instances(quantified, scope, resolve))
-    if (decided := decided_by_number(quantified, scope.vocabulary)) is not None and not decided.always:
+    if (decided := decided_by_number(quantified, scope.vocabulary, scope.prefixes)) is not None and not decided.always:
         raise ExpressionError(decided.message, span)
     if quantified.quantifier == "all":
         parts = [body if chosen == TRUE else Implies(chosen, body, span) for chosen, body in instances]
@@ -431,9 +340,7 @@ def _quantified(quantified: Quantified, scope: NameScope, resolve: _Resolve) -> 
             return counted(">=", quantified.number or 0, parts, span)
         case "at most":
             return counted("<=", quantified.number or 0, parts, span)
-    raise ExpressionError(
-        "a count is an integer, and a truth value is expected: compare it, as in `(count …) >= 2`", span
-    )
+    raise ExpressionError(message("wrong.count"), span)
 
 
 def _count(quantified: Quantified, scope: NameScope) -> tuple[Dependent, Type]:
@@ -453,11 +360,11 @@ def _for_short(name: Name, scope: NameScope) -> tuple[Dependent, Type] | None:
     if head.arguments and not any(part.arguments for part in name.path[:-1]):
         vocabulary = scope.vocabulary
         if head.indexed and (table := _declared(name, vocabulary.maps, scope)) is not None:
-            _require_arguments(name, head.name, ("a value",))
+            _require_arguments(name, head.name, (_A_VALUE,))
             argument = _argument_of(name, 0, table.source, scope)
             return mapped(argument, table.table, name.span), table.target
         if not head.indexed and (relation := _declared(name, vocabulary.relations, scope)) is not None:
-            _require_arguments(name, head.name, ("a value", "a value"))
+            _require_arguments(name, head.name, (_A_VALUE, _A_VALUE))
             first, second = (_argument_of(name, index, type_, scope) for index, type_ in enumerate(relation.types))
             return related(first, second, relation.pairs, name.span), BOOLEAN
         if len(name.path) == 1 and not head.indexed and (head.name in STEPS or head.name in ENDS):
@@ -513,7 +420,7 @@ def expand(predicate: NamedPredicate, words: tuple[str, ...], scope: NameScope, 
     except CircleError as error:
         raise CircleError(error.circle, span) from None
     except ExpressionError as error:
-        raise UnusableError(f"`{predicate.name}` means nothing: {error.message}", span) from None
+        raise UnusableError(message("wrong.means-nothing-as", name=predicate.name, why=error.message), span) from None
     finally:
         vocabulary.expanding.pop()
     vocabulary.expanded[key] = found
@@ -523,9 +430,17 @@ def expand(predicate: NamedPredicate, words: tuple[str, ...], scope: NameScope, 
 def _require_arguments(name: Name, declared: str, wanted: tuple[str, ...]) -> None:
     found = len(name.path[-1].arguments)
     if found != len(wanted):
-        how_many = "no argument" if not wanted else "1 argument" if len(wanted) == 1 else f"{len(wanted)} arguments"
-        of = f" ({', '.join(wanted)})" if wanted and wanted[0] != "a value" else ""
-        raise ExpressionError(f"`{declared}` has {how_many}{of}, found {found}", name.span)
+        raise ExpressionError(
+            message("wrong.arguments", name=declared, wanted=_how_many(wanted), found=found), name.span
+        )
+
+
+def _how_many(wanted: tuple[str, ...]) -> Message:
+    if not wanted:
+        return message("arguments.none")
+    if wanted[0] == _A_VALUE:
+        return message("arguments.count", count=len(wanted))
+    return message("arguments.named", count=len(wanted), names=", ".join(wanted))
 
 
 def _argument_of(name: Name, index: int, type_: EnumerationType, scope: NameScope) -> Dependent:
@@ -533,7 +448,7 @@ def _argument_of(name: Name, index: int, type_: EnumerationType, scope: NameScop
     written = name.argument(index)
     word = str(written)
     is_known = word in type_.values or word in scope.parameters or scope.find(written) is not None
-    wrong = not_among(word, name, type_, scope.vocabulary) if written.is_word and not is_known else None
+    wrong = not_among(word, name, type_, scope.vocabulary, scope.prefixes) if written.is_word and not is_known else None
     if wrong is not None:
         raise ExpressionError(wrong, written.span)
     found = _comparable(written, type_, scope)
@@ -545,14 +460,14 @@ def _in_order(name: Name, scope: NameScope) -> tuple[Dependent, Type]:
     head = name.path[0]
     vocabulary = scope.vocabulary
     if head.name in ENDS:
-        _require_arguments(name, head.name, ("a set",))
+        _require_arguments(name, head.name, (_A_VALUE,))
         set_name = name.argument(0)
         domain = _domain(set_name, scope)
         if (order := vocabulary.order_of(domain)) is None:
             raise unordered(str(set_name), domain, set_name.span)
         values = [value for value in order.values if value in domain.values]
         return Constant(values[ENDS[head.name]], name.span), domain
-    _require_arguments(name, head.name, ("a value",))
+    _require_arguments(name, head.name, (_A_VALUE,))
     written = name.argument(0)
     value, type_ = _value_of_argument(written, scope)
     if not isinstance(type_, EnumerationType) or (order := vocabulary.order_of(type_)) is None:
@@ -609,7 +524,7 @@ def _any_type(name: Name, scope: NameScope) -> Type:
         for other, type_ in scope.variables.items():
             if other.startswith((f"{start}[", f"{start}(")):
                 return type_
-    raise _unknown(name, scope, ())
+    raise unknown_name(name, scope, ())
 
 
 def _index_cases(argument: str | Name, span: Span, scope: NameScope) -> tuple[tuple[Expression, str], ...] | None:
@@ -644,59 +559,13 @@ def _named(name: Name, scope: NameScope, expected: Type | None) -> tuple[Depende
     values = _names(expected) if expected is not None else ()
     if word in values:
         if variable is not None and isinstance(variable.type, EnumerationType):
-            raise ExpressionError(f"`{word}` is both a value and a variable here: rename one of them", name.span)
+            raise ExpressionError(message("wrong.value-and-variable", name=word), name.span)
         return Constant(word, name.span), EnumerationType((word,))
     if variable is None:
         if (found := _for_short(name, scope)) is not None:
             return found
-        raise _unknown(name, scope, values)
+        raise unknown_name(name, scope, values)
     return variable, variable.type
-
-
-def _require_usable(name: str, span: Span, scope: NameScope) -> None:
-    """Raise `UnusableError` for a name that is declared wrongly."""
-    if any(prefix + name in scope.vocabulary.unusable for prefix in (*scope.prefixes, "")):
-        raise UnusableError(f"`{name}` means nothing", span)
-
-
-def _unknown(name: Name, scope: NameScope, values: Iterable[str]) -> ExpressionError:
-    first = name.path[0]
-    _require_usable(".".join(part.name for part in name.path), name.span, scope)
-    if len(name.path) == 1 and first.name in PREFIX_LETTERS and first.arguments and not first.indexed:
-        return temporal_refused(first.name, name.span)
-    if (said := other_form(name, scope.vocabulary, scope.prefixes)) is not None:
-        return ExpressionError(said, name.span)
-    what = "variable or value" if values else "variable"
-    return ExpressionError(f"unknown {what} `{name}`{_meant(name, scope, values)}", name.span)
-
-
-def _meant(name: Name, scope: NameScope, values: Iterable[str]) -> str:
-    """Say what to write in place of an unknown name, as far as that can be guessed."""
-    word = str(name)
-    if word.lower() in KEYWORDS:
-        return f"; write {word.lower()}"
-    if (last := name.path[-1].name) in values:
-        return f"; did you mean `{last}`?"
-    begun = dict.fromkeys((*scope.short(word + "."), *beginning_with(word + ".", scope.names)))
-    flags = [other for other in begun if "." not in other[len(word) + 1 :]]
-    if 0 < len(flags) < 4:  # an ability or operation, and no resource
-        return f"; write {' or '.join(flags)}"
-    own = [*values, *scope.short(), *scope.parameters, *scope.vocabulary.names_beside(scope.prefixes)]
-    if near := _suggestion_of(word, own, scope.names, 0.7):
-        return near
-    if values:
-        return _suggestion_of(word, own, scope.names, 0.5) or f"; write one of {', '.join(values)}"
-    owners = [
-        other for other, type_ in scope.variables.items() if isinstance(type_, EnumerationType) and word in type_.values
-    ]
-    for prefix in (*scope.prefixes, ""):
-        if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
-            return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
-    return _suggestion_of(word, own, scope.names, 0.5)
-
-
-def _suggestion_of(word: str, own: Collection[str], names: tuple[str, ...], likeness: float) -> str:
-    return meant(word, [*own, *names], nearest(word, own, likeness), nearest_of(word, names, likeness))
 
 
 def _names(type_: Type) -> tuple[str, ...]:
@@ -723,8 +592,8 @@ def _ordering(
     other = _comparable(second, order or type_, scope)
     if order is None:
         if not isinstance(type_, IntegerRange):
-            hint = ", unless their enumeration is `ordered: true`" if isinstance(type_, EnumerationType) else ""
-            raise ExpressionError(f"`{operator}` compares integers, not {described(type_)}{hint}", span)
+            id_ = "wrong.compares-integers" if not isinstance(type_, EnumerationType) else "wrong.compares-ordered"
+            raise ExpressionError(message(id_, operator=operator, type=described(type_)), span)
         return _compared(operator, *((other, subject) if swapped else (subject, other)), span)
     relation, place = RELATIONS[operator], order.values.index
 
@@ -771,9 +640,12 @@ def _comparable(expression: Expression, type_: Type, scope: NameScope) -> Depend
     resolved, found = _typed(expression, scope, type_)
     # A parameter counts with all its values, so that an ability means the same for each of them.
     if not overlap(found, type_):
-        hint = hint_of_truth(type_, found)
-        raise ExpressionError(f"cannot compare {described(type_)} with {described(found)}{hint}", expression.span)
+        raise _incomparable(type_, found, expression.span, hint_of_truth(type_, found))
     return resolved
+
+
+def _incomparable(one: Type, other: Type, span: Span, hint: str = "") -> ExpressionError:
+    return ExpressionError(message("wrong.compared", one=described(one), other=described(other), hint=hint), span)
 
 
 def _arithmetic(
@@ -782,7 +654,7 @@ def _arithmetic(
     parts = [_typed(side, scope, None) for side in (left, right)]
     for side, (_, type_) in zip((left, right), parts, strict=True):
         if not isinstance(type_, IntegerRange):
-            raise ExpressionError(f"`{operator}` needs integers, found {described(type_)}", side.span)
+            raise ExpressionError(message("wrong.needs-integers", operator=operator, type=described(type_)), side.span)
     (a, range_a), (b, range_b) = parts
     assert isinstance(range_a, IntegerRange)
     assert isinstance(range_b, IntegerRange)

@@ -212,13 +212,14 @@ class RecordConstant(Immutable):
 
 
 class Selection(Immutable):
-    """`whole.x` or `whole[0]`: what stands behind a name is a name itself, or what is in its brackets; over records
-    only, where the fields decide whether all of it is one name.
+    """`whole.x`, `whole[0]` or, if `called`, `whole(a, b)`: what stands behind a name is a name itself, or what is in
+    its brackets; over records only, where the fields decide whether all of it is one name.
     """
 
     whole: Expression
     at: str | tuple[Expression, ...]
     span: Span = uncompared(default=NOWHERE)
+    called: bool = False
 
 
 class UnaryTemporal(Immutable):

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from sequence_planner.core.immutable import Immutable
+from sequence_planner.texts.late import message
+
+if TYPE_CHECKING:
+    from sequence_planner.texts.message import Message
 
 # Where a text was written.
 
@@ -94,14 +98,16 @@ def overlap(one: Type, other: Type) -> bool:
     return type(one) is type(other)
 
 
-def described(type_: Type) -> str:
+def described(type_: Type) -> Message:
     """A type, for people."""
     match type_:
         case BooleanType():
-            return "a truth value"
+            return message("type.truth-value")
         case IntegerRange(minimum, maximum):
-            return f"the integer {minimum}" if minimum == maximum else f"an integer in {type_}"
+            if minimum == maximum:
+                return message("type.integer", value=minimum)
+            return message("type.range", range=str(type_))
         case EnumerationType((single,)):
-            return f"the value `{single}`"
+            return message("type.value", value=single)
         case EnumerationType():
-            return f"one of {type_}"
+            return message("type.one-of", values=str(type_))

@@ -21,7 +21,7 @@ from sequence_planner.language_server.snapshot import StationSnapshot
 from sequence_planner.language_server.threads import ServerThreads
 from sequence_planner.model.files import LONGEST_FILE, Files, FolderReader, is_of_model
 from sequence_planner.model.launch_requirements import StartNeeds
-from sequence_planner.model.loader import unread_files
+from sequence_planner.model.reading.folder import unread_files
 from sequence_planner.model.source import Finding
 from sequence_planner.process.gc_tuning import collection_put_off
 from sequence_planner.process.task import WorkerError

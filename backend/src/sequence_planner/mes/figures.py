@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from sequence_planner.controller.views.details import WorkMasterView
 from sequence_planner.controller.views.station import PackML
+from sequence_planner.execution.products import final_operation
 from sequence_planner.mes.shifts import Shift, Span, seconds_within, with_span
 
 # Kept as the records of the run's journal are read one after the other, together with what is made for jobs, so that
@@ -56,7 +57,8 @@ class DayFigures(BaseModel):
     since the epoch (`done`): for shifts, those of the last day.
 
     Of each work master there are the seconds that the last products took which were made freely (`cycles`), and since
-    when the next one is made (`open`): null from the end of one until the next has begun.
+    when the next one is made (`open`): null from the end of one until the next has begun. Of those that are `untouched`
+    nothing was started yet.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -78,10 +80,12 @@ class DayFigures(BaseModel):
     done: dict[int, int] = {}
     cycles: dict[str, list[float]] = {}
     open: dict[str, float | None] = {}
+    untouched: list[str] = []
 
     def copied(self) -> DayFigures:
         """One that can go on without this one."""
         lists = {"trend": [*self.trend], "made": [*self.made], "open": dict(self.open), "done": dict(self.done)}
+        lists["untouched"] = [*self.untouched]
         return self.model_copy(update={**lists, "cycles": {name: [*each] for name, each in self.cycles.items()}})
 
     @property
@@ -112,7 +116,22 @@ class DayFigures(BaseModel):
 
     def turn(self, state: str | None) -> None:
         """Note that the state of PackML is another one from now on."""
+        if state == EXECUTE and self.state != EXECUTE and self.counted_to is not None:
+            self._begin_untouched(self.counted_to)
         self.state = state
+
+    def _begin_untouched(self, now: float) -> None:
+        """The time in which the station stood is not that of a product of which nothing was started before."""
+        for name in self.untouched:
+            self.open[name] = now
+
+    def in_work(self) -> dict[str, float]:
+        """Return since when products are in work that are made freely, by work master. While the station stands, one of
+        which nothing was started has not begun.
+        """
+        stands = self.state not in (None, EXECUTE)
+        waiting = set(self.untouched) if stands else set()
+        return {name: began for name, began in self.open.items() if began is not None and name not in waiting}
 
     def _count(self, seconds: float, now: float) -> None:
         midnight = start_of_day(now)
@@ -182,9 +201,15 @@ class DayFigures(BaseModel):
         return [(at, worked / planned) for at, (planned, worked) in found if planned > 0]
 
     def work_freely(
-        self, masters: Mapping[str, WorkMasterView], activated: Sequence[str], completed: Sequence[str], now: float
+        self,
+        masters: Mapping[str, WorkMasterView],
+        activated: Sequence[str],
+        completed: Sequence[str],
+        now: float,
+        *,
+        starts: bool = True,
     ) -> None:
-        """Note which operations became active and were completed while no job had them.
+        """Note which operations became active and were completed while no job had them, and whether anything `starts`.
 
         A product is done with the operation that comes after all others of its work master, and begun with one that
         comes after none. Where there is no such operation, the model does not tell.
@@ -196,6 +221,7 @@ class DayFigures(BaseModel):
                 if began is not None and now > began:
                     self._remember(master, now - began)
                 self.open[master] = None
+                self.untouched = [each for each in self.untouched if each != master]
             if ended:
                 self.count_product(MadeProduct(job=None, work_master=ended[0], ended=now))
         for name in activated:
@@ -205,8 +231,14 @@ class DayFigures(BaseModel):
                 known = self.open[master] is None if master in self.open else len(first) == 1
                 if name in first and known:
                     self.open[master] = now
+                    self.untouched = [*(each for each in self.untouched if each != master), master]
+        if starts:
+            if self.state != EXECUTE:
+                self._begin_untouched(now)
+            self.untouched = []
         for gone in [each for each in self.open if each not in masters]:
             del self.open[gone]
+            self.untouched = [each for each in self.untouched if each != gone]
 
     def _remember(self, master: str, seconds: float) -> None:
         known = self.cycles.pop(master, [])
@@ -217,9 +249,7 @@ class DayFigures(BaseModel):
 
 def last_operation(master: WorkMasterView) -> str | None:
     """The operation of a work master that comes after all others; None where there is none."""
-    before = {each for operation in master.operations.values() for each in operation.after}
-    ends = [name for name in master.operations if name not in before]
-    return ends[0] if len(ends) == 1 else None
+    return final_operation({name: operation.after for name, operation in master.operations.items()})
 
 
 def first_operations(master: WorkMasterView) -> Collection[str]:

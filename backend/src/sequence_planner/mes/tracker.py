@@ -381,9 +381,9 @@ class Ledger(BaseModel):
                 product = MadeProduct(job=each.job.job, work_master=each.job.work_master, ended=each.time)
                 figures.count_product(product)
         if figures.by_order:
-            figures.open = {}
+            figures.open, figures.untouched = {}, []
         else:
-            figures.work_freely(free, record.activated, record.completed, record.time)
+            figures.work_freely(free, record.activated, record.completed, record.time, starts=bool(record.started))
 
     def _jobs(self, record: ReadRecord, masters: WorkMastersView) -> Iterator[News]:
         for id_, job in record.jobs.items():

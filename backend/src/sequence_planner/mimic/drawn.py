@@ -9,7 +9,7 @@ from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.findings import Findings, without_arguments
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import IntegerRange, Value
 from sequence_planner.mimic.motion import motions
 from sequence_planner.mimic.parts import MOST_PARTS, label_place, labels_of, looks_of, text_of_value, titles_of
@@ -180,10 +180,11 @@ class _Drawing:
         others = [None if name is None else self._variable(name) for name in (document.to, document.previous)]
         if position is None:
             return None
+        titles = titles_of(self._automaton, position)
         stops = [
             MimicStop(
                 value=str(value),
-                title=dict(words_of(stop.title)),
+                title=dict(words_of(stop.title)) or titles.get(str(value), {}),
                 x=stop.at[0],
                 y=stop.at[1],
                 label=stop.label,

@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 from sequence_planner.automaton.automaton import Automaton, Instruction
 from sequence_planner.automaton.findings import without_arguments
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.files import largest
 from sequence_planner.model.loader import Station

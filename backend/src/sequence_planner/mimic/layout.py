@@ -234,9 +234,11 @@ class _Layout:
                 steps = -(-len(beside[hub]) // 2)
                 places[leaf] = (edge + side * most * (order + 1) / (steps + 1), top + _LEAF)
                 rooms[leaf] = most / (steps + 1)
+        titles = titles_of(self._automaton, motion.position)
         stops = [
             _stop(
                 stop,
+                titles.get(stop, {}),
                 places[stop],
                 "none" if stop in fan or rooms[stop] < 3 * _LETTER else "above" if stop in main else "below",
                 rooms[stop],
@@ -301,8 +303,15 @@ class _Layout:
         track = None
         if motion is not None:
             room = box.width / len(motion.stops)
+            titles = titles_of(self._automaton, motion.position)
             stops = [
-                _stop(stop, (box.x + room * (number + 0.5), box.y + _CARD + _TRACK - 16), "above", room - 4)
+                _stop(
+                    stop,
+                    titles.get(stop, {}),
+                    (box.x + room * (number + 0.5), box.y + _CARD + _TRACK - 16),
+                    "above",
+                    room - 4,
+                )
                 for number, stop in enumerate(motion.stops)
             ]
             track = track_of(motion, stops)
@@ -335,6 +344,7 @@ def _names(name: str) -> Iterator[str]:
 
 def _stop(
     value: str,
+    title: dict[str, str],
     at: tuple[float, float],
     label: Literal["above", "below", "none"],
     room: float,
@@ -343,7 +353,7 @@ def _stop(
 ) -> MimicStop:
     """A stop; in whole numbers, its title keeps apart from those beside it."""
     room = ROOM if label == "none" else float(math.floor(room - 1))
-    return MimicStop(value=value, title={}, x=_whole(at[0]), y=_whole(at[1]), label=label, room=room, branch=branch)
+    return MimicStop(value=value, title=title, x=_whole(at[0]), y=_whole(at[1]), label=label, room=room, branch=branch)
 
 
 def _columns(start: float, end: float, top: float) -> list[list[float]]:

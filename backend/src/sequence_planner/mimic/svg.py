@@ -12,7 +12,7 @@ from typing import Final
 from xml.parsers import expat
 
 from sequence_planner.automaton.findings import Findings
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.mimic.views import MimicDrawing, MimicElement
 

@@ -41,7 +41,7 @@ class MimicStop(DataModel):
     """
 
     value: str
-    title: dict[str, str]  # empty: the value in plain words
+    title: dict[str, str]  # without one of its own that of the value; empty: the value in plain words
     x: float
     y: float
     label: Literal["above", "below", "left", "right", "none"]

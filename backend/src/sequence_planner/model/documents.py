@@ -12,6 +12,7 @@ from sequence_planner.model.sequences import SequencePart, TitledDocument
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.marks import ReadValue
 from sequence_planner.model.stages.registry import StageDocument
+from sequence_planner.texts.message import message
 
 # What the services and actions of a resource may hold: the station is their client, the device their server.
 
@@ -39,7 +40,7 @@ class ServiceDocument(DocumentPart):
     @model_validator(mode="after")
     def _is_called(self) -> ServiceDocument:
         if self.when is None and self.every is None:
-            raise ValueError("say when the service is called: `when` an output rises, or `every` so many seconds")
+            raise ValueError(message("form.when-or-every"))
         return self
 
 
@@ -95,13 +96,13 @@ class ExampleDocument(DocumentPart):
     @model_validator(mode="after")
     def _one_form(self) -> ExampleDocument:
         if (self.steps is None) == (self.given is None or self.gives is None):
-            raise ValueError("an example has either `given` and `gives`, or `steps`")
+            raise ValueError(message("form.example"))
         if self.steps is not None:
             if self.given is not None or self.gives is not None:
-                raise ValueError("an example with `steps` has its `given` and `gives` in them")
+                raise ValueError(message("form.example-steps"))
             moments = [step.at for step in self.steps]
             if moments != sorted(moments):
-                raise ValueError("the `steps` of an example are in the order of time")
+                raise ValueError(message("form.example-order"))
         return self
 
 
@@ -118,7 +119,7 @@ class FlowDocument(DocumentPart):
     @model_validator(mode="after")
     def _has_sources(self) -> FlowDocument:
         if not isinstance(self.source, str) and not self.source:
-            raise ValueError("`from` names at least one topic or flow")
+            raise ValueError(message("form.from"))
         return self
 
 
@@ -133,12 +134,12 @@ def _interval(value: object) -> object:
         return tuple(value)
     if isinstance(value, int | float) and not isinstance(value, bool):
         return (value, value)
-    raise ValueError("expected seconds, or the fewest and the most as in `[0.5, 1.5]`")
+    raise ValueError(message("form.seconds"))
 
 
 def _ascending(interval: tuple[float, float]) -> tuple[float, float]:
     if interval[0] > interval[1]:
-        raise ValueError(f"from {interval[0]:g} to {interval[1]:g} seconds is no duration: write the fewest first")
+        raise ValueError(message("form.interval", least=f"{interval[0]:g}", most=f"{interval[1]:g}"))
     return interval
 
 
@@ -200,6 +201,8 @@ class EffectDocument(DocumentPart):
 
     kind: Literal["starting", "executing", "finishing"] = "executing"
     """For the reader: when in a run it is expected."""
+    each: Parameters = Field(default_factory=dict, alias="for")
+    """One effect per value of an enumeration: `{where: side}` makes `name[left]` and `name[right]`."""
     when: Given[Predicate] = None
     """The condition under which it happens, on measured and output variables; without it while the ability executes."""
     do: list[Action] = Field(min_length=1)
@@ -232,7 +235,7 @@ class InstructionDocument(DocumentPart):
     @model_validator(mode="after")
     def _tells_something(self) -> InstructionDocument:
         if not self.model_fields_set:
-            raise ValueError("write a `text`, an `image` or a `video`")
+            raise ValueError(message("form.instruction"))
         return self
 
 
@@ -258,9 +261,9 @@ class TimeoutsDocument(DocumentPart):
     @model_validator(mode="after")
     def _says_when(self) -> TimeoutsDocument:
         if self.then == "replan" and self.react is None and self.finish is None:
-            raise ValueError("`then: replan` needs a `react` or a `finish`: after how many seconds")
+            raise ValueError(message("form.replan"))
         if self.retries and self.then != "replan":
-            raise ValueError("`retries` need `then: replan`: with an alarm alone it goes on running")
+            raise ValueError(message("form.retries"))
         return self
 
 
@@ -273,6 +276,8 @@ class AbilityDocument(DocumentPart):
     """`{name: enumeration}`: one ability per value."""
     restart: bool = False
     """Only for getting back to work after trouble."""
+    moves: bool = True
+    """Whether anything moves by it; without, people are not told that it is what moves next."""
     human: Given[HumanDocument] = None
     """A person does it."""
     instruction: Given[InstructionDocument] = None
@@ -302,16 +307,16 @@ class AbilityDocument(DocumentPart):
     @model_validator(mode="after")
     def _has_an_end(self) -> AbilityDocument:
         if self.finish is None and self.until is None and self.timeouts != TimeoutsDocument():
-            raise ValueError("`timeouts` need a `finish` or an `until`: without one the ability is done with its start")
+            raise ValueError(message("form.timeouts"))
         if self.until is None and self.finish is not None and "when" not in self.finish.model_fields_set:
-            raise ValueError("`finish` needs a `when`, or the ability something to go on `until`")
+            raise ValueError(message("form.finish"))
         return self
 
     @model_validator(mode="after")
     def _effects_happen(self) -> AbilityDocument:
         never = [name for name, each in self.effects.items() if each.when is None]
         if never and self.until is None and "executing" not in self.model_fields_set:
-            raise ValueError(f"the effect `{never[0]}` needs a `when`: nothing says when the ability is executing")
+            raise ValueError(message("form.effect", name=str(never[0])))
         return self
 
 
@@ -355,9 +360,9 @@ class TopicDocument(DocumentPart):
     @model_validator(mode="after")
     def _timing_fits_direction(self) -> TopicDocument:
         if self.direction == "in" and self.every is not None:
-            raise ValueError("`every` repeats an outgoing message; an incoming topic has a `deadline`")
+            raise ValueError(message("form.every"))
         if self.direction == "out" and self.deadline is not None:
-            raise ValueError("`deadline` is for incoming topics; an outgoing one is repeated with `every`")
+            raise ValueError(message("form.deadline"))
         return self
 
 
@@ -396,18 +401,18 @@ class EnumerationDocument(DocumentPart):
     @model_validator(mode="after")
     def _has_values(self) -> EnumerationDocument:
         if not self.values and not self.includes:
-            raise ValueError("an enumeration has `values`, `includes` others, or both")
+            raise ValueError(message("form.enumeration"))
         return self
 
 
 class SetDocument(DocumentPart):
     """A named set of values of an enumeration."""
 
-    of: SourceText
+    of: TypeName
     """The enumeration, or another set."""
-    values: Given[Annotated[list[SourceText], Field(min_length=1)]] = None
+    values: Given[Annotated[list[ReadValue], Field(min_length=1)]] = None
     """Its values; a set among them stands for all of its own."""
-    excludes: Given[Annotated[list[SourceText], Field(min_length=1)]] = Field(default=None, alias="except")
+    excludes: Given[Annotated[list[ReadValue], Field(min_length=1)]] = Field(default=None, alias="except")
     """The values that are not in it, where all others are; a set among them stands for all of its own."""
     title: Given[Words] = None
     """For people: what is said in the place of `one of its values`, such as `a tool dock`."""
@@ -415,7 +420,7 @@ class SetDocument(DocumentPart):
     @model_validator(mode="after")
     def _one_form(self) -> SetDocument:
         if (self.values is None) == (self.excludes is None):
-            raise ValueError("a set has either its `values`, or those that it has not: `except`")
+            raise ValueError(message("form.set"))
         return self
 
 
@@ -424,15 +429,13 @@ Members = ReadValue | Annotated[list[ReadValue], Field(min_length=1)]
 
 def _pair(written: object) -> object:
     if not isinstance(written, list) or len(written) != 2:
-        raise ValueError(
-            "a pair is a list of two, such as `[home, left]`: a set or a list stands for each of its values"
-        )
+        raise ValueError(message("form.pair"))
     return written
 
 
 def _two_domains(written: object) -> object:
     if not isinstance(written, list) or len(written) != 2:
-        raise ValueError("a relation is between two enumerations or sets: write a list of two, such as `[pose, pose]`")
+        raise ValueError(message("form.relation"))
     return written
 
 
@@ -518,6 +521,8 @@ class ResourceDocument(DocumentPart):
     """Abilities of the resource."""
     alarms: dict[SourceText, AlarmDocument] = Field(default_factory=dict)
     """What people are told of the resource when something is wrong with it."""
+    sets: dict[SourceText, SetDocument] = Field(default_factory=dict)
+    """Values of an enumeration that have a name together, by names of the resource."""
     relations: dict[SourceText, RelationDocument] = Field(default_factory=dict)
     """Pairs of values that belong together, by names of the resource."""
     maps: dict[SourceText, ValueMapDocument] = Field(default_factory=dict)
@@ -539,7 +544,7 @@ class PackageSourceDocument(DocumentPart):
     @model_validator(mode="after")
     def _is_somewhere(self) -> PackageSourceDocument:
         if (self.path is None) == (self.git is None) or (self.git is None) != (self.revision is None):
-            raise ValueError("a package is brought from a `path`, or from a `git` repository at a `revision`")
+            raise ValueError(message("form.package"))
         return self
 
 
@@ -639,10 +644,10 @@ class SpecificationDocument(DocumentPart):
     @model_validator(mode="after")
     def _one_kind(self) -> SpecificationDocument:
         if (self.never is None) != (self.during is None):
-            raise ValueError("`never` and `while` belong together: what must not be, and while what")
+            raise ValueError(message("form.never-while"))
         kinds = (self.forbidden, self.never, self.exclusive, self.zone, self.order)
         if sum(kind is not None for kind in kinds) != 1:
-            raise ValueError("a specification is exactly one of forbidden, never and while, exclusive, zone, order")
+            raise ValueError(message("form.specification"))
         return self
 
 
@@ -670,7 +675,7 @@ class WorkMasterDocument(SequencePart, TitledDocument):
     @model_validator(mode="after")
     def _has_operations(self) -> WorkMasterDocument:
         if self.kind is None and self.operations is None and self.orders is None:
-            raise ValueError("write its `operations`, or one of sequence, parallel, alternative, arbitrary")
+            raise ValueError(message("form.work-master"))
         return self
 
     @property

@@ -13,9 +13,10 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Discriminator,
 
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.language.lexer import KEYWORDS
+from sequence_planner.language.names.scope import ENDS, STEPS
 from sequence_planner.language.parser import QUANTIFIERS
-from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import message
 
 
 class DocumentPart(DataModel):
@@ -30,7 +31,7 @@ T = TypeVar("T")
 
 def _given(value: object) -> object:
     if value is None:
-        raise ValueError("there is nothing here: write a value, or leave the key out")
+        raise ValueError(message("form.nothing"))
     return value
 
 
@@ -79,7 +80,7 @@ class TextUse(Enum):
 Predicate = Annotated[SourceText | bool, TextUse.CONDITION]
 Action = Annotated[SourceText, TextUse.ACTION]
 TypeName = Annotated[SourceText, TextUse.TYPE]
-Seconds = Annotated[float, Field(ge=0, le=86_400)]
+Seconds = Annotated[float, Field(ge=0, le=86_400, json_schema_extra={"unit": "s"})]
 
 
 # Texts for people.
@@ -87,7 +88,7 @@ Seconds = Annotated[float, Field(ge=0, le=86_400)]
 
 def _said(text: SourceText) -> SourceText:
     if not text.strip():
-        raise ValueError("write a text: this one is empty")
+        raise ValueError(message("form.empty-text"))
     return text
 
 
@@ -105,7 +106,7 @@ class WordsDocument(DocumentPart):
     @model_validator(mode="after")
     def _says_something(self) -> WordsDocument:
         if not self.model_fields_set:
-            raise ValueError("say it in one language at least: `en` or `sv`")
+            raise ValueError(message("form.no-language"))
         return self
 
 

@@ -28,9 +28,12 @@ from sequence_planner.model.paths import (
     INSTRUCTION,
     INSTRUCTIONS,
     PICTURES,
+    SCENARIOS,
+    TESTS,
     EditError,
 )
 from sequence_planner.model.yaml.saving import BYTE_ORDER_MARK
+from sequence_planner.texts.message import message
 
 # Texts by their paths below the model's folder, such as `resources/robot.yaml`.
 Files = Mapping[str, str]
@@ -53,7 +56,8 @@ MOST_FILES = 2_000
 MOST_CHARACTERS = 20_000_000  # of all files together
 STAGES = "stages"
 _UNFINISHED = ".unfinished"
-SEARCHED_FOLDERS = ("resources", "types", "messages", DRAWINGS, INSTRUCTIONS, "packages")  # where files are looked for
+# Where files are looked for.
+SEARCHED_FOLDERS = ("resources", "types", "messages", DRAWINGS, INSTRUCTIONS, TESTS, "packages")
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -61,7 +65,7 @@ _NO_TEXT = re.compile("[\0\ud800-\udfff]")
 _OF_PACKAGE = rf"package\.yaml|types/{_NAME}\.yaml|{_DEFINITIONS}"
 _PATH = re.compile(
     rf"{'|'.join(map(re.escape, FILES))}|packages\.lock|(?:resources|types)/{_NAME}\.yaml|{_DEFINITIONS}"
-    rf"|{DRAWINGS}/{DRAWING.pattern}|{INSTRUCTIONS}/{INSTRUCTION.pattern}"
+    rf"|{DRAWINGS}/{DRAWING.pattern}|{INSTRUCTIONS}/{INSTRUCTION.pattern}|{SCENARIOS.pattern}"
     rf"|packages/{_NAME}/(?:{_OF_PACKAGE})"
 )
 
@@ -74,12 +78,7 @@ def is_of_model(path: str) -> bool:
 def check_path(path: str) -> None:
     """Raises `EditError` for a path that is none of a model's files."""
     if not is_of_model(path):
-        raise EditError(
-            f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, "
-            "types/<name>.yaml, messages/<package>/msg/<Name>.msg (or srv, or action), drawings/<name>.svg, "
-            "instructions/<name>.svg (or png, jpg, webp, mp4, webm), packages.lock, and those of a package in "
-            "packages/<name>"
-        )
+        raise EditError(message("edit.no-file-of-model", path=path, files=", ".join(FILES)))
 
 
 def is_binary(path: str) -> bool:
@@ -99,7 +98,7 @@ def content_of(path: str, text: str) -> bytes:
     try:
         return base64.b64decode(text, validate=True)
     except (binascii.Error, ValueError):
-        raise EditError(f"{path} is no text: it is written in base 64") from None
+        raise EditError(message("edit.no-base64", path=path)) from None
 
 
 def text_of(path: str, content: bytes) -> str | None:
@@ -116,20 +115,20 @@ def check_text(path: str, text: str) -> None:
     """Raises `EditError` for a text that is too long, or that no file could hold."""
     if is_binary(path):
         if (size := len(content_of(path, text))) > largest(path):
-            raise EditError(f"{path} has {size} bytes, and may have at most {largest(path)}")
+            raise EditError(message("edit.large-file", path=path, size=size, most=largest(path)))
         return
     if len(text) > LONGEST_FILE:
-        raise EditError(f"{path} has {len(text)} characters, and a file of a model has at most {LONGEST_FILE}")
+        raise EditError(message("edit.long-file", path=path, count=len(text), most=LONGEST_FILE))
     if (wrong := _NO_TEXT.search(text)) is not None:
-        raise EditError(f"{path} would hold the character {ord(wrong[0]):#06x}, which no text does")
+        raise EditError(message("edit.no-character", path=path, code=f"{ord(wrong[0]):#06x}"))
 
 
 def check_size(files: Files) -> None:
     """Raises `EditError` for more files, or longer ones, than a model has."""
     if len(files) > MOST_FILES:
-        raise EditError(f"a model has at most {MOST_FILES} files")
+        raise EditError(message("edit.many-files", most=MOST_FILES))
     if (size := sum(map(len, files.values()))) > MOST_CHARACTERS:
-        raise EditError(f"the model would have {size} characters, and has at most {MOST_CHARACTERS} in all its files")
+        raise EditError(message("edit.long-model", count=size, most=MOST_CHARACTERS))
 
 
 def read_files(folder: Path) -> dict[str, str]:

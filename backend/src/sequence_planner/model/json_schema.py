@@ -32,6 +32,7 @@ from sequence_planner.model.documents import (
 from sequence_planner.model.efa_document import PlainDocument
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.mimic.documents import MimicDocument
+from sequence_planner.model.scenarios.documents import ACTS, EXPECTATIONS, ScenarioDocument, ScenarioStepDocument
 from sequence_planner.model.sequences import KINDS, SequenceDocument, SequencePart
 from sequence_planner.model.shifts.documents import ShiftDocument
 from sequence_planner.model.stages.registry import StageDocument
@@ -49,6 +50,7 @@ FILES: Mapping[str, tuple[Any, str]] = {
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
     "mimic": (MimicDocument, "mimic.yaml"),
+    "tests": (dict[str, ScenarioDocument], "tests/<name>.yaml"),
     "shifts": (dict[str, ShiftDocument], "shifts.yaml"),
     "efa": (PlainDocument, "*.efa.json"),
 }
@@ -88,6 +90,8 @@ class _Generator(GenerateJsonSchema):
                 made["properties"][schema["cls"].model_fields[name].alias or name]["description"] = text
         if schema["cls"] is StageDocument:
             made |= {"minProperties": 1, "maxProperties": 1}
+        if schema["cls"] is ScenarioStepDocument:
+            made["oneOf"] = [{"required": [key]} for key in (*ACTS, *EXPECTATIONS)]
         if issubclass(schema["cls"], SequencePart):
             instead = ["operations", "orders"] if schema["cls"] is WorkMasterDocument else []
             made["anyOf" if instead else "oneOf"] = [{"required": [key]} for key in (*KINDS, *instead)]

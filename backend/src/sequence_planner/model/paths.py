@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
+from sequence_planner.texts.message import message
 
 if TYPE_CHECKING:
     from sequence_planner.model.yaml.reader import EntryPath
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
 
 DRAWINGS = "drawings"
 INSTRUCTIONS = "instructions"
-FOLDERS = ("resources", "types", "messages", DRAWINGS, INSTRUCTIONS, "stages", "packages")
+TESTS = "tests"
+FOLDERS = ("resources", "types", "messages", DRAWINGS, INSTRUCTIONS, TESTS, "stages", "packages")
 # What files below `messages` define, by what their names end with.
 DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
 # The name of a file below `drawings`.
@@ -23,12 +25,19 @@ DRAWING = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}\.svg")
 PICTURES = ("svg", "png", "jpg", "webp")
 VIDEOS = ("mp4", "webm")
 INSTRUCTION = re.compile(rf"[A-Za-z_][A-Za-z0-9_]{{0,99}}\.(?:{'|'.join((*PICTURES, *VIDEOS))})")
+# The files of scenarios.
+SCENARIOS = re.compile(rf"{TESTS}/[A-Za-z_][A-Za-z0-9_]{{0,99}}\.yaml")
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml", "mimic.yaml", "shifts.yaml")
 
 
 _RESOURCE = re.compile(r"resources/([^/]+)\.yaml")
 _TYPE = re.compile(r"(?:packages/(\w+)/)?types/(\w+)\.yaml")
+
+
+def has_scenarios(file: str) -> bool:
+    """Return whether a file of a model has scenarios by which it is tested."""
+    return SCENARIOS.fullmatch(file) is not None
 
 
 def resource_of(file: str) -> str | None:
@@ -47,7 +56,11 @@ def type_of(file: str) -> str | None:
 
 
 class EditError(Exception):
-    """An edit that cannot be made; nothing was changed."""
+    """An edit that cannot be made; nothing was changed. The text says `why`."""
+
+    def __init__(self, why: str) -> None:
+        super().__init__(why)
+        self.why = why
 
 
 def shown_path(path: EntryPath) -> str:
@@ -74,17 +87,14 @@ def parse_path(text: str) -> EntryPath:
     while at < len(text):
         step = _STEP.match(text, at)
         if step is None or (step["index"] is None and bool(step["dot"]) != bool(path)):
-            raise EditError(
-                f"`{text}` is no path, from `{text[at:]}` on: write names with dots between, [0] for the first entry of"
-                ' a list, and quotes around a name with dots or brackets, as in topics."/a.b".type'
-            )
+            raise EditError(message("edit.no-path", text=text, rest=text[at:]))
         if step["index"] is not None:
             path.append(int(step["index"]))
         else:
             path.append(next(one for one in (step["quoted"], step["single"], step["name"]) if one is not None))
         at = step.end()
     if not path:
-        raise EditError("an empty path: write which entry, such as abilities.run_nut.enabled")
+        raise EditError(message("edit.empty-path"))
     return tuple(path)
 
 

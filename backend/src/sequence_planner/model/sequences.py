@@ -6,9 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from sequence_planner.language.suggestions import nearest
+from sequence_planner.language.names.suggestions import nearest
 from sequence_planner.model.fields import DocumentPart, Given, Words, main_text
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import message
 
 SequenceKind = Literal["sequence", "parallel", "alternative", "arbitrary"]
 KINDS: tuple[SequenceKind, ...] = ("sequence", "parallel", "alternative", "arbitrary")
@@ -54,9 +55,9 @@ class SequencePart(DocumentPart):
     @model_validator(mode="after")
     def _one_order(self) -> SequencePart:
         if len(self._kinds) > 1 or (self._needs_kind and not self._kinds):
-            raise ValueError(f"write exactly one of {', '.join(KINDS)} here")
+            raise ValueError(message("form.sequence", kinds=", ".join(KINDS)))
         if self.each and not self._kinds:
-            raise ValueError("`for` repeats what stands in a sequence, parallel, alternative or arbitrary beside it")
+            raise ValueError(message("form.for"))
         return self
 
     @property

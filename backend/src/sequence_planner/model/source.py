@@ -13,6 +13,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from sequence_planner.language.syntax import Span
 from sequence_planner.language.types import Place
+from sequence_planner.texts.message import message
 
 
 @dataclass(frozen=True, order=True)
@@ -39,9 +40,7 @@ def told_once(findings: list[Finding]) -> list[Finding]:
     if not any(finding.place.instance for finding in findings):
         return findings
     return [
-        Finding(
-            alike[0].place._replace(instance=""), f"{in_instances([each.place for each in alike])}{alike[0].message}"
-        )
+        Finding(alike[0].place._replace(instance=""), in_instances([each.place for each in alike], alike[0].message))
         for alike in alike_in_types(findings, lambda each: each)
     ]
 
@@ -61,13 +60,14 @@ def alike_in_types(said: Iterable[T], finding: Callable[[T], Finding]) -> list[l
     return list(together.values())
 
 
-def in_instances(places: Sequence[Place]) -> str:
-    """Name the instances of a type of which something is said there; say nothing where it is not said of a type."""
+def in_instances(places: Sequence[Place], what: str) -> str:
+    """Say of which instances of a type something is said there; nothing more where it is not said of a type."""
     first, *others = (each.instance for each in places)
-    names = [first, *(other.partition(" ")[0] for other in others)]
     if not first:
-        return ""
-    return f"in {', '.join(names[:-1])} and {names[-1]}: " if others else f"in {first}: "
+        return what
+    names = [first, *(other.partition(" ")[0] for other in others)]
+    instances = message("list.and", most=", ".join(names[:-1]), last=names[-1]) if others else first
+    return message("found.in", instances=instances, what=what)
 
 
 class SourceText(str):

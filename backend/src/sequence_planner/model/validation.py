@@ -7,20 +7,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from functools import reduce
 from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from sequence_planner.core.data_models import complained, expectation
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.source import Finding
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
+from sequence_planner.texts.message import message
 
 # What a mapping is called in a document.
-_NAMES = "names with their definitions"
-_IN_DOCUMENTS = {"dict": _NAMES, "mapping": _NAMES, "model": _NAMES}
+_IN_DOCUMENTS = dict.fromkeys(("dict", "mapping", "model"), "names")
 # How a text begins that YAML takes for a mapping because of its colon.
 _QUANTIFIER = re.compile(r"(?:all|any|none|count|exactly \d+|at (?:least|most) \d+) +\w+ *(?:, *\w+ *)* in +\w*")
 
@@ -39,16 +40,19 @@ def findings_of(error: ValidationError, document: YamlDocument, at: EntryPath, k
         if details["type"] == "missing" and details["loc"][:-1] in unquoted:
             continue  # it is meant as a text, and that is told
         path = (*at, *_path(details["loc"], _content_at(document, at)))
-        if message := _misplaced(details, document, at, kind) or _said(details, kind):
+        if said := _misplaced(details, document, at, kind) or _said(details, kind):
             about_name = details["type"] in ("extra_forbidden", "missing")
-            findings.append(Finding(document.place(path) if about_name else document.place_of_value(path), message))
+            findings.append(Finding(document.place(path) if about_name else document.place_of_value(path), said))
         elif not _is_looked_into(details, every):
             place = document.place_of_value(path)
             # Each branch of a union complains; together they say what would be right.
-            found = f"{shown(details['input'])}{_needs_quotes(details['input'])}"
+            found = shown(details["input"])
+            if quotes := _needs_quotes(details["input"]):
+                found = f"{found}{quotes}"
             expected.setdefault((place, found), {})[_expectation(details)] = None
     merged = [
-        Finding(place, f"expected {' or '.join(wants)}, found {found}") for (place, found), wants in expected.items()
+        Finding(place, message("wrong.expected", wanted=_either(wants), found=found, hint=""))
+        for (place, found), wants in expected.items()
     ]
     return [*findings, *merged]
 
@@ -58,8 +62,8 @@ def complaint(error: ValidationError, kind: type[BaseModel]) -> str:
     said: dict[str, None] = {}
     expected: dict[str, dict[str, None]] = {}
     for details in error.errors():
-        if message := _said(details, kind):
-            said[message] = None
+        if (words := _said(details, kind)) is not None:
+            said[words] = None
         else:
             expected.setdefault(shown(details["input"]), {})[_expectation(details)] = None
     return "; ".join([*said, *(f"expected {' or '.join(wants)}, found {found}" for found, wants in expected.items())])
@@ -106,9 +110,11 @@ def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
         case "extra_forbidden" if _QUANTIFIER.match(name):
             return f"this is a mapping, and a condition is a text{_quotes_around(name)}"
         case "extra_forbidden":
-            return f"`{name}` is not known here{suggestion(name, _fields_at(kind, details['loc'][:-1]))}"
+            hint = suggestion(name, _fields_at(kind, details["loc"][:-1]))
+            return message("wrong.unknown-key", name=name, hint=hint)
         case "missing":
-            return "an entry is missing here" if isinstance(details["loc"][-1], int) else f"`{name}` is missing here"
+            is_entry = isinstance(details["loc"][-1], int)
+            return message("wrong.missing-entry") if is_entry else message("wrong.missing-key", name=name)
         case "value_error" | "assertion_error":
             return complained(details)
     return None
@@ -118,19 +124,22 @@ def _misplaced(details: ErrorDetails, document: YamlDocument, at: EntryPath, kin
     """The message for a key that would be right with another indentation."""
     *around, name = details["loc"] or ("",)
     if details["type"] == "extra_forbidden":
-        what, name = f"`{name}` is not known here", str(name)
+        name = str(name)
+        what = message("wrong.unknown-key", name=name, hint="")
         above, held = _entry_above(document, (*at, *around), name)
         is_free = above is not None and not (isinstance(held, dict) and name in held)
         if is_free and name in _fields_within(kind, (*around, str(above))):
-            return f"{what}; does it belong to `{above}`? Then indent it further"
+            return message("wrong.indent-further", what=what, owner=str(above))
     elif details["input"] is None and isinstance(name, str) and name not in _fields_at(kind, around):
-        what = f"`{name}` holds nothing here"
+        what = message("wrong.empty-key", name=name)
     else:
         return None
     for end in reversed(range(len(around))):
         if name in _fields_at(kind, around[:end]):
             whose = (*at, *around)[: len(at) + end]
-            return f"{what}; does it belong to {f'`{whose[-1]}`' if whose else 'the file itself'}? Then indent it less"
+            if not whose:
+                return message("wrong.indent-fully", what=what)
+            return message("wrong.indent-less", what=what, owner=str(whose[-1]))
     return None
 
 
@@ -155,6 +164,10 @@ def _is_looked_into(details: ErrorDetails, every: Iterable[ErrorDetails]) -> boo
     )
 
 
+def _either(wants: Iterable[str]) -> str:
+    return reduce(lambda most, last: message("list.or", most=most, last=last), wants)
+
+
 def _expectation(details: ErrorDetails) -> str:
     return expectation(details, _IN_DOCUMENTS)
 
@@ -163,15 +176,15 @@ def shown(value: object) -> str:
     """Say what was found, in a few words."""
     match value:
         case None:
-            return "nothing"
+            return message("shown.nothing")
         case bool():
             return str(value).lower()
         case str() | int() | float():
             text = str(value)
             return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
         case list():
-            return "a list" if value else "an empty list"
-    return "an empty mapping" if value == {} else "a mapping"
+            return message("shown.list" if value else "shown.empty-list")
+    return message("shown.empty-mapping" if value == {} else "shown.mapping")
 
 
 def _needs_quotes(content: object) -> str:

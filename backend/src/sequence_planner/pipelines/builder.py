@@ -6,11 +6,11 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from sequence_planner.automaton.automaton import Automaton, Kind, State
+from sequence_planner.automaton.automaton import Automaton, Kind, State, VariableDeclaration
 from sequence_planner.language.lexer import KEYWORDS
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import NoFieldError, feeds, fills, find_field
 from sequence_planner.language.records.record import FieldType, RecordType
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place, Type
 from sequence_planner.model.documents import FlowDocument, ResourceDocument, TopicDocument
 from sequence_planner.model.loader import Station
@@ -44,6 +44,7 @@ from sequence_planner.ros.names import check_topic
 from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.ros.types.errors import MessageDefinitionError, MessageValueError
 from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.texts.message import Message, message
 
 # Services and actions as the station uses them, from their documents and the pipelines of their parts.
 
@@ -88,10 +89,12 @@ class ClientBuilding:
         variable = self._automaton.variables.get(full)
         if variable is None:
             own = [v.name.removeprefix(f"{resource}.") for v in self._automaton.variables.values()]
-            self._findings.add(name.place, f"`{resource}` has no output `{name}`{suggestion(name, own)}")
+            self._findings.add(
+                name.place, message("wrong.no-output", resource=resource, name=str(name), hint=suggestion(name, own))
+            )
         elif variable.kind is not Kind.OUTPUT or not isinstance(variable.type, BooleanType):
-            said = f"{variable.kind.value} and {variable.type}"
-            self._findings.add(name.place, f"`when` is an output of type bool, and `{full}` is {said}")
+            said = message("wrong.when-output", name=full, kind=_kind_of(variable), type=str(variable.type))
+            self._findings.add(name.place, said)
         return full
 
     def _check_status(self, resource: str, name: SourceText) -> None:
@@ -99,15 +102,16 @@ class ClientBuilding:
         full = f"{resource}.{name}"
         variable = self._automaton.variables.get(full)
         if variable is None or variable.kind is not Kind.MEASURED:
-            kind = "not there" if variable is None else variable.kind.value
-            self._findings.add(name.place, f"`status` is a measured variable, and `{full}` is {kind}")
-        elif not isinstance(variable.type, EnumerationType) or set(variable.type.values) != {*map(str, GoalState)}:
-            states = ", ".join(GoalState)
-            self._findings.add(
-                name.place,
-                f"`{full}` says what has become of a goal: it ranges over {{{states}}}, and not {variable.type}; "
-                "without a type it does so by itself",
+            said = (
+                message("wrong.no-status", name=full)
+                if variable is None
+                else message("wrong.status-measured", name=full, kind=_kind_of(variable))
             )
+            self._findings.add(name.place, said)
+        elif not isinstance(variable.type, EnumerationType) or set(variable.type.values) != {*map(str, GoalState)}:
+            states = f"{{{', '.join(GoalState)}}}"
+            said = message("wrong.status-range", name=full, states=states, range=str(variable.type))
+            self._findings.add(name.place, said)
 
 
 # Flows from documents: what their sources are, in which order they stand, and what their records begin with.
@@ -127,8 +131,12 @@ class WrittenFlow:
     sources: Mapping[str, str]
 
 
-def _why_no_name(text: str) -> str:
-    return "it is a word of the language" if text in KEYWORDS else "use letters, digits and _"
+def _why_no_name(text: str) -> Message:
+    return message("wrong.name.keyword" if text in KEYWORDS else "wrong.name.letters")
+
+
+def _kind_of(variable: VariableDeclaration) -> Message:
+    return message(f"written.is.{variable.kind}")
 
 
 def flow_name(resource: str, name: str) -> str:
@@ -164,7 +172,7 @@ class _Sources:
     def flow(self, resource: str, name: SourceText, document: FlowDocument) -> WrittenFlow | None:
         """A flow with its sources, or findings."""
         if not _NAME.fullmatch(name) or name in KEYWORDS:
-            self.findings.add(name.place, f"`{name}` is no name for a flow: {_why_no_name(name)}")
+            self.findings.add(name.place, message("wrong.no-flow-name", name=str(name), why=_why_no_name(name)))
             return None
         match document.source:
             case dict() as aliases:
@@ -177,13 +185,15 @@ class _Sources:
         is_sound = True
         for alias, source in written:
             if joining is Joining.MERGE and (not _NAME.fullmatch(alias) or alias in KEYWORDS):
-                self.findings.add(alias.place, f"`{alias}` is no name for a source: {_why_no_name(alias)}")
+                self.findings.add(
+                    alias.place, message("wrong.no-source-name", name=str(alias), why=_why_no_name(alias))
+                )
                 is_sound = False
             full = self._full(resource, source)
             if full is None:
                 is_sound = False
             elif full in sources.values() and joining is not Joining.MERGE:
-                self.findings.add(source.place, f"`{source}` is a source of this flow already")
+                self.findings.add(source.place, message("wrong.source-already", name=str(source)))
                 is_sound = False
             else:
                 sources[str(alias) if joining is Joining.MERGE else full] = full
@@ -196,11 +206,11 @@ class _Sources:
             if full in self.flows:
                 return full
         if source in self.outgoing:
-            message = f"`{source}` is an outgoing topic: a flow comes of incoming topics and other flows"
+            said = message("wrong.outgoing-source", name=str(source))
         else:
             own = [each.removeprefix(f"{resource}.") for each in self.flows]
-            message = f"there is no topic or flow `{source}`{suggestion(source, [*self.topics, *own])}"
-        self.findings.add(source.place, message)
+            said = message("wrong.no-source", name=str(source), hint=suggestion(source, [*self.topics, *own]))
+        self.findings.add(source.place, said)
         return None
 
 
@@ -216,7 +226,7 @@ def _in_order(flows: Mapping[str, WrittenFlow], topics: set[str], findings: Pipe
     for flow in waiting.values():
         if flow.name not in said and (cycle := _cycle(flow.name, waiting)):
             said.update(cycle)
-            findings.add(flow.written.place, f"`{flow.name}` comes from itself: {' → '.join(cycle)}")
+            findings.add(flow.written.place, message("wrong.flow-from-itself", name=flow.name, names=" → ".join(cycle)))
 
 
 def _cycle(name: str, flows: Mapping[str, WrittenFlow]) -> list[str] | None:
@@ -295,8 +305,9 @@ def writings(resource: Resource, building: ChainBuilding, names: Iterable[str]) 
         if feeds(field, type_):
             made.append(VariableField(name, resource.full(name), type_, building.between.get(name)))
         else:
-            said = f"field `{name}` is {field}, and `{resource.full(name)}` is {type_}: they do not correspond"
-            building.findings.add(building.place_of(name), f"{building.origin(name)}{said}")
+            types = {"type": str(field), "other": f"`{resource.full(name)}`", "other_type": str(type_)}
+            said = message("wrong.no-correspondence", field=name, **types)
+            building.findings.add(building.place_of(name), building.at_origin(name, said))
     return tuple(made)
 
 
@@ -304,15 +315,15 @@ def outgoing_pipeline(
     resource: Resource, topic: Topic, document: TopicDocument, building: ChainBuilding, constants: Constants
 ) -> OutgoingPipeline:
     """The pipeline of an outgoing topic, with findings in `building`."""
-    message = building.wanted
+    record = building.wanted
     building.add(document.pipeline)
-    _check_ignored(document, building, message)
+    _check_ignored(document, building, record)
     ignored = frozenset(map(str, document.ignore))
     if building.is_sound:
         for name, type_ in resource.all.items():
             numbers = names_of_constants(constants, type_)
             is_own = building.chain.end.get(name) == type_ and name not in building.given
-            if isinstance(message.get(name), IntegerRange) and numbers is not None and is_own and name not in ignored:
+            if isinstance(record.get(name), IntegerRange) and numbers is not None and is_own and name not in ignored:
                 building.map_constants(name, name, numbers, building.name.place)
     origins = building.origins(resource.all)
     settings = [
@@ -338,26 +349,29 @@ def _is_set(resource: Resource, building: ChainBuilding, name: str) -> bool:
     except NoFieldError:
         return False
     if any(isinstance(step, int) for step in path.steps):
-        said = f"`{name}` is an item of a list, and lists are sent as a whole: give `{path.key}`"
-        building.findings.add(building.place_of(name), f"{building.origin(name)}{said}")
+        said = message("wrong.item-given", name=name, list=path.key)
+        building.findings.add(building.place_of(name), building.at_origin(name, said))
         return False
     field = building.chain.end[name]
     if fills(field, wanted):
         return True
-    named = f"`{resource.full(name)}`" if name in resource.all and name not in building.given else "what is given"
-    said = f"field `{name}` is {wanted}, and {named} is {field}: they do not correspond"
-    building.findings.add(building.place_of(name), f"{building.origin(name)}{said}")
+    is_variable = name in resource.all and name not in building.given
+    named = f"`{resource.full(name)}`" if is_variable else message("wrong.what-is-given")
+    types = {"type": str(wanted), "other_type": str(field)}
+    said = message("wrong.no-correspondence", field=name, other=named, **types)
+    building.findings.add(building.place_of(name), building.at_origin(name, said))
     return False
 
 
-def _check_ignored(document: TopicDocument, building: ChainBuilding, message: RecordType) -> None:
+def _check_ignored(document: TopicDocument, building: ChainBuilding, record: RecordType) -> None:
     given = set(building.given)
     used = used_up(document.pipeline)
     for field in document.ignore:
-        if field not in message:
-            building.findings.add(field.place, f"the message has no field `{field}`{suggestion(field, message)}")
+        if field not in record:
+            hint = suggestion(field, record)
+            building.findings.add(field.place, message("wrong.no-message-field", name=str(field), hint=hint))
         elif field in (used if building.is_incoming else given):
-            building.findings.add(field.place, f"`{field}` is used by a stage: it cannot be ignored as well")
+            building.findings.add(field.place, message("wrong.ignored-and-used", name=str(field)))
 
 
 # Pipelines from documents: the whole graph of a station, checked, with everything that is wrong with it at once.
@@ -439,25 +453,25 @@ class _Building:
             self.findings.add(name.place, str(error).replace("'", "`"))
             return
         if name in self.chains:
-            what = "a service or an action" if is_part(name) else "a topic"
-            self.findings.add(name.place, f"duplicate name `{called}`: {what} belongs to one resource")
+            id_ = "wrong.two-resources.service" if is_part(name) else "wrong.two-resources.topic"
+            self.findings.add(name.place, message(id_, name=called))
             return
         topic = Topic(str(name), str(document.type), resource, _quality(document))
-        message = message_fields(self._registry, topic.type_name)
+        record = message_fields(self._registry, topic.type_name)
         constants = self._registry.constants(topic.type_name)
         of = self._resources[resource]
         before = len(self.findings.found)
         if document.direction == "in":
-            chain = self._begin(topic.name, name, message, of)
+            chain = self._begin(topic.name, name, record, of)
             self.incoming[topic.name] = incoming_pipeline(of, topic, document, chain, constants)
             self._feed(topic.name, name, self.incoming[topic.name].variables, frozenset())
             self._note(topic.name, before)
         else:
-            chain = self._chain(name, False, message, of.all, of)
+            chain = self._chain(name, False, record, of.all, of)
             chain.is_cut = topic.name in self._cut
             self.chains[topic.name] = chain
             self.outgoing[topic.name] = outgoing_pipeline(of, topic, document, chain, constants)
-            self._check_read(topic.name, "the message has no field", message)
+            self._check_read(topic.name, message("wrong.no-message-field-at-all"), record)
             if len(self.findings.found) == before and chain.is_sound:
                 self._check_writable(name, document)
 
@@ -488,7 +502,9 @@ class _Building:
             node = self.incoming.get(name) or self.flows[name]
             resource = node.topic.resource if isinstance(node, IncomingPipeline) else node.resource
             before = len(self.findings.found)
-            self._check_read(name, f"`{resource}` has no measured variable", self._resources[resource].measured)
+            self._check_read(
+                name, message("wrong.no-measured", resource=str(resource)), self._resources[resource].measured
+            )
             self._note(name, before)
             if (
                 chain.is_sound
@@ -497,8 +513,7 @@ class _Building:
                 and not self._readers(name)
                 and not is_part(name)
             ):
-                what = "no field bears the name of a measured variable"
-                self.findings.add(chain.name.place, f"`{chain.name}` feeds no variable: {what}")
+                self.findings.add(chain.name.place, message("wrong.feeds-nothing", pipeline=str(chain.name)))
 
     def _note(self, name: str, before: int) -> None:
         if len(self.findings.found) > before:
@@ -520,7 +535,8 @@ class _Building:
         self._above[full] = above.union(variables)
         for variable in variables:
             if variable in self._fed:
-                self.findings.add(name.place, f"`{variable}` is fed by `{self._fed[variable]}` already")
+                fed_by = str(self._fed[variable])
+                self.findings.add(name.place, message("wrong.fed-twice", variable=variable, pipeline=fed_by))
             self._fed[variable] = name
 
     def _check_read(self, name: str, complaint: str, wanted: Iterable[str]) -> None:
@@ -528,8 +544,9 @@ class _Building:
         chain = self.chains[name]
         if chain.is_sound:
             for given, edge in chain.unread(self._read_behind(name)):
-                said = f"{complaint} `{given}`, and no later stage reads it{suggestion(given, wanted)}"
-                self.findings.add(chain.place_of(given), f"{edge}: {said}")
+                hint = suggestion(given, wanted)
+                said = message("wrong.unread", what=complaint, name=given, hint=hint)
+                self.findings.add(chain.place_of(given), message("wrong.at", where=edge, what=said))
 
     def _readers(self, name: str) -> list[Flow]:
         return [flow for flow in self.flows.values() if name in flow.sources.values()]
@@ -561,8 +578,8 @@ class _Building:
             chain = self.chains[str(name)]
             key = next((each for each in (error.path, field) if each in chain.given), None)
             where = document.type.place if key is None else chain.place_of(key)
-            origin = "" if key is None else chain.origin(key)
-            self.findings.add(where, f"{origin}the message cannot be written: {error}")
+            said = message("wrong.unwritable", why=str(error))
+            self.findings.add(where, said if key is None else chain.at_origin(key, said))
 
     def _states(self, pipeline: OutgoingPipeline) -> Iterator[State]:
         """The initial state and, where no process must be asked, those that differ from it in one variable."""

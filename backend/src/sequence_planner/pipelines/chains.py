@@ -20,6 +20,7 @@ from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.model.stages.support import PassingStage
 from sequence_planner.model.stages.timing import FoldDocument, OverrideDocument
 from sequence_planner.pipelines.graph import Chain
+from sequence_planner.texts.message import Message, message
 
 
 @dataclass
@@ -66,8 +67,9 @@ class ChainBuilding:
         number = len(self.stages) + 1
         before = len(self.findings.found)
 
-        def found(place: Place, message: str) -> None:
-            self.findings.add(place, f"`{self.name}` → stage {number} `{document.kind}`: {message}")
+        def found(place: Place, what: str) -> None:
+            edge = message("wrong.edge", pipeline=str(self.name), number=number, kind=document.kind)
+            self.findings.add(place, message("wrong.at", where=edge, what=what))
 
         fields = self.fields[-1]
         known = (self.vocabulary, self.resource)
@@ -131,16 +133,17 @@ class ChainBuilding:
         given = document.named(self.is_incoming, NameUse.GIVEN, NameUse.KEPT)
         return next((text.place for text in given if text == name), document.place)
 
-    def edge(self, index: int) -> str:
+    def edge(self, index: int) -> Message:
         """A stage, as findings name it."""
-        return f"`{self.name}` → stage {index + 1} `{self.documents[index].kind}`"
+        kind = self.documents[index].kind
+        return message("wrong.edge", pipeline=str(self.name), number=index + 1, kind=kind)
 
-    def origin(self, name: str) -> str:
-        """The stage that has given a name, as it stands before a finding; nothing where none has."""
+    def at_origin(self, name: str, what: str) -> str:
+        """Say something of the stage that has given a name, if one has."""
         index = self.given.get(name)
-        return "" if index is None else f"{self.edge(index)}: "
+        return what if index is None else message("wrong.at", where=self.edge(index), what=what)
 
-    def unread(self, read_behind: frozenset[str]) -> Iterator[tuple[str, str]]:
+    def unread(self, read_behind: frozenset[str]) -> Iterator[tuple[str, Message]]:
         """The names given for which there is no use, each with its stage: not wanted, and read by nothing later."""
         for name, index in self.given.items():
             behind = (each for each in range(index + 1, len(self.stages)) if not self._is_about_all(each))
@@ -192,8 +195,7 @@ def check_override_names(resources: Iterable[ResourceDocument], findings: Pipeli
         overrides = [each.content for pipeline in pipelines for each in pipeline]
         for name in (each.name for each in overrides if isinstance(each, OverrideDocument)):
             if (first := known.setdefault(name, name)) is not name:
-                other = f"another override of this resource (line {first.place.line})"
-                findings.add(name.place, f"`{name}` is the name of {other}: choose another")
+                findings.add(name.place, message("wrong.override-name", name=str(name), line=first.place.line))
 
 
 def is_field(fields: RecordType, name: str) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import (
     ActionDocument,
@@ -21,6 +21,7 @@ from sequence_planner.model.stages.registry import StageDocument
 from sequence_planner.pipelines.graph import GOAL_STATE, STATUS_FIELD, STATUS_TYPE, GoalState
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.texts.message import message
 
 # The parts of services and actions, each written as the topic it is like.
 #
@@ -90,12 +91,14 @@ def _findings(
     try:
         fields = {field for part in made().values() for field in registry.fields(part.type)}
     except UnknownMessageTypeError as error:
-        near = f"; did you mean `{error.suggestion}`?" if error.suggestion else ""
-        yield Finding(document.type.place, f"no {kind} type `{document.type}` is known{near}")
+        near = message("hint.meant", name=error.suggestion) if error.suggestion else ""
+        yield Finding(document.type.place, message(f"wrong.no-{kind}-type", name=str(document.type), hint=near))
         return
     for field in document.ignore:
         if field not in fields:
-            yield Finding(field.place, f"the {kind} has no field `{field}`{suggestion(field, fields)}")
+            yield Finding(
+                field.place, message(f"wrong.no-{kind}-field", name=str(field), hint=suggestion(field, fields))
+            )
 
 
 def _named(name: SourceText, part: str) -> SourceText:

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.core.immutable import Immutable
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import fits, shown
 from sequence_planner.language.records.record import RealType, Record, RecordType
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import contains
 from sequence_planner.model.documents import ExampleDocument, ExampleStepDocument
 from sequence_planner.model.source import Finding, SourceText

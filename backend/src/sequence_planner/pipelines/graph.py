@@ -230,6 +230,21 @@ class StationPipelines:
         return {variable: " and ".join(sorted(self.topics_of(name))) for variable, name in self.feeds.items()}
 
     @property
+    def timed(self) -> frozenset[str]:
+        """The measured variables that time alone can change: a stage on their way goes by it."""
+        return frozenset(
+            name for name, node in self.feeds.items() if any(each.chain.is_timed for each in self.passed_through(node))
+        )
+
+    def passed_through(self, name: str) -> tuple[IncomingPipeline | Flow, ...]:
+        """Everything through which the records of a topic or a flow come, each behind its sources, and itself."""
+        found = {name}
+        for flow in reversed(list(self.flows.values())):
+            if flow.name in found:
+                found.update(flow.sources.values())
+        return tuple(node for node in self.nodes if node.name in found)
+
+    @property
     def nodes(self) -> tuple[IncomingPipeline | Flow, ...]:
         """The incoming topics and the flows, each behind its sources; answers are like topics."""
         return (*self.sources.values(), *self.flows.values())

@@ -19,6 +19,7 @@ from sequence_planner.model.loader import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.marks import NameUse
 from sequence_planner.model.stages.rename import RenameDocument
+from sequence_planner.model.types.names import depends_on_arguments, unknown_names
 from sequence_planner.pipelines.client_builder import (
     client_findings,
     parts,
@@ -28,6 +29,7 @@ from sequence_planner.pipelines.client_builder import (
 from sequence_planner.pipelines.message_types import message_fields
 from sequence_planner.ros.types.errors import UnknownMessageTypeError
 from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.texts.message import message
 
 MOST_VALUES = 256  # of an integer that becomes a variable by itself: those of eight bits
 
@@ -49,6 +51,25 @@ def variables_inferred(station: Station, registry: MessageRegistry) -> tuple[Sta
     return with_goal_states(replace(station, resources=resources)), findings
 
 
+def wrong_in_unused_types(station: Station, registry: MessageRegistry) -> list[Finding]:
+    """What is wrong with the names in conditions and actions of types that no instance has, and with the messages that
+    some of these follow from; `station` is as it was written, and nothing is wrong with its topics.
+    """
+    found: dict[Finding, None] = {}
+    for name, unused in station.unused.items():
+        if depends_on_arguments(unused.document):
+            continue
+        called = next(each for each in (name, f"{name} of the type") if each not in station.resources)
+        resources = {**station.resources, called: unused.document}
+        completed, wrong = variables_inferred(replace(station, resources=resources), registry)
+        if not wrong:
+            wrong = unknown_names(unused, completed.resources[called], completed)
+        elif unused.package:  # a station that has the messages may use it
+            wrong = []
+        found |= dict.fromkeys(wrong)
+    return list(found)
+
+
 def _completed(document: ResourceDocument, registry: MessageRegistry, findings: list[Finding]) -> ResourceDocument:
     sections = {"measured": dict(document.measured), "output": dict(document.output)}
     for name, topic in (*document.topics.items(), *parts(document, registry).items()):
@@ -57,8 +78,10 @@ def _completed(document: ResourceDocument, registry: MessageRegistry, findings: 
         try:
             fields = message_fields(registry, topic.type)
         except UnknownMessageTypeError as error:
-            near = f"; did you mean `{error.suggestion}`?" if error.suggestion else ""
-            findings.append(Finding(topic.type.place, f"no message type `{topic.type}` is known{near}"))
+            near = message("hint.meant", name=error.suggestion) if error.suggestion else ""
+            findings.append(
+                Finding(topic.type.place, message("wrong.no-message-type", name=str(topic.type), hint=near))
+            )
             continue
         for field, variable, type_ in _mapped(name, topic, fields):
             text = _type(type_, variable)
@@ -68,23 +91,22 @@ def _completed(document: ResourceDocument, registry: MessageRegistry, findings: 
                     section[variable] = declared.model_copy(update={"type": text})
             elif text is not None and variable not in document.estimated and variable not in getattr(document, other):
                 if clash := _clash(document, variable, sections[other]):
-                    remedy = f"leave it out with `ignore: [{field}]`, or `rename` it"
-                    message = (
-                        f"the field `{field}` of `{topic.type}` would be a variable `{variable}`, and {clash}: {remedy}"
+                    said = message(
+                        f"wrong.field-clashes.{clash}", field=field, type=str(topic.type), variable=str(variable)
                     )
-                    findings.append(Finding(variable.place, message))
+                    findings.append(Finding(variable.place, said))
                 else:
                     section[variable] = VariableDocument(type=text)
     return with_client_variables(document.model_copy(update=sections))
 
 
 def _clash(document: ResourceDocument, name: SourceText, other: Mapping[SourceText, VariableDocument]) -> str | None:
-    """Say what bears the name already that a field would give to a variable."""
+    """Return what bears the name already that a field would give to a variable, as texts are named for it."""
     if name in FLAGS:
-        return "that is a flag of every ability"
+        return "flag"
     if name in document.abilities:
-        return "an ability has that name"
-    return "a field of a topic in the other direction is one already" if name in other else None
+        return "ability"
+    return "direction" if name in other else None
 
 
 def _mapped(

@@ -7,6 +7,7 @@ from contextlib import suppress
 from enum import StrEnum
 from functools import cached_property
 from itertools import combinations, product
+from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton, Kind, State
 from sequence_planner.automaton.dependencies import read_variables
@@ -28,7 +29,7 @@ from sequence_planner.planning.problem import CertificateError, Circumstances, C
 from sequence_planner.planning.validation.acceptance import Acceptance, tightened
 from sequence_planner.planning.validation.replay import missing
 from sequence_planner.process.budget import Budget, SpentError
-from sequence_planner.texts.message import Message, message
+from sequence_planner.texts.message import Item, Message, message
 
 # What is soon known of a question: that there is a plan, or that there is none. Nobody need look for a proof then.
 
@@ -500,38 +501,62 @@ def diagnose(
     return Diagnosis(reason, () if reason is None else corrections(automaton, supervisor, task, budget))
 
 
-def member_text(member: Member, out_of_service: Collection[str] = ()) -> Message:
-    """A member of a reason, in the names of the model; resources can be offline because they are `out_of_service`."""
+class WrittenNames:
+    """The names of members and changes: those of the model, as its files have them."""
+
+    def variable(self, name: str) -> Item:
+        """Return what a variable is called."""
+        return name
+
+    def so(self, name: str, value: Value, written: str) -> Item:
+        """Say that a variable has a value, which is `written` so."""
+        return written
+
+    def call_member(self, kind: MemberKind, name: str) -> Item:
+        """Return what something of this kind is called that is no variable."""
+        return name
+
+
+WRITTEN: Final = WrittenNames()
+
+
+def member_text(member: Member, out_of_service: Collection[str] = (), names: WrittenNames = WRITTEN) -> Message:
+    """A member of a reason, in `names`; resources can be offline because they are `out_of_service`."""
+    if member.part is MemberKind.VALUE:
+        if member.value is None:
+            return message("member.unknown", name=names.variable(member.name))
+        written = f"{member.name} is {print_value(member.value)}"
+        return message("member.so", so=names.so(member.name, member.value, written))
+    name = names.call_member(member.part, member.name)
     match member.part:
-        case MemberKind.VALUE if member.value is None:
-            return message("member.unknown", name=member.name)
-        case MemberKind.VALUE:
-            assert member.value is not None
-            return message("member.value", name=member.name, value=print_value(member.value))
         case MemberKind.SPECIFICATION:
-            return message("member.specification", name=member.name)
+            return message("member.specification", name=name)
         case MemberKind.AVOID:
-            return message("member.avoid", name=member.name)
+            return message("member.avoid", name=name)
         case MemberKind.OFFLINE if member.name not in out_of_service:
-            return message("member.offline", name=member.name)
+            return message("member.offline", name=name)
         case MemberKind.OFFLINE | MemberKind.BARRED:
-            return message("member.out-of-service", name=member.name)
+            return message("member.out-of-service", name=name)
         case MemberKind.LOCAL:
-            return message("member.local", name=member.name)
+            return message("member.local", name=name)
         case MemberKind.GOAL:
-            return message("member.goal", name=member.name)
+            return message("member.goal", name=name)
 
 
-def correction_text(correction: Correction, out_of_service: Collection[str] = ()) -> Message:
-    """Changes that would help, in the names of the model; resources can be `out_of_service`."""
-    return message("list", items=[_change_text(change, out_of_service) for change in correction.changes])
+def correction_text(
+    correction: Correction, out_of_service: Collection[str] = (), names: WrittenNames = WRITTEN
+) -> Message:
+    """Changes that would help, in `names`; resources can be `out_of_service`."""
+    return message("list", items=[_change_text(change, out_of_service, names) for change in correction.changes])
 
 
-def _change_text(change: CorrectedValue, out_of_service: Collection[str]) -> Message:
+def _change_text(change: CorrectedValue, out_of_service: Collection[str], names: WrittenNames) -> Message:
     if change.value is not None:
-        return message("correction.value", name=change.name, value=print_value(change.value))
+        written = f"{change.name} := {print_value(change.value)}"
+        return message("correction.so", so=names.so(change.name, change.value, written))
+    name = names.call_member(MemberKind.BARRED if change.ability else MemberKind.OFFLINE, change.name)
     returns = change.ability or change.name in out_of_service
-    return message("correction.in-service" if returns else "correction.online", name=change.name)
+    return message("correction.in-service" if returns else "correction.online", name=name)
 
 
 # Why there is no plan from any of several initial states: a reason for each, as few as are found to be enough.

@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final, Protocol
 
+from sequence_planner.texts.message import Message, message
+
 VARIABLE: Final = "SEQUENCE_PLANNER_MEMORY"  # of the environment: the limit in GB
 USUAL: Final = 2.0  # GB
 LEAST, MOST = 0.25, 1024.0  # GB
@@ -44,8 +46,10 @@ class MemoryLimit:
         self.gigabytes = gigabytes
         self.reached = False
 
-    def __str__(self) -> str:
-        return f"it takes more than {self.gigabytes:g} GB of memory: allow more with --memory or {VARIABLE}"
+    @property
+    def exceeded(self) -> Message:
+        """Say that a process had more."""
+        return message("work.memory", gigabytes=f"{self.gigabytes:g}", variable=VARIABLE)
 
     @contextmanager
     def held(self, process: Killable) -> Iterator[None]:

@@ -20,9 +20,10 @@ from sequence_planner.forking.child import Child
 from sequence_planner.forking.copying import Copy, can_be_copied
 from sequence_planner.forking.starting import start
 from sequence_planner.process.memory_limit import LOOK, MemoryLimit
+from sequence_planner.texts.message import message
 
 Found = TypeVar("Found")
-NO_ANSWER: Final = "the process has ended without an answer; is memory short?"
+NO_ANSWER: Final = message("work.no-answer")
 
 
 class WorkerError(Exception):
@@ -33,6 +34,7 @@ class WorkerError(Exception):
 
     def __init__(self, why: str, *, again: bool = False) -> None:
         super().__init__(why)
+        self.why = why
         self.again = again
 
 
@@ -135,7 +137,7 @@ def _next(connection: Connection, limit: MemoryLimit | None) -> tuple[bool, Any]
         is_last, content = connection.recv()
     except (EOFError, OSError):
         if limit is not None and limit.reached:
-            raise TooLargeError(str(limit)) from None
+            raise TooLargeError(limit.exceeded) from None
         raise WorkerError(NO_ANSWER) from None
     if isinstance(content, Exception) and is_last:
         raise content

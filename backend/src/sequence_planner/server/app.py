@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import cache, partial
-from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
@@ -21,25 +20,11 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from sequence_planner.backup.service import Shelf
 from sequence_planner.controller.ipc import ControllerClient
-from sequence_planner.db.location import revisions_folder
 from sequence_planner.history.client import HistoryProcess
 from sequence_planner.journal.archive import Archive
 from sequence_planner.mes.webhooks.delivery import Deliverer, Sender
-from sequence_planner.server import errors, metrics, openapi_document
+from sequence_planner.server import errors, metrics
 from sequence_planner.server import metrics as health
-from sequence_planner.server.api import (
-    declared,
-    history,
-    job_orders,
-    model,
-    revisions,
-    session,
-    station,
-    storage,
-    users,
-    watches,
-    webhooks,
-)
 from sequence_planner.server.api.job_orders import OrderOfWorkDesk
 from sequence_planner.server.auth import Remembering, check_declared
 from sequence_planner.server.binding import check_endpoint
@@ -56,52 +41,18 @@ from sequence_planner.server.http.page_files import PageFiles
 from sequence_planner.server.http.renamed import Renamed
 from sequence_planner.server.metrics import ControllerFigures, Readiness, WayToDatabase
 from sequence_planner.server.openapi_document import describe
+from sequence_planner.server.routers import ROUTERS
 from sequence_planner.server.services.backups import BackupService
+from sequence_planner.server.services.deployments import DeploymentService
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.identity import IdentityService, Sweeper
 from sequence_planner.server.services.orders import OrderService
 from sequence_planner.server.services.retention import RetentionService
 from sequence_planner.server.settings import Settings
-from sequence_planner.server.stream import endpoints
 from sequence_planner.server.stream.broadcast import Broadcast, FlowsFeed, NetworkFeed
 from sequence_planner.server.stream.endpoints import WatchShow
 
 LONG = 10_000  # bytes; such answers are compressed for who takes them so
-PARTS = (
-    session.session_router,
-    session.provider_router,
-    station.router,
-    station.instructions_router,
-    declared.router,
-    model.attachments_router,
-    station.ros_router,
-    endpoints.stream_router,
-    users.people_router,
-    users.people_bodiless,
-    users.keys_router,
-    users.keys_bodiless,
-    watches.router,
-    endpoints.watch_stream_router,
-    job_orders.order_of_work_router,
-    webhooks.router,
-    webhooks.bodiless,
-    storage.backups_router,
-    storage.backups_bodiless,
-    storage.storage_router,
-    storage.storage_bodiless,
-    history.audit_router,
-    history.history_router,
-    job_orders.job_orders_router,
-    job_orders.job_orders_bodiless,
-    job_orders.job_responses_router,
-    history.events_router,
-    job_orders.capabilities_router,
-    model.model_router,
-    model.language_router,
-    model.draft_pipelines_router,
-    revisions.router,
-    openapi_document.router,
-)
 
 
 class StationServer(FastAPI):
@@ -112,10 +63,6 @@ class StationServer(FastAPI):
         if self.openapi_schema is None:
             self.openapi_schema = describe(self)
         return self.openapi_schema
-
-
-def _workshop(office: IdentityService, model: Path, settings: Settings) -> Workshop:
-    return Workshop(office, model, revisions_folder(settings.database, model), settings.stream, settings.start)
 
 
 def _backup_desk(office: IdentityService, settings: Settings, controller: ControllerClient) -> BackupService | None:
@@ -166,7 +113,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.history = looking_back = (
             None if folder is None else HistoryProcess(folder, settings.database, archives)
         )
-        app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
+        app.state.workshop = shop = Workshop.for_model(office, settings)
+        app.state.deployments = deployments = None if shop is None else DeploymentService(shop, controller)
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
         app.state.deliverer = deliverer = Deliverer(
@@ -175,8 +123,9 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         parts = (controller, flows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         running += [asyncio.create_task(each.run()) for each in (backup_desk, retention_desk) if each is not None]
-        if shop is not None:
-            controller.listen(shop.hear)
+        if deployments is not None:
+            controller.listen(deployments.shop.hear)
+            controller.listen(deployments.note_view)
         try:
             yield
         finally:
@@ -185,8 +134,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
             await asyncio.gather(*running, return_exceptions=True)
             if looking_back is not None:
                 looking_back.close()
-            if shop is not None:
-                await shop.close()
+            if deployments is not None:
+                await deployments.close()
             await run_in_threadpool(office.close)
 
     app = StationServer(
@@ -215,7 +164,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
 
 def _route(app: FastAPI, settings: Settings) -> None:
     """Add what answers each address: the interface, what watches over the station's health, and the page's files."""
-    for part in (*PARTS, health.health_router, metrics.metrics_router):
+    for part in (*ROUTERS, health.health_router, metrics.metrics_router):
         app.router.routes.extend(part.routes)
     check_declared(app.routes)
     app.router.default = Renamed(app.router, PageFiles(settings.page, settings.beside))

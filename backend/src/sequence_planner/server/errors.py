@@ -184,10 +184,10 @@ def _not_as_expected(wrong: Iterable[tuple[str, str]]) -> Response:
 
 async def _work_ended(request: Request, error: Exception) -> Response:
     assert isinstance(error, WorkerError)
-    text = str(error)
-    end = "" if text.endswith("?") else "."
-    detail = message("refused.worker-failed.again", why=f"{text[:1].upper()}{text[1:]}{end}")
-    return refusal_response(ProblemFound(503, "worker-failed", detail))
+    end = "" if error.why.endswith("?") else "."
+    return refusal_response(
+        ProblemFound(503, "worker-failed", message("refused.worker-failed.again", why=error.why, end=end))
+    )
 
 
 async def _refused(request: Request, error: Exception) -> Response:

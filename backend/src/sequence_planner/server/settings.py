@@ -10,6 +10,7 @@ from pathlib import Path
 
 from sequence_planner.auth.oidc.settings import ProviderSettings
 from sequence_planner.backup.settings import Keeping
+from sequence_planner.db.location import revisions_folder
 from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.retention.settings import Retention
@@ -130,6 +131,11 @@ class Settings(Endpoint):
     webhooks: Targets = field(default_factory=Targets)
     backups: Keeping = field(default_factory=Keeping)
     retention: Retention = field(default_factory=Retention)
+
+    @property
+    def revisions(self) -> Path | None:
+        """The folder of the model's revisions; None where there is no model."""
+        return None if self.model is None else revisions_folder(self.database, self.model)
 
 
 def address_of(host: str) -> IPv4Address | IPv6Address | None:

@@ -56,6 +56,9 @@ class CommandReader:
         """Raises `NotUnderstoodError` when the message has too many meanings."""
         self._groups = [_group(pipeline, automaton, settings) for settings in _together(pipeline.settings)]
 
+    def __deepcopy__(self, memo: object) -> CommandReader:
+        return self  # it never changes
+
     @property
     def variables(self) -> frozenset[str]:
         """The variables that a message says."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.syntax import ExpressionError, Span
 from sequence_planner.language.types import BooleanType, IntegerRange, Type, Value, contains
 from sequence_planner.pipelines.graph import StationPipelines
@@ -82,6 +82,8 @@ _AT = {
     FaultKind.DROP: ("resource", "topic", "command"),
     FaultKind.GARBAGE: ("resource", "topic"),
 }
+# Kinds of what a device says.
+_SPEAKING = (FaultKind.SILENT, FaultKind.STUCK, FaultKind.GARBAGE)
 _WORD = re.compile(r"\S+")
 
 Word = re.Match[str]
@@ -93,6 +95,7 @@ class FaultReader:
     def __init__(self, automaton: Automaton, pipelines: StationPipelines, emulates: Callable[[str], bool]) -> None:
         self._automaton = automaton
         self._targets = dict(_targets(pipelines, emulates))
+        self._speaking = {each.topic.resource for each in pipelines.sources.values()}
 
     def read(self, text: str) -> Fault | Clear:
         """Return what a line says. Raises `ExpressionError` with the word that does not fit."""
@@ -109,6 +112,8 @@ class FaultReader:
         if at not in _AT[kind]:
             of = " or a ".join(_AT[kind]).replace("command", "topic")
             raise _wrong(words[1], f"`{kind}` is for a {of}, and {words[0][0]} is a {_shown(at)}")
+        if kind in _SPEAKING and at == "resource" and words[0][0] not in self._speaking:
+            raise _wrong(words[1], f"nothing is heard from {words[0][0]} in any case: nothing of it could be {kind}")
         behind, amount, value = words[2:], 1.0, None
         if kind is FaultKind.WRONG:
             value = self._value(words)
@@ -230,6 +235,7 @@ class _Underway:
     until: float | None
     messages: Mapping[str, Message] = field(default_factory=dict)
     values: Mapping[str, Value] = field(default_factory=dict)
+    held: Mapping[str, Value | None] = field(default_factory=dict)  # the variables of those messages
 
 
 class FaultyDevices:
@@ -268,6 +274,11 @@ class FaultyDevices:
             begun.values = {} if value is None else {fault.target: value}
         elif fault.kind is FaultKind.STUCK:
             begun.messages = {topic: self.devices.report(topic) for topic in self._topics(fault.target)}
+            begun.held = {
+                name: self.devices.state[name]
+                for name, topics in self.devices.topics.items()
+                if not begun.messages.keys().isdisjoint(topics)
+            }
         self._underway.append(begun)
         self._slow()
 
@@ -305,6 +316,21 @@ class FaultyDevices:
         except CannotSpeakError:  # beside what else the device says now, the value cannot be said
             return message
 
+    def heard(self, variable: str) -> Value | None:
+        """What can be heard of a measured variable: what is so, or what a fault makes of it; None where nothing is said
+        that has a sense. Of messages that are lost only sometimes, the next comes.
+        """
+        for topic in self.devices.topics[variable]:
+            at = (topic, self._pipelines.sources[topic].topic.resource)
+            if any(_is_mute(fault) and fault.target in at for fault in self.faults):
+                return None
+        for each in self._underway:
+            if variable in each.held:
+                return each.held[variable]
+            if variable in each.values:
+                return each.values[variable]
+        return self.devices.state[variable]
+
     def sent(self, topic: str, data: bytes) -> bytes | None:
         """Return what a message is on the network: itself, bytes that are no message, or None for one that is lost."""
         if self._is_lost(topic):
@@ -341,6 +367,12 @@ class FaultyDevices:
     def _is_lost(self, topic: str) -> bool:
         kept = math.prod(1 - f.amount for f in self.faults if f.kind is FaultKind.DROP and self._is_at(f, topic))
         return kept < 1 and self._random.random() >= kept
+
+
+def _is_mute(fault: Fault) -> bool:
+    """Return whether nothing that a station understands is said for as long as it lasts."""
+    lost = fault.kind is FaultKind.DROP and fault.amount >= 1
+    return lost or fault.kind in (*_OFFLINE, FaultKind.SILENT, FaultKind.GARBAGE)
 
 
 def garbage(data: bytes) -> bytes:

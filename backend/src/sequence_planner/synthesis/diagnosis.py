@@ -13,6 +13,7 @@ from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.reachability import Tracer, reaching
 from sequence_planner.synthesis.traces import Trace
 from sequence_planner.synthesis.transition_relation import Plant
+from sequence_planner.texts.message import Message, message
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,7 @@ class Unmeetable:
     time.
     """
 
-    message: str
+    message: Message
     lines: tuple[str, ...]
     trace: Trace | None
 
@@ -42,16 +43,15 @@ def _into_the_forbidden(plant: Plant, forbidden: Mapping[str, Function], broken:
     trace = Tracer(plant, starts=False).shortest(broken)
     if trace is None:
         names = ", ".join(name for name, where in forbidden.items() if _may_come_about(plant, where))
-        return Unmeetable(f"specification {names} cannot be met: the devices alone can break it", (), None)
+        return Unmeetable(message("found.unmet.devices", specifications=names), (), None)
     last = plant.diagrams.states(trace.last)
     names = ", ".join(name for name, where in forbidden.items() if (where & last).satisfiable())
     lines = [step.line(number, names=False) for number, step in enumerate(trace.steps, start=1)]
     if not trace.steps:
-        which = "an initial state" if plant.automaton.initial is not None else "the initial state"
-        text = f"specification {names} cannot be met: {which} breaks it, with {_values(plant, trace.last)}"
-        return Unmeetable(f"{text}. Begin in another state, or forbid less", (), trace)
+        which = "found.unmet.initial" if plant.automaton.initial is None else "found.unmet.an-initial"
+        return Unmeetable(message(which, specifications=names, values=_values(plant, trace.last)), (), trace)
     return Unmeetable(
-        f"specification {names} cannot be met: no start could prevent this from the initial state on",
+        message("found.unmet.no-start", specifications=names),
         (*lines, f"violated with {_values(plant, trace.last)}"),
         trace,
     )
@@ -77,51 +77,36 @@ def _without_rest(plant: Plant, forbidden: Mapping[str, Function], unsafe: Funct
         return Unmeetable(_headline(plant, False), (), None)
     anyhow = reaching(diagrams, plant.rest, counted_on)
     if not (diagrams.states(trace.last) & anyhow).satisfiable():
-        return Unmeetable(f"{_headline(plant, bool(trace.steps))}. {_what_to_do(plant)}", tuple(trace.lines()), trace)
+        id_ = "found.rest.anyhow-plain" if plant.automaton.one_at_a_time else "found.rest.anyhow"
+        return Unmeetable(message(id_, what=_headline(plant, bool(trace.steps))), tuple(trace.lines()), trace)
     further = Tracer(plant, faults=False).onward(trace, plant.rest)
     if further is None:
         return Unmeetable(_headline(plant, bool(trace.steps)), tuple(trace.lines()), trace)
-    text = (
-        f"{_headline(plant, bool(trace.steps))} safely: {_barred(plant, forbidden, unsafe, len(trace.steps), further)}"
-    )
+    rest = message("found.rest.marked" if plant.automaton.one_at_a_time else "found.rest.rest")
+    barred = _barred(plant, forbidden, unsafe, len(trace.steps), further, rest)
+    text = message("found.rest.barred", what=_headline(plant, bool(trace.steps)), barred=barred, rest=rest)
     return Unmeetable(text, tuple(further.lines()), further)
 
 
-def _headline(plant: Plant, moved: bool) -> str:
-    place = "from where the devices alone can lead" if moved else "from the initial state"
-    if plant.automaton.one_at_a_time:
-        place = "from where uncontrollable transitions can lead" if moved else "from the initial state"
-        return f"{place} no state described by `marked` can be reached"
-    return f"{place} no state described by `rest` in station.yaml can be reached"
+def _headline(plant: Plant, moved: bool) -> Message:
+    plain = "-plain" if plant.automaton.one_at_a_time else ""
+    return message(f"found.rest.{'led' if moved else 'initial'}{plain}")
 
 
-def _what_to_do(plant: Plant) -> str:
-    if plant.automaton.one_at_a_time:
-        return "So it is also without `forbidden`: check `marked`, and the transitions that should lead there"
-    return (
-        "So it is also without any specification: check `rest`, and the abilities and effects that should lead there "
-        "(neither faults nor restart abilities are counted on)"
-    )
-
-
-def _barred(plant: Plant, forbidden: Mapping[str, Function], unsafe: Function, begin: int, trace: Trace) -> str:
+def _barred(
+    plant: Plant, forbidden: Mapping[str, Function], unsafe: Function, begin: int, trace: Trace, rest: Message
+) -> Message:
     """Return where a way to rest, of which the first `begin` steps cannot be prevented, comes to what is not safe."""
     diagrams = plant.diagrams
-    rest = "a marked state" if plant.automaton.one_at_a_time else "rest"
     for number, step in enumerate(trace.steps[begin:], start=begin + 1):
         state = diagrams.states(step.state)
         if not (state & unsafe).satisfiable():
             continue
         if step.forbidden_by:
-            what = f"breaks {_names(step.forbidden_by)} in step {number}"
-        elif names := [n for n, where in forbidden.items() if (state & _doomed(plant, where)).satisfiable()]:
-            what = f"leaves it to chance, from step {number} on, whether {_names(names)} is broken"
-        else:
-            what = f"may end, from step {number} on, where {rest} cannot be reached any more"
-        return (
-            f"the shortest way there {what}. Let another way lead to {rest}, or forbid less; perhaps something "
-            "uncontrollable should be left to an ability"
-        )
+            return message("found.rest.breaks", specifications=_names(step.forbidden_by), step=number)
+        if names := [n for n, where in forbidden.items() if (state & _doomed(plant, where)).satisfiable()]:
+            return message("found.rest.chance", step=number, specifications=_names(names))
+        return message("found.rest.may-end", step=number, rest=rest)
     raise AssertionError("a way to rest that is safe")
 
 

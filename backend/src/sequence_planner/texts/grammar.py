@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 MOST_LISTED: Final = 4  # of a longer list one fewer is named, and the others are counted
@@ -32,6 +32,7 @@ class Grammar:
     language: str
     verbs: Mapping[str, str]
     denial: str
+    ceasing: str
     be: str
     conjunction: str
     disjunction: str
@@ -164,6 +165,7 @@ ENGLISH: Final = Grammar(
     language="en",
     verbs={"is": "are", "are": "are", "was": "were", "can": "can", "must": "must", "will": "will", "may": "may"},
     denial="not",
+    ceasing="no longer",
     be="is",
     conjunction="and",
     disjunction="or",
@@ -224,6 +226,7 @@ SWEDISH: Final = Grammar(
         ]
     },
     denial="inte",
+    ceasing="inte längre",
     be="är",
     conjunction="och",
     disjunction="eller",
@@ -262,3 +265,5 @@ SWEDISH: Final = Grammar(
 )
 
 GRAMMARS: Final = (ENGLISH, SWEDISH)
+OF_WHAT_IS_SO: Final = tuple(replace(grammar, denial=grammar.ceasing) for grammar in GRAMMARS)
+"""As they deny what is so now, and is to end."""

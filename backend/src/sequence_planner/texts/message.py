@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self, overload
 
 from typing_extensions import TypeAliasType
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
     from pydantic_core import CoreSchema
 
-# `{name}`, or `{name|waits|wait}` for what is said of one and of several.
-PLACE: Final = re.compile(r"\{(\w+)(?:\|([^|}]*)\|([^|}]*))?\}")
+# `{name}`, `{name|waits|wait}` for what is said of one and of several, or `{name^}` where a sentence begins with it.
+PLACE: Final = re.compile(r"\{(\w+)(?:\|([^|}]*)\|([^|}]*))?(\^)?\}")
 _NAMED = 3  # of a list so many are named, and the others counted
 
 Item = TypeAliasType("Item", "str | int | float | Message | Sentence | Wording")
@@ -119,16 +119,20 @@ class Sentence(Wording):
 
 @dataclass(frozen=True)
 class _Place:
-    """A place of a text: for an argument, or for what is said of `one` and of `several`."""
+    """A place of a text: for an argument, with a capital letter where it `begins`, or for what is said of `one` and of
+    `several`.
+    """
 
     name: str
     one: str | None
     several: str | None
+    begins: str | None
 
     def filled(self, arguments: Mapping[str, Argument]) -> str:
         argument = arguments[self.name]
         if self.one is None or self.several is None:
-            return in_english(argument)
+            told = in_english(argument)
+            return f"{told[:1].upper()}{told[1:]}" if self.begins else told
         assert isinstance(argument, int | float | Sequence) and not isinstance(argument, str)
         return self.one if (argument if isinstance(argument, int | float) else len(argument)) == 1 else self.several
 
@@ -169,6 +173,14 @@ def listed(items: Collection[Item]) -> str:
     if len(every) > _NAMED + 1:
         every = [*every[:_NAMED], str(message("list.more", count=len(every) - _NAMED))]
     return str(message("list.and", most=", ".join(every[:-1]), last=every[-1])) if len(every) > 1 else "".join(every)
+
+
+@overload
+def joined(items: Iterable[str]) -> str: ...
+
+
+@overload
+def joined(items: Iterable[Item]) -> Item: ...
 
 
 def joined(items: Iterable[Item]) -> Item:

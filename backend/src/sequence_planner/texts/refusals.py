@@ -124,6 +124,14 @@ REFUSALS: Final[dict[str, str]] = {
     ),
     "refused.plan-running": "Something else is being carried out",
     "refused.plan-running.title": "{title} is being carried out. Wait for its end, or stop it.",
+    "refused.too-many-breakpoints": "There are too many breakpoints",
+    "refused.too-many-breakpoints.most": "There are {most}. Remove one first.",
+    "refused.no-breakpoint": "There is no such breakpoint",
+    "refused.no-breakpoint.gone": "It was removed, or the controller has begun anew.",
+    "refused.not-automatic": "The station is not in automatic mode",
+    "refused.not-automatic.now": "The mode is {mode}: there is nothing to pause later.",
+    "refused.no-product-end": "The model does not tell when a product is done",
+    "refused.no-product-end.pause": "No operation of a work master comes after all others. Pause the station now.",
     "refused.not-stepping": "The station is not stepping",
     "refused.not-stepping.starts": "Starts do not wait for steps. Switch stepping on first.",
     "refused.production-started": "Production is started",
@@ -181,14 +189,15 @@ REFUSALS: Final[dict[str, str]] = {
     "refused.unknown-ability": "There is no such ability",
     "refused.unknown-ability.those": "The station has no ability `{name}`. Look at those it has.",
     "refused.not-startable": "It may not start now",
-    "refused.not-startable.waits": "{ability} waits for {conditions}.",
+    "refused.not-startable.waits": "“{ability}” waits for {conditions}.",
     "refused.bad-predicate": "The predicate cannot be read",
+    "refused.bad-predicate.constant": "It names no variable, so it never becomes true.",
     "refused.bad-predicate.at": "character {character}: {why}",
     "refused.bad-predicate.text": "character {character}, `{text}`: {why}",
     "refused.advisor-timeout": "The advisor was too slow",
     "refused.advisor-timeout.again": "No answer was found in time; nothing was changed by asking. Try again.",
     "refused.advisor-unavailable": "The advisor cannot answer",
-    "refused.advisor-unavailable.again": "{why}. Nothing was changed by asking; try again in a moment.",
+    "refused.advisor-unavailable.again": "{why^}. Nothing was changed by asking; try again in a moment.",
     # Jobs and their orders.
     "refused.unknown-work-master": "There is no such work master",
     "refused.unknown-work-master.name": "The station has no work master `{name}`{hint}",
@@ -296,6 +305,10 @@ REFUSALS: Final[dict[str, str]] = {
         "{by} has deployed {name}, and the station begins anew with it. Nothing is published until it runs and "
         "somebody starts production. Try again then."
     ),
+    "refused.not-paused": "The station did not pause when the product was done",
+    "refused.not-paused.taken-back": (
+        "The pause was taken back, or the station was paused or held before. Plan the deployment again, or deploy now."
+    ),
     "refused.not-the-draft": "The draft is not this revision",
     "refused.not-the-draft.take-back": (
         "What is deployed is the draft, once it was saved: take the revision back into the draft first."
@@ -317,6 +330,9 @@ REFUSALS: Final[dict[str, str]] = {
     "refused.stale-draft.look": (
         "Somebody has changed the draft since you looked at it. Look at it again, then repeat this."
     ),
+    "refused.no-simulation": "There is no such simulation any more",
+    "refused.not-simulated": "That cannot be simulated",
+    "refused.not-folded": "The state space cannot be shown like that",
     "refused.no-revision": "There is no such revision",
     "refused.no-revision.look": "Look at the revisions that there are.",
     # The draft, what is kept, backups and the past.
@@ -327,9 +343,10 @@ REFUSALS: Final[dict[str, str]] = {
     "refused.no-run": "There is no such run",
     "refused.part-changed": "It was changed meanwhile",
     "refused.part-changed.why": (
-        "{why} Nothing was changed: look at what it is now, and repeat yours if it is still wanted."
+        "{why^}. Nothing was changed: look at what it is now, and repeat yours if it is still wanted."
     ),
     "refused.edit-refused": "It cannot be changed so",
+    "refused.edit-refused.why": "{why^}.",
     "refused.attach-refused": "The topic cannot be attached",
     "refused.attach-timeout": "The topic was not attached in time",
     "refused.attach-timeout.given-up": (
@@ -356,17 +373,57 @@ REFUSALS: Final[dict[str, str]] = {
         "The station makes one every hour that it runs, and `sequence-planner journal checkpoint` at once."
     ),
     "refused.archive-unreadable": "The archive cannot be read",
+    "refused.archive-unreadable.why": "{why^}.",
     "refused.history-failed": "The past cannot be looked at",
     "refused.history-failed.no-model": (
         "The server was started without the model of the station: start the station with `run`."
     ),
     # What could not be found out.
     "refused.worker-failed": "It could not be found out",
-    "refused.worker-failed.again": "{why} Try again.",
+    "refused.worker-failed.again": "{why^}{end} Try again.",
     "refused.history-gone": "That was cut off",
     "refused.model-changed": "The model is another one",
     "refused.other-version": "Another version of the program has written it",
     "refused.history-differs": "The run cannot be replayed",
     "refused.history-unreadable": "The run cannot be replayed",
     "refused.history-timeout": "There was no answer in time",
+    "refused.no-record.number": "The journal has no record {number}.",
+    "refused.no-record.trimmed": "The journal has no record {number}: records up to {begin} were cut off.",
+    "refused.history-differs.record": "The run cannot be replayed up to record {number}: {why}.",
+    "refused.history-gone.record": (
+        "Nothing tells how the station was at record {number}: what was before it was cut off."
+    ),
+    "refused.not-estimated.name": "There is no estimated variable `{name}`: only these can be corrected.",
+    "refused.not-in-domain.of": "`{value}` is no value of `{name}`, which ranges over {range}.",
+    "refused.model-changed.replay": "The run cannot be replayed with the model as it is now: {why}.",
+    "refused.history-failed.replay": "The replay failed: {why}.",
+    "refused.history-timeout.late": "There was no answer within {seconds} s. Ask for less, or try again later.",
+    "refused.history-failed.ended": "The process that looks back has ended. Try again.",
+    "target.https": "only https:// is sent to",
+    "target.this-machine": "{host} is this machine ({address}), which is not sent to",
+    "target.not-listed": (
+        "{host}:{port} is not on the list of hosts that webhooks may go to; whoever runs the station puts it there "
+        "with --webhook-host"
+    ),
+    "target.network-not-listed": (
+        "{host}:{port} is not on the list of hosts that webhooks may go to; whoever runs the station puts it there "
+        "with --webhook-host, or its network ({address}) with --webhook-network"
+    ),
+    "target.special": (
+        "{host} has an address that is not public ({address}) and of a kind that is not sent to unless the list has "
+        "exactly that address"
+    ),
+    "target.not-public": (
+        "{host} has an address that is not public ({address}), in a network that is not on the list; whoever runs the "
+        "station puts that there with --webhook-network"
+    ),
+    "target.not-this-machine": "{host} is not this machine ({address}): only https:// is sent to",
+    "target.no-address": "{host} has no address",
+    "target.no-network": "{written} is no network; write it as in 10.1.2.0/24",
+    "target.every-network": "{written} is every network there is; write those that are meant",
+    "target.no-host": "{written} is no host; write it as in mes.example:8443",
+    "target.no-url": "this is no URL of the form https://host/path, of up to {most} characters",
+    "target.password": "a URL with a user or a password in it is not sent to; deliveries are signed",
+    "target.fragment": "a URL with a fragment is not sent to: no server would see it",
+    "target.unresolved": "{host} cannot be resolved",
 }

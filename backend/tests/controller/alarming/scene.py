@@ -22,7 +22,7 @@ from sequence_planner.controller.commands.alarms import (
     UnshelveAlarm,
 )
 from sequence_planner.controller.features.abilities import Abilities
-from sequence_planner.controller.features.forces import Forces
+from sequence_planner.controller.features.commissioning.forces import Forces
 from sequence_planner.controller.features.plan import LivePlan
 from sequence_planner.controller.features.records import unwritten
 from sequence_planner.controller.features.tasks import OpenTasks, TaskHandler

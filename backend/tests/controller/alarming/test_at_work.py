@@ -22,7 +22,7 @@ def test_an_alarm_comes_is_acknowledged_and_goes() -> None:
             arm.transport.close()
             await on.until(lambda: "silent:arm" in on.controller.view().alarms)
             alarm = on.controller.view().alarms["silent:arm"]
-            assert (alarm.text, *alarm.parts) == ("Nothing heard from Arm", f"No message any more on {STATE}")
+            assert (alarm.text, *alarm.parts) == ("Nothing heard from Arm", f"No more messages on {STATE}")
             command = AcknowledgeAlarm(actor=SYSTEM, alarm="silent:arm", since=alarm.since)
             await on.controller.command(command)
             known = on.controller.view().alarms["silent:arm"]

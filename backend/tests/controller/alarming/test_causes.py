@@ -8,6 +8,7 @@ import pytest
 
 from controller.alarming.scene import Scene, acknowledge, alarms
 from controller.carrying_out import carry_out
+from sequence_planner.automaton.automaton import Kind
 from sequence_planner.controller.commands.tasks import ProblemKind, TaskProblem
 from sequence_planner.controller.recovery.manual import Moved, WentOn
 from sequence_planner.controller.restore import RestoredState
@@ -15,8 +16,10 @@ from sequence_planner.controller.views.station import AlarmState, Priority, Ques
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.events import TickOutcome
+from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.state import LastOperatorPlan, OutOfService
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, ServiceKind
+from sequence_planner.planning.problem import PlanAnswer, Verdict
 from sequence_planner.texts.message import as_it_was, message
 from support.simulated import Rig, never
 
@@ -26,6 +29,11 @@ def outcome(
 ) -> TickOutcome:
     nothing: frozenset[str] = frozenset()
     return TickOutcome(finished, (), started, nothing, nothing, conflicts, nothing, changed=True)
+
+
+def plan_status(execution: Executor) -> PlanStatus:
+    """For a type checker another each time."""
+    return execution.plan.status
 
 
 def there(shown: Scene, now: Timestamp) -> set[str]:
@@ -77,7 +85,7 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     late = "overdue:nutrunner.run_nut"
     assert late not in shown.current(Timestamp(rig.now + 4, rig.now + 4))
     told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
-    assert told.text == "Smart nutrunner: Run the nutrunner has not begun within 5 s"
+    assert told.text == "Smart nutrunner: “Run the nutrunner” has not begun within 5 s"
     assert told.consequence == "“Tighten bolt pair 3” waits until it does."
 
     assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
@@ -86,7 +94,7 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     both = shown.current(Timestamp(rig.now + 29.8, rig.now + 29.8))  # nor has the robot moved, for which the tool waits
     (robot,) = (alarm for key, alarm in both.items() if key.startswith("overdue:robot") and alarm.ended is None)
     assert robot.state is AlarmState.UNACKNOWLEDGED
-    assert any(part.startswith("Smart nutrunner: Run the nutrunner has not finished within ") for part in robot.parts)
+    assert any(part.startswith("Smart nutrunner: “Run the nutrunner” has not finished within ") for part in robot.parts)
 
 
 def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is_unknown() -> None:
@@ -128,7 +136,7 @@ def test_outputs_that_nobody_has_decided_on_are_an_alarm(monkeypatch: pytest.Mon
     undecided = ["robot.target_pose", "nutrunner.run_tool_forward"]
     monkeypatch.setattr(shown.consistency, "told", lambda untold: undecided)
     told = shown.current(Timestamp(1000, 10))["undecided-outputs"]
-    assert told.text.endswith("nutrunner.run_tool_forward, robot.target_pose")
+    assert told.text.endswith("nutrunner.run_tool_forward and robot.target_pose")
     undecided.clear()
     assert there(shown, Timestamp(1001, 11)) == set()
 
@@ -193,7 +201,7 @@ def test_abilities_of_one_resource_that_are_given_up_are_one_alarm() -> None:
     told = alarms(rig).current(Timestamp(1000, 10))
     assert {key for key in told if key.startswith("given-up")} == {"given-up:nutrunner", "given-up:robot"}
     assert told["given-up:nutrunner"].text == (
-        "Run the nutrunner has not begun within 5 s, tried 2 times: it is given up"
+        "“Run the nutrunner” has not begun within 5 s, tried 2 times: it is given up"
     )
     assert "put Run the nutrunner back in service" in told["given-up:nutrunner"].action
 
@@ -221,6 +229,30 @@ def test_where_there_is_no_plan_what_is_out_of_service_is_to_be_put_back() -> No
     serve(ServiceKind.ABILITY, "nutrunner.run_nut", True)
     assert rig.run(30, until=lambda: "new_engine" in rig.completed)
     assert "no-plan" not in there(shown, rig_now(rig))
+
+
+def test_that_there_was_no_plan_while_nothing_was_known_is_no_alarm_once_it_is_known() -> None:
+    """An answer that comes just after the first messages is about the moment before them."""
+    rig = Rig()
+    execution, shown, now = rig.execution, alarms(rig), rig_now(rig)
+    measured = rig.station.automaton.names(Kind.MEASURED)
+    first = {name: rig.station.automaton.variables[name].initial for name in measured}
+    answer = PlanAnswer(Verdict.NONE_AT_ALL, None, (), tuple(sorted(execution.active)), 0, 0.01)
+    execution.start_production()
+    execution.tick(first, now)
+    execution.tick(dict.fromkeys(measured), now)
+    request = execution.request(5)
+    assert request is not None
+    execution.tick(first, now)
+    assert not execution.adopt(request, answer), "it is asked again"
+    assert plan_status(execution) is PlanStatus.NONE
+    assert there(shown, now).isdisjoint({"no-plan", "left-out"})
+    again = execution.request(5)
+    assert again is not None
+    assert plan_status(execution) is PlanStatus.PLANNING
+    assert there(shown, now).isdisjoint({"no-plan", "left-out"})
+    assert execution.adopt(again, answer)
+    assert "no-plan" in there(shown, now), "of what is known by now"
 
 
 def test_an_errand_that_the_station_has_stopped_is_an_alarm_until_it_works_again() -> None:

@@ -158,7 +158,7 @@ def test_the_network_of_eight_nodes_goes_away_and_comes_back(tells: bool) -> Non
     (alarm,) = on.shown.values()
     assert alarm.text == "No device is responding (8 of 8). Probable network failure"
     assert (alarm.priority, alarm.state) == (Priority.HIGH, AlarmState.UNACKNOWLEDGED)
-    assert len([part for part in alarm.parts if part.startswith("No message any more on /")]) == 8
+    assert len([part for part in alarm.parts if part.startswith("No more messages on /")]) == 8
     assert on.most <= 4
 
     carry_out(on.alarms, acknowledge("many-silent", alarm.since), on.moment)
@@ -313,7 +313,7 @@ def test_another_definition_explains_the_silence_of_its_node() -> None:
     on.network.look([built_otherwise])
     shown = on.shown
     assert shown.keys() == {"network:agv"}
-    assert [part for part in shown["network:agv"].parts if part.startswith("No message any more on ")]
+    assert [part for part in shown["network:agv"].parts if part.startswith("No more messages on ")]
 
 
 def test_nothing_hides_in_an_alarm_that_is_out_of_service() -> None:

@@ -11,7 +11,7 @@ from pydantic import JsonValue
 
 from controller.alarming.scene import Scene, Told, acknowledge, shelve
 from controller.carrying_out import carry_out
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.controller.alarms.alarm import KIND, aside_from
 from sequence_planner.controller.alarms.kinds import Cause

@@ -17,7 +17,7 @@ from sequence_planner.editor.folds.sameness import difference
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.execution.record.recorder import model_digest
 from sequence_planner.model.files import read_files, write_files
-from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.content import plain
 from sequence_planner.model.yaml.reader import read_text
 from sequence_planner.station import MeantStation, read_station
 from support.examples import examples

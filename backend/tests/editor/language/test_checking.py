@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.editor.language.service import TextProblem, check
 from sequence_planner.language.syntax import Span
 from sequence_planner.model.loader import Station

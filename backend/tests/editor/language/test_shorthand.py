@@ -43,7 +43,10 @@ def hovered(marked: str, file: str = ARM, path: EntryPath = MOVE) -> Hover:
         ("|", {"is_free", "is_at(to)", "is_at(home)", "near(", "all_tight", "all", "at least", "count"}, {":", "in"}),
         ("all |", {"f in free", "p in part"}, {"and", "held", "near("}),
         ("all pose|", {"pose in free"}, {"held"}),
-        ("all p in |", {"part", "ends", "{"}, {"held", "p1"}),
+        ("all p in |", {"part", "ends", "sides", "{"}, {"held", "p1", "arm.sides"}),
+        ("all si|", {"si in sides"}, {"held"}),
+        ("any s in sides: side == |", {"s", "left"}, {"p1"}),
+        ("at in s|", {"sides", "spot"}, {"arm.sides"}),
         ("all p in {p1, |", {"p2", "p3"}, {"home", "p1"}),
         ("all p in part |", {":", "where", ","}, {"and"}),
         ("all p in part where p |", {"<", "!=", "in"}, {"and"}),
@@ -85,7 +88,7 @@ def test_an_action_for_each_value() -> None:
         (("enumerations", "pose", "includes", 0), "part", "spot", "pose", "`pose` would include itself"),
         (("predicates", "is_done", "parameters", "which"), "ends", "part", "parts", "unknown enumeration `parts`"),
         (("predicates", "is_done", "when"), "which", "all_tight", "bolts[p9] == tight", "unknown variable `bolts[p9]`"),
-        (("predicates", "all_tight"), "is_done(p1)", "is_done(p1)", "is_done", "`is_done` has 1 argument (which)"),
+        (("predicates", "all_tight"), "is_done(", "is_done(p1)", "is_done", "`is_done` has 1 argument (which)"),
     ],
 )
 def test_each_field(path: EntryPath, offered: str, right: str, wrong: str, message: str) -> None:
@@ -141,3 +144,12 @@ def test_a_long_expansion_is_cut_off() -> None:
     assert found.expansion is not None
     assert len(found.expansion) < 420
     assert found.expansion.endswith(" …")
+
+
+def test_a_set_of_a_resource_is_explained_by_either_name() -> None:
+    for text, written in (("at in si|des", "sides"), ("any s in arm.si|des: side == s", "arm.sides")):
+        found = hovered(text)
+        assert (found.kind, found.pattern, found.part) == (NameKind.SET, "arm.sides", "set:arm.sides"), written
+        assert found.place is not None
+        assert found.place.file == ARM
+    assert "arm.sides" in inserts("arm.at in |", "specifications.yaml", ("apart", "never"))

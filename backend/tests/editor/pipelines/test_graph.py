@@ -10,20 +10,21 @@ from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from sequence_planner.analysis.report import FindingDocument
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.editor.draft import AddEntry, MoveEntry, RemoveEntry, SetEntry, WriteText
 from sequence_planner.editor.pipelines.graph import DraftPipelines, with_live_edges
-from sequence_planner.editor.pipelines.reader import DraftReader
+from sequence_planner.editor.pipelines.reader import STATION, DraftReader
 from sequence_planner.editor.pipelines.schemas import DraftPipelineView, Soundness
 from sequence_planner.model.files import write_files
 from sequence_planner.model.loader import load_station
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError
-from sequence_planner.model.yaml.editor import content_at
+from sequence_planner.model.yaml.content import content_at
 from sequence_planner.pipelines.builder import build_pipelines, load_messages
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.pipelines.inference import with_inferred_variables
 from support.examples import examples
+from support.told import as_message
 
 from .drafts import MODELS, REACH, edited, files_of, graph_of, prepared, shipped
 
@@ -262,3 +263,13 @@ def findings_in(view: DraftPipelineView) -> list[FindingDocument]:
         *(each for stage in view.stages for each in stage.findings),
         *(each for source in view.sources for each in source.findings),
     ]
+
+
+def test_of_a_station_that_could_never_be_read_its_resources_are_shown(tmp_path: Path) -> None:
+    files = files_of(REACH)
+    broken = WriteText(file=STATION, was=files[STATION], text=files[STATION] + "]")
+    shown = DraftPipelines(DraftReader(tmp_path).sketch(edited(files, broken)))
+    assert shown.sketch.unread == (STATION,)
+    (said,) = (each.message for each in shown.sketch.findings if each.place.file == STATION)
+    assert as_message(said).id == "wrong.yaml"
+    assert shown.pipelines.keys() == graph_of(files).pipelines.keys()

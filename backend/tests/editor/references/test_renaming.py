@@ -8,8 +8,10 @@ import pytest
 
 from sequence_planner.editor.symbols.index import parse_part
 from sequence_planner.editor.symbols.rename import renamed
+from sequence_planner.model.files import read_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.ros.types.messages import MessageRegistry
+from support.places import BOLT_TIGHTENING
 
 from .stations import CELL, changed, messages_of, write
 
@@ -278,3 +280,34 @@ def test_nothing_is_written(tmp_path: Path) -> None:
     files = dict(CELL)
     renamed(files, parse_part("ability:robot.move"), "new")
     assert files == CELL
+
+
+SCENARIO = """\
+fine:
+  given: {"bolts[bolt_pair_1]": placed, robot.pose: home}
+  never: [robot.pose == bolt_pair_2 and not nutrunner.run_nut.executing, robot.pose == home]
+  steps:
+    - fault: robot.pose wrong home for 3 s
+    - fault: clear robot
+    - set: {robot.pose: home}
+    - starts: [robot.move_to_position(home), robot.move_to_previous]
+    - completes: tighten_bolt_pair(bolt_pair_1)
+    - done: operator.place_bolt_pair
+"""
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "before", "after"),
+    [
+        ("resource:robot", "arm", "robot", "arm"),
+        ("variable:robot.pose", "place", "robot.pose", "robot.place"),
+        ("value:pose.home", "rest_pose", "home", "rest_pose"),
+        ("ability:robot.move_to_position", "go_to", "move_to_position", "go_to"),
+        ("operation:tighten_bolt_pair", "tighten", "tighten_bolt_pair", "tighten"),
+        ("ability:nutrunner.run_nut", "turn", "run_nut", "turn"),
+    ],
+)
+def test_scenarios_follow(part: str, name: str, before: str, after: str) -> None:
+    files = {**read_files(BOLT_TIGHTENING), "tests/work.yaml": SCENARIO}
+    new = renamed(files, parse_part(part), name)["tests/work.yaml"]
+    assert new == SCENARIO.replace(before, after)

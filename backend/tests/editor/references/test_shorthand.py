@@ -20,7 +20,11 @@ ARM = "resources/arm.yaml"
         ("set:ends", {"station.yaml": 3, ARM: 4, "operations.yaml": 1}),
         ("set:free", {"station.yaml": 2, ARM: 2}),
         ("relation:near", {"station.yaml": 1, ARM: 1, "specifications.yaml": 1}),
-        ("map:grip_for", {"station.yaml": 1, ARM: 1}),
+        ("map:grip_for", {"station.yaml": 1, ARM: 2}),
+        ("parameter:arm.grip.slips.it", {ARM: 4}),
+        ("set:arm.sides", {ARM: 12, "specifications.yaml": 1}),
+        ("set:arm.lone", {ARM: 3, "specifications.yaml": 1}),
+        ("relation:arm.across", {ARM: 2}),
         ("predicate:is_done", {"station.yaml": 2, ARM: 1, "operations.yaml": 2}),
         ("predicate:arm.is_at", {ARM: 4, "operations.yaml": 1}),
         ("parameter:is_done.which", {"station.yaml": 5}),
@@ -51,6 +55,14 @@ def test_where_it_is_named(part: str, expected: dict[str, int]) -> None:
         ("predicate:arm.is_at", "move", "the ability `arm.move` is there already"),
         ("map:grip_for", "next", "`next` is a word of quantifiers and orders"),
         ("word:station.yaml:rest#4.p", "q", "is declared nowhere"),
+        (
+            "parameter:arm.grip.slips.it",
+            "held",
+            "the parameter `arm.grip.slips.held` would hide the variable `arm.held`",
+        ),
+        ("parameter:arm.grip.slips.it", "bare", "would hide the value `grip.bare`"),
+        ("parameter:arm.grip.slips.it", "one", "cannot be called `one`"),
+        ("parameter:arm.grip.one", "it", "cannot be called `it`"),
     ],
 )
 def test_what_is_refused(part: str, new: str, message: str) -> None:
@@ -63,6 +75,20 @@ def test_a_word_is_renamed_in_its_expression_alone() -> None:
     new = renamed(SHORTHAND, parse_part("word:station.yaml:predicates.all_tight#0.p"), "each")
     before = "all p in part: bolts[p] == tight"
     assert new == {"station.yaml": SHORTHAND["station.yaml"].replace(before, "all each in part: bolts[each] == tight")}
+
+
+def test_the_word_of_an_effect_is_renamed_in_it_alone() -> None:
+    new = renamed(SHORTHAND, parse_part("parameter:arm.grip.slips.it"), "size")
+    before = '{for: {it: grip}, when: "held == it and it != bare and grip_for[one] == it"'
+    after = '{for: {size: grip}, when: "held == size and size != bare and grip_for[one] == size"'
+    assert new == {ARM: SHORTHAND[ARM].replace(before, after)}
+
+
+@pytest.mark.parametrize(("part", "new"), [("effect:arm.grip.slips", "falls"), ("ability:arm.grip", "hold")])
+def test_it_stays_with_its_effect_and_that_with_its_ability(part: str, new: str) -> None:
+    name = part.rpartition(".")[2]
+    written = SHORTHAND[ARM].replace(f"  {name}:\n", f"  {new}:\n")
+    assert renamed(SHORTHAND, parse_part(part), new) == {ARM: written}
 
 
 def test_titles_follow_what_they_are_of() -> None:

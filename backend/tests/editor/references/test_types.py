@@ -20,19 +20,23 @@ ROBOTS = MODELS / "robots_with_buffer"
 FILES = read_files(ROBOTS)
 MESSAGES = load_messages(load_station(ROBOTS))
 TYPE = "types/robot.yaml"
+SCENARIOS = "tests/work.yaml"
 
 
 def test_an_ability_of_a_type_is_renamed_there_and_wherever_an_instance_has_it() -> None:
     changes = renamed(FILES, parse_part("ability:robot_1.open_gripper"), "let_go", MESSAGES)
-    assert changes.keys() == {TYPE}
-    assert changes[TYPE] == FILES[TYPE].replace("open_gripper:", "let_go:")
+    assert changes == {
+        TYPE: FILES[TYPE].replace("open_gripper:", "let_go:"),
+        SCENARIOS: FILES[SCENARIOS].replace("robot_1.open_gripper", "robot_1.let_go"),
+    }
 
 
 def test_what_instances_say_of_it_themselves_follows() -> None:
     changes = renamed(FILES, parse_part("ability:robot_2.move_to"), "go_to", MESSAGES)
+    own = (TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml")
     assert changes == {
-        file: FILES[file].replace("move_to:", "go_to:")
-        for file in (TYPE, "resources/robot_1.yaml", "resources/robot_2.yaml")
+        **{file: FILES[file].replace("move_to:", "go_to:") for file in own},
+        SCENARIOS: FILES[SCENARIOS].replace(".move_to(", ".go_to("),
     }
 
 

@@ -1,9 +1,8 @@
 import { describe, expect, test } from 'vitest';
 import type { AbilityDefinition, Predicate, Reaction, Trial } from '#lib/contract.ts';
-import { addressOf, chosenIn } from './address.ts';
+import { addressOf } from './address.ts';
 import { belongs, cameOf, isNew, stepsOf } from './course.ts';
-import { groupsOf } from './groups.ts';
-import { reactionName } from './names.ts';
+import { isOf, reactionName, wholeName } from './names.ts';
 import { phaseOf } from './phase.ts';
 import { rowsOf } from './rows.ts';
 
@@ -27,7 +26,7 @@ const place = { file: 'resources/robot.yaml', line: 3 };
 const predicate = (...parts: [text: string, holds: boolean | null][]): Predicate => ({
 	text: parts.map(([text]) => text).join(' and ') || 'true',
 	holds: parts.every(([, holds]) => holds),
-	parts: parts.map(([text, holds]) => ({ text, holds, reads: [{ name: 'robot.pose', kind: 'measured', value: 'home' }] })),
+	parts: parts.map(([text, holds]) => ({ text, sentence: { id: 'sentence.so' }, holds, reads: [{ name: 'robot.pose', kind: 'measured', value: 'home' }] })),
 	place
 });
 
@@ -93,25 +92,6 @@ describe('the course of a trial', () => {
 	});
 });
 
-test('abilities stand by resource, in the order of the model', () => {
-	const of = (resource: string): Parameters<typeof groupsOf>[0]['abilities'][string] => ({
-		...flags,
-		resource,
-		title: resource,
-		human: false,
-		restart: false
-	});
-	const resources = {
-		tool: { title: 'Tool', online: true, awaited_topics: [] },
-		empty: { title: 'Empty', online: true, awaited_topics: [] }
-	};
-	const groups = groupsOf({ resources, abilities: { b: of('robot'), a: of('tool'), c: of('robot') } });
-	expect(groups.map(({ title, abilities }) => [title, abilities.map(([name]) => name)])).toEqual([
-		['Tool', ['a']],
-		['robot', ['b', 'c']]
-	]);
-});
-
 test('the table has all parts in the order of a run', () => {
 	const definition: AbilityDefinition = {
 		name: 'robot.move(home)',
@@ -156,7 +136,9 @@ test('the table has all parts in the order of a run', () => {
 
 test('names and addresses', () => {
 	expect(reactionName('robot.move_to_position(above_engine).robot_arrives')).toBe('robot arrives');
-	const address = addressOf('robot.move(above engine)');
-	expect(chosenIn(new URL(address, 'http://here').searchParams)).toBe('robot.move(above engine)');
-	expect(chosenIn(new URLSearchParams('name='))).toBeNull();
+	expect(addressOf('robot.move(above engine)')).toBe('/model?ability=robot.move%28above+engine%29');
+	expect(wholeName('robot.move(above engine)')).toBe('robot.move');
+	expect(wholeName('robot.stop')).toBe('robot.stop');
+	expect(isOf('robot.move(home)', 'robot.move')).toBe(true);
+	expect(isOf('robot.move_on', 'robot.move')).toBe(false);
 });

@@ -1,13 +1,6 @@
-/** Which ability a person looks at, as it stands in the page's address. */
+/** Where an ability of the station is looked at: in Model, at the part that it is an instance of. */
 
-export const ABILITY = '/abilities';
-
-/** The address of the page of an ability. */
+/** The address of the part of an ability, which shows that ability of all that the part stands for. */
 export function addressOf(name: string): string {
-	return `${ABILITY}?${new URLSearchParams({ name })}`;
-}
-
-/** The ability that the query of an address asks for. */
-export function chosenIn(query: Pick<URLSearchParams, 'get'>): string | null {
-	return query.get('name') || null;
+	return `/model?${new URLSearchParams({ ability: name })}`;
 }

@@ -1,7 +1,7 @@
 /** The pages that a person can go to, in groups, and from which role on. */
 import type { Role } from '#lib/contract.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
-import { ACCOUNT, HOME, WALL, WATCH } from './way.ts';
+import { ACCOUNT, HOME, REVIEW, WALL, WATCH } from './way.ts';
 
 export interface Page {
 	readonly address: string;
@@ -35,13 +35,11 @@ export const GROUPS: readonly Group[] = [
 		title: 'engineer',
 		pages: [
 			{ address: '/model', title: 'model', role: 'viewer' },
-			{ address: '/station', title: 'station', role: 'viewer' },
+			{ address: '/operations', title: 'operations', role: 'viewer' },
 			{ address: '/pipelines', title: 'pipelines', role: 'viewer' },
 			{ address: '/ros', title: 'ros', role: 'viewer' },
-			{ address: '/abilities', title: 'ability', role: 'viewer' },
-			{ address: '/check', title: 'check', role: 'viewer' },
 			{ address: '/what-if', title: 'whatIf', role: 'engineer' },
-			{ address: '/deploy', title: 'deploy', role: 'viewer' }
+			{ address: REVIEW, title: 'review', role: 'viewer' }
 		]
 	},
 	{

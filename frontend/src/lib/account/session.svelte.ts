@@ -44,10 +44,14 @@ export class Session {
 	readonly person = $derived(this.answer?.person ?? null);
 	/** The public name of the session, by which control is held. */
 	readonly id: string | null = $derived(this.answer?.session ?? null);
+	/** What the station is called, by language; null while that is not known. */
+	readonly station = $derived(this.answer?.station ?? null);
 	readonly kind = $derived(this.answer?.kind ?? null);
 	readonly mustChangePassword: boolean = $derived(this.answer?.must_change_password ?? false);
 	/** Whether a demonstration may be opened here. */
 	readonly demonstration: boolean = $derived(this.answer?.demonstration ?? false);
+	/** Whether there is somebody who may sign in. */
+	readonly people: boolean = $derived(this.answer?.people ?? false);
 	/** The provider with which one may sign in too; null where there is none. */
 	readonly provider = $derived(this.answer?.provider ?? null);
 	/** The watch whose credential this browser has. */

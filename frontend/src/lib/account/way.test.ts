@@ -89,15 +89,23 @@ describe('a page', () => {
 		expect(leadsTo(unready, asked('/account'))).toBeNull();
 	});
 
-	test('leads to the first start while there is no administrator', () => {
-		const first = sessionAnswer({ state: 'first-start' });
+	test('leads to the first start while there is nobody', () => {
+		const first = sessionAnswer({ state: 'first-start', people: false });
 		for (const page of ['/', '/sign-in', '/users']) expect(leadsTo(first, asked(page))).toBe('/setup');
 		expect(leadsTo(first, asked('/setup'))).toBeNull();
+	});
+
+	test('leads to the sign-in where somebody may sign in, though there is no administrator', () => {
+		const first = sessionAnswer({ state: 'first-start', people: true });
+		expect(leadsTo(first, asked('/'))).toBe('/sign-in');
+		expect(leadsTo(first, asked('/users'))).toBe('/sign-in?to=%2Fusers');
+		for (const page of ['/sign-in', '/setup']) expect(leadsTo(first, asked(page))).toBeNull();
 	});
 
 	test('leads to one that leads nowhere else', () => {
 		const answers = fc.record({
 			state: fc.constantFrom('signed-in' as const, 'signed-out' as const, 'first-start' as const),
+			people: fc.boolean(),
 			must_change_password: fc.boolean()
 		});
 		fc.assert(

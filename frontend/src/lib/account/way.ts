@@ -12,6 +12,8 @@ export const SIGN_IN = '/sign-in';
 export const FROM_PROVIDER = '/sign-in/provider';
 export const FIRST_START = '/setup';
 export const ACCOUNT = '/account';
+/** What has changed in the draft, and how it comes to the station; older links say `/deploy`. */
+export const REVIEW = '/review';
 /** Shown on a screen that nobody touches. */
 export const WALL = '/wall';
 /** The watch has a credential of its own, and pairs itself where it has none. */
@@ -58,7 +60,9 @@ export function leadsTo(answer: SessionAnswer, url: Asked): string | null {
 	const elsewhere = (page: string): string | null => (at(page) ? null : page);
 	switch (answer.state) {
 		case 'first-start':
-			return at(WATCH) || at(FROM_PROVIDER) ? null : elsewhere(FIRST_START);
+			if (at(WATCH) || at(FROM_PROVIDER) || at(FIRST_START)) return null;
+			if (!answer.people) return FIRST_START;
+			return at(SIGN_IN) ? null : signInAddress(url.pathname + url.search);
 		case 'signed-out':
 			return at(SIGN_IN) || at(FROM_PROVIDER) || at(FIRST_START) || at(WATCH) ? null : signInAddress(url.pathname + url.search);
 		case 'signed-in':

@@ -3,7 +3,7 @@ import type { Finding } from '#lib/contract.ts';
 import { addressOf, groupsOf, placeOf } from './groups.ts';
 
 function finding(kind: string, file: string, line = 1, message = 'It is so'): Finding {
-	return { severity: kind === 'unusable' ? 'error' : 'warning', kind, file, line, column: 3, message, members: [], trace: null };
+	return { severity: kind === 'unusable' ? 'error' : 'warning', kind, file, line, column: 3, message, said: null, members: [], trace: null, fixes: [] };
 }
 
 const FOUND = [

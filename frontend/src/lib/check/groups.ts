@@ -1,8 +1,9 @@
-/** Findings as they are listed: in groups of one kind, or of one file. */
+/** Findings as they are listed: the gravest first, or in groups of one kind, or of one file. */
 import type { Finding, ModelCheck } from '#lib/contract.ts';
 import { isError } from '#lib/workshop/verdict.ts';
 
-export type By = 'kind' | 'file';
+export type By = 'severity' | 'kind' | 'file';
+export const WAYS: readonly By[] = ['severity', 'kind', 'file'];
 
 export interface Listed {
 	readonly finding: Finding;
@@ -11,7 +12,7 @@ export interface Listed {
 }
 
 export interface Group {
-	/** The kind or file that they share. */
+	/** The severity, kind or file that they share. */
 	readonly of: string;
 	readonly listed: readonly Listed[];
 }
@@ -42,9 +43,9 @@ export function groupsOf(findings: readonly Finding[], by: By): Group[] {
 	return found.sort((one, other) => rank(one, by) - rank(other, by) || one.of.localeCompare(other.of));
 }
 
-/** Files with errors come first, and kinds by how grave they are. */
+/** What has errors comes first, and kinds by how grave they are. */
 function rank({ of, listed }: Group, by: By): number {
-	if (by === 'file') return listed.some(({ finding }) => isError(finding)) ? 0 : 1;
+	if (by !== 'kind') return listed.some(({ finding }) => isError(finding)) ? 0 : 1;
 	const place = GRAVE.indexOf(of);
 	return place < 0 ? GRAVE.length : place;
 }

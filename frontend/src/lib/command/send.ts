@@ -16,6 +16,21 @@ export function setMode(mode: Exclude<Mode, 'restart'>): Promise<Refusal | null>
 	return command('PUT', '/api/v1/mode', { body: { mode } });
 }
 
+/** Has the station pause when the product that is in work is done, or go on as ever. */
+export function setCycleStop(on: boolean): Promise<Refusal | null> {
+	return command('PUT', '/api/v1/mode/cycle-stop', { body: { on } });
+}
+
+/** Has the station pause as soon as `condition` becomes true. 422: it cannot be read. */
+export function setBreakpoint(condition: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/breakpoints', { body: { condition } });
+}
+
+/** Has the station pause for it no more. */
+export function removeBreakpoint(id: string): Promise<Refusal | null> {
+	return command('DELETE', `/api/v1/breakpoints/${encodeURIComponent(id)}`);
+}
+
 /** Allows outputs to be published. */
 export function startProduction(): Promise<Refusal | null> {
 	return command('POST', '/api/v1/production/start', { body: {} });

@@ -1,10 +1,11 @@
-/** What is said beside the name of a page: how many alarms stand, and that a restart needs somebody. */
+/** What is said beside the name of a page: how many alarms stand, that a restart needs somebody, and what is not deployed. */
 import { byUrgency, isOver } from '#lib/alarm/priority.ts';
 import type { Priority } from '#lib/contract.ts';
 import type { Page } from '#lib/account/pages.ts';
 import { wantedFor } from '#lib/restart/shown.ts';
 import { useStation, type Station } from '#lib/stream/station.svelte.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { undeployed } from '#lib/workshop/undeployed.svelte.ts';
 
 export interface Badge {
 	readonly text: string;
@@ -29,6 +30,9 @@ class Badges {
 		const priority = this.#alarms[0]?.[1].priority ?? null;
 		if (page === 'alarms' && this.#alarms.length > 0) {
 			return { text: String(this.#alarms.length), means: say().frame.alarms(this.#alarms.length), priority };
+		}
+		if (page === 'review' && undeployed.changes > 0) {
+			return { text: String(undeployed.changes), means: say().frame.undeployed(undeployed.changes), priority: null };
 		}
 		return page === 'restart' && this.#wanted ? { text: '!', means: say().restart.notice.wanted, priority } : null;
 	}

@@ -1,9 +1,9 @@
 /** What the palette can lead to or do: pages, variables, abilities, operations, alarms, and what is possible now. */
-import { ABILITY, addressOf as abilityAddress } from '#lib/ability/address.ts';
+import { addressOf as abilityAddress } from '#lib/ability/address.ts';
 import { MENU, type Page } from '#lib/account/pages.ts';
 import type { Session } from '#lib/account/session.svelte.ts';
 import { byUrgency } from '#lib/alarm/priority.ts';
-import { setMode, startProduction, takeControl, releaseControl } from '#lib/command/send.ts';
+import { setCycleStop, setMode, startProduction, takeControl, releaseControl } from '#lib/command/send.ts';
 import type { StationView } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { wordsOf } from '#lib/text/message.ts';
@@ -37,15 +37,19 @@ interface Known {
 /** What is possible now, without anything further to say. */
 function acts({ session, view, mine }: Known): Entry[] {
 	const { pause, hold, goOn, start } = say().frame;
+	const after = say().figures.after;
 	const { take, release } = say().account.control;
 	if (view === null || !session.may('operator')) return [];
 	const act = (name: string, text: string, run: () => Promise<Refusal | null>, possible: boolean): Entry[] =>
 		possible ? [{ group: 'act', text, name, does: { run } }] : [];
+	const working = view.mode === 'automatic' && view.production === 'started';
 	const stopped = view.mode === 'paused' || view.mode === 'hold';
 	return [
 		...act('start', start, startProduction, mine && view.production === 'waiting'),
 		...act('continue', goOn, () => setMode('automatic'), mine && stopped),
 		...act('pause', pause, () => setMode('paused'), !stopped),
+		...act('pause-after', after.full, () => setCycleStop(true), working && view.cycle_stop === null),
+		...act('pause-after', after.not, () => setCycleStop(false), working && mine && view.cycle_stop !== null),
 		...act('hold', hold, () => setMode('hold'), view.mode !== 'hold'),
 		...act('take', take, () => takeControl(null, ''), view.control === null),
 		...act('release', release, releaseControl, mine)
@@ -66,7 +70,7 @@ export function entriesOf(known: Known): Entry[] {
 			([name, { title }]): Entry => ({ group: 'operation', text: say().frame.palette.why(title), name, does: { why: name } })
 		),
 		...Object.entries(view?.abilities ?? {}).map(
-			([name, { title }]): Entry => ({ group: 'ability', text: title, name, does: { to: abilityAddress(name) || ABILITY } })
+			([name, { title }]): Entry => ({ group: 'ability', text: title, name, does: { to: abilityAddress(name) } })
 		),
 		...Object.keys(view?.variables ?? {}).map(
 			(name): Entry => ({ group: 'variable', text: fullName(view, name), name, does: { to: `/state?search=${encodeURIComponent(name)}` } })

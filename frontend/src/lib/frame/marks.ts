@@ -1,5 +1,4 @@
 /** The marks of the pages, in the rail and the palette. */
-import Activity from '@lucide/svelte/icons/activity';
 import Archive from '@lucide/svelte/icons/archive';
 import Bell from '@lucide/svelte/icons/bell';
 import BookText from '@lucide/svelte/icons/book-text';
@@ -11,16 +10,15 @@ import GitPullRequestArrow from '@lucide/svelte/icons/git-pull-request-arrow';
 import History from '@lucide/svelte/icons/history';
 import KeyRound from '@lucide/svelte/icons/key-round';
 import LayoutDashboard from '@lucide/svelte/icons/layout-dashboard';
-import Map from '@lucide/svelte/icons/map';
 import Monitor from '@lucide/svelte/icons/monitor';
 import Network from '@lucide/svelte/icons/network';
 import RotateCcw from '@lucide/svelte/icons/rotate-ccw';
-import ShieldCheck from '@lucide/svelte/icons/shield-check';
 import Table from '@lucide/svelte/icons/table-2';
 import User from '@lucide/svelte/icons/user';
 import Users from '@lucide/svelte/icons/users';
 import Watch from '@lucide/svelte/icons/watch';
 import Webhook from '@lucide/svelte/icons/webhook';
+import Waypoints from '@lucide/svelte/icons/waypoints';
 import Workflow from '@lucide/svelte/icons/workflow';
 import type { Page } from '#lib/account/pages.ts';
 
@@ -33,13 +31,11 @@ export const MARKS = {
 	orders: ClipboardList,
 	wall: Monitor,
 	model: Box,
-	station: Map,
+	operations: Waypoints,
 	pipelines: Workflow,
 	ros: Network,
-	ability: Activity,
-	check: ShieldCheck,
 	whatIf: FlaskConical,
-	deploy: GitPullRequestArrow,
+	review: GitPullRequestArrow,
 	journal: BookText,
 	watches: Watch,
 	people: Users,

@@ -8,7 +8,7 @@ export type EventKind = 'person' | 'watch' | 'key' | 'mode' | 'plan' | 'work' | 
 const MODE = new Set(['production-started', 'mode-changed', 'called-off', 'stepping-changed', 'step-taken', 'by-order-changed']);
 const PLAN = new Set(['asked', 'answered', 'unanswered', 'explained', 'errand-taken', 'errand-stopped', 'jobs-sequenced']);
 const HAND = new Set(['corrected', 'confirmed', 'forced', 'force-released', 'service-changed', 'by-hand']);
-const CONTROLLER = new Set(['begun', 'snapshot', 'alarms-aside', 'beliefs']);
+const CONTROLLER = new Set(['begun', 'snapshot', 'alarms-aside', 'beliefs', 'operations']);
 const WORK = ['started', 'ended', 'activated', 'completed', 'called_off', 'given_up'];
 const PRIORITIES: readonly unknown[] = ['high', 'medium', 'low'] satisfies Priority[];
 

@@ -42,7 +42,7 @@ export interface Lane {
 	readonly spots: readonly Spot[];
 }
 
-const MODE_KINDS = new Set(['production-started', 'called-off', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped']);
+const MODE_KINDS = new Set(['production-started', 'called-off', 'cycle-stop-changed', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped']);
 /** What people did by command is among their acts; this the station has noticed by itself. */
 const NOTICED = new Set(['by-hand']);
 const PRIORITIES: readonly unknown[] = ['high', 'medium', 'low'] satisfies Priority[];
@@ -181,19 +181,19 @@ function modesOf(line: TimeLine, window: Window, until: number): Bar[] {
 /** Rows of a lane at most; what would need another one is drawn in the last, without words. */
 export const MOST_ROWS = 3;
 
-export interface Placed {
-	readonly bar: Bar;
+export interface Placed<B extends Bar = Bar> {
+	readonly bar: B;
 	readonly row: number;
 	/** There is no room for its words: another one is there. */
 	readonly crowded: boolean;
 }
 
 /** Bars that last at the same time one below the other. */
-export function placed(bars: readonly Bar[]): { readonly rows: number; readonly all: readonly Placed[] } {
+export function placed<B extends Bar>(bars: readonly B[]): { readonly rows: number; readonly all: readonly Placed<B>[] } {
 	const ends: number[] = [];
 	const all = [...bars]
 		.sort((a, b) => a.from - b.from)
-		.map((bar): Placed => {
+		.map((bar): Placed<B> => {
 			const free = ends.findIndex((end) => end <= bar.from);
 			const row = free >= 0 ? free : Math.min(ends.length, MOST_ROWS - 1);
 			const crowded = free < 0 && ends.length === MOST_ROWS;

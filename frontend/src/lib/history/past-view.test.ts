@@ -25,6 +25,7 @@ const ability = {
 	title: 'Move',
 	human: false,
 	restart: false,
+	moves: true,
 	enabled: true,
 	executing: false,
 	finished: false,

@@ -73,6 +73,12 @@ test('an answer of the planner says what came of it', () => {
 	expect(said('answered', { what: { answer: { verdict: 'none' } }, plan: { status: 'none', reason: '' } })).toEqual(['No plan', '', '', '', '']);
 });
 
+test('what became of an alarm is said in words, and how urgent it was', () => {
+	const alarm = { event: 'returned', priority: 'medium', text: 'Nothing heard', resources: [] };
+	expect(said('alarm', { what: alarm })).toEqual(expect.arrayContaining(['Alarm over, not acknowledged', 'Medium priority']));
+	expect(said('alarm', { what: { ...alarm, event: 'melted' } })[0]).toBe('melted');
+});
+
 test('a kind that is not known keeps its own name', () => {
 	expect(said('weather-changed', {})[0]).toBe('weather changed');
 });

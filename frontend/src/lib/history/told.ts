@@ -64,6 +64,8 @@ export function told(record: Tellable, names: Names): Told {
 			return { ...nothing, what: words.mode, on: modeText(what['mode']) };
 		case 'called-off':
 			return { ...nothing, what: words.calledOff };
+		case 'cycle-stop-changed':
+			return { ...nothing, what: words.cycleStop, on: what['on'] === true ? words.on : words.off };
 		case 'stepping-changed':
 			return { ...nothing, what: words.stepping, on: what['on'] === true ? words.on : words.off };
 		case 'step-taken':
@@ -102,11 +104,13 @@ export function told(record: Tellable, names: Names): Told {
 		case 'job-forgotten':
 			return { ...nothing, what: words.jobForgotten, on: textOf(what['job']) };
 		case 'alarm':
-			return { ...nothing, ...alarmed(what as unknown as Alarm), what: words.alarm(textOf(what['event'])), outcome: textOf(what['priority']) };
+			return { ...nothing, ...alarmed(what as unknown as Alarm), what: words.alarm[textOf(what['event'])] ?? textOf(what['event']), outcome: priorityOf(textOf(what['priority'])) };
 		case 'alarms-aside':
 			return { ...nothing, what: words.aside };
 		case 'beliefs':
 			return { ...nothing, what: words.beliefs };
+		case 'operations':
+			return { ...nothing, what: words.progress };
 		default:
 			return { ...nothing, what: plain(kind.replaceAll('-', ' ')) };
 	}
@@ -197,7 +201,8 @@ function startsOf(tick: unknown): number {
 	return typeof tick === 'object' && tick !== null && 'starts' in tick ? textsOf(tick.starts).length : 0;
 }
 
-function served(of: string, name: string, names: Names): string {
+/** What is in service or out of it, by its title. */
+export function served(of: string, name: string, names: Pick<Names, 'resource' | 'operation' | 'ability'>): string {
 	if (of === 'resource') return names.resource(name);
 	return of === 'operation' ? names.operation(name) : names.ability(name);
 }
@@ -234,4 +239,9 @@ export function textsOf(value: unknown): string[] {
 export function partOf(content: Content, name: string): Content | null {
 	const part = content[name];
 	return typeof part === 'object' && part !== null && !Array.isArray(part) ? (part as Content) : null;
+}
+
+/** How urgent an alarm was, as the page says it. */
+function priorityOf(priority: string): string {
+	return Object.entries(say().alarms.priorityOf).find(([name]) => name === priority)?.[1] ?? priority;
 }

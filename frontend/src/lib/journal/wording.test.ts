@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { Actor, AuditRecord } from '#lib/contract.ts';
 import { namesOf } from '#lib/history/names.ts';
-import { actText, actorText, becauseText, detailText, subjectText } from './wording.ts';
+import { actText, actorText, becauseText, detailText, subjectText, whereText } from './wording.ts';
 
 const EVA: Actor = { kind: 'person', id: 'p1', name: 'Eva' };
 
@@ -13,6 +13,13 @@ function record(action: string, subject: string, details: AuditRecord['entry']['
 
 test('an act that is not known keeps its own name', () => {
 	expect(['sign-in', 'calibrate', 'toString'].map(actText)).toEqual(['Signed in', 'calibrate', 'toString']);
+});
+
+test('from where somebody acts is said in words, and which session it was is not', () => {
+	expect(whereText({ address: '10.0.0.7' })).toBe('10.0.0.7');
+	expect(whereText({ address: 'the command line of root' })).toBe('command line, root');
+	expect(whereText({})).toBe('');
+	expect(subjectText(record('sign-in', 'session 3f9a'), names)).toBe('');
 });
 
 describe('who acts', () => {
@@ -29,9 +36,17 @@ describe('who acts', () => {
 });
 
 test('on what it was done is said by its title, and with what was changed', () => {
-	expect(subjectText(record('acknowledge-task', 'task 4-1', { title: 'Place bolts' }), names)).toBe('Place bolts (task 4-1)');
+	expect(subjectText(record('acknowledge-task', 'task 4-1', { title: 'Place bolts' }), names)).toBe('Place bolts');
 	expect(subjectText(record('acknowledge-task', 'task 4-1'), names)).toBe('task 4-1');
 	expect(subjectText(record('set-mode', '', { mode: 'paused' }), names)).toBe('Paused');
+	expect(subjectText(record('job-order-stored', 'job order 4711', { description: 'Engine 4711' }), names)).toBe('Engine 4711 (job order 4711)');
+	expect(subjectText(record('job-order-stored', 'job order 4711', { description: '4711' }), names)).toBe('job order 4711');
+	expect(subjectText(record('take-job', 'job 4711', { title: 'Engine 4711' }), names)).toBe('Engine 4711 (job 4711)');
+	expect([true, false].map((on) => subjectText(record('work-by-order', '', { on }), names))).toEqual(['by order', 'freely']);
+	expect([true, false].map((on) => subjectText(record('set-stepping', '', { on }), names))).toEqual(['on', 'off']);
+	expect(subjectText(record('set-service', 'resource robot', { of: 'resource', name: 'robot', in_service: false }), names)).toBe(
+		'robot: out of service'
+	);
 	expect(subjectText(record('person-created', 'person Eva'), names)).toBe('person Eva');
 	const changed = { role: ['operator', 'engineer'], disabled: [false, true], sessions_ended: 2 };
 	expect(subjectText(record('person-changed', 'person Eva', changed), names)).toBe(

@@ -1,10 +1,11 @@
 /** How what was done is said: acts, who does them, and how they ended. */
 import type { Actor, AuditRecord, Outcome } from '#lib/contract.ts';
 import type { Names } from '#lib/history/names.ts';
-import { modeText } from '#lib/history/told.ts';
+import { modeText, served } from '#lib/history/told.ts';
 import { told } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { inSentence } from '#lib/wording/names.svelte.ts';
+import { titledAlone } from '#lib/wording/titled.svelte.ts';
 
 type Details = NonNullable<AuditRecord['entry']['details']>;
 
@@ -33,6 +34,23 @@ export function actorText(actor: Actor): string {
 	}
 }
 
+/** What stands in a record in place of an address, of who acts at the machine itself. */
+const COMMAND_LINE = /^the command line of (.+)$/;
+
+/** From where somebody acts; empty where that is not written. */
+export function whereText({ address }: Pick<Actor, 'address'>): string {
+	const user = COMMAND_LINE.exec(address ?? '')?.[1];
+	return user === undefined ? (address ?? '') : say().history.journal.commandLine(user);
+}
+
+/** What the program itself gives as its reason where it starts production. */
+const BY_OPTION = 'started with --start';
+
+/** Why somebody did it, in their words; empty where they gave no reason. */
+export function reasonText({ actor, reason }: AuditRecord['entry']): string {
+	return actor.kind === 'system' && reason === BY_OPTION ? say().history.journal.byOption : (reason ?? '');
+}
+
 /** How an act ended as a mark, beside its word. */
 export const MARKS: Record<Outcome, string> = { requested: '◌', done: '✓', refused: '✕', failed: '▲' };
 
@@ -48,16 +66,42 @@ export function detailText(value: unknown): string {
 	return typeof value === 'boolean' ? (value ? say().common.yes : say().common.no) : JSON.stringify(value);
 }
 
-/** On what it was done, and to what it was changed where that is short. A task is called by its title. */
-export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' | 'value'>): string {
-	const { action, subject } = record.entry;
+/** The subject of a record, `task 4-1`, in the words of who reads it; one of no kind that is known as it stands. */
+function subjectOf(subject: string): string {
+	// Which session it was says nobody anything; it is in the record.
+	if (subject.startsWith('session ')) return '';
+	const kinds: Readonly<Record<string, (id: string) => string>> = say().history.journal.subjects;
+	const kind = Object.keys(kinds)
+		.filter((each) => subject.startsWith(`${each} `))
+		.sort((a, b) => b.length - a.length)[0];
+	return kind === undefined ? subject : (kinds[kind]?.(subject.slice(kind.length + 1)) ?? subject);
+}
+
+/** On what it was done, and to what it was changed where that is short. A task is called by its title, and so is a job, with its number. */
+export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' | 'value' | 'resource' | 'ability' | 'operation'>): string {
+	const { action } = record.entry;
+	const subject = subjectOf(record.entry.subject);
+	const { journal, words } = say().history;
 	const details = record.entry.details ?? {};
 	const detail = (name: string): string => (typeof details[name] === 'string' ? details[name] : '');
 	switch (action) {
 		case 'set-mode':
 			return modeText(detail('mode'));
 		case 'acknowledge-task':
-			return detail('title') === '' ? subject : `${detail('title')} (${subject})`;
+			// Its number is counted by the station itself and says nobody anything; it is in the record.
+			return titledAlone(detail('title')) || subject;
+		case 'take-job':
+			return titled(titledAlone(detail('title')), subject);
+		case 'job-order-stored':
+		case 'job-order-updated':
+			return titled(detail('description'), subject);
+		case 'work-by-order':
+			return details['on'] === true ? journal.byOrder : journal.freely;
+		case 'set-stepping':
+		case 'set-cycle-stop':
+			return details['on'] === true ? words.on : words.off;
+		case 'set-service':
+			return `${served(detail('of'), detail('name'), names)}: ${details['in_service'] === true ? words.inService : words.outOfService}`;
 		case 'force-variable':
 			return 'value' in details ? `${names.variable(subject)}: ${names.value(subject, details['value'])}` : names.variable(subject);
 		case 'release-force':
@@ -74,6 +118,10 @@ export function subjectText(record: AuditRecord, names: Pick<Names, 'variable' |
 			return subject;
 	}
 }
+
+/** `Engine 4711 (job 4711)`; without a title, or with its number for one, what it is called otherwise. */
+const titled = (title: string, subject: string): string =>
+	title === '' || subject.endsWith(` ${title}`) ? subject : `${title} (${subject})`;
 
 /** `role: operator → engineer`, of what changed from one value to another. */
 function changes(details: Details): string[] {

@@ -31,6 +31,13 @@ export function stopName(track: MimicTrack, value: string, language: string): st
 	return inLanguage(title, language) || plain(value);
 }
 
+/** The stop that an ability is about, as the picture calls it: where it leads. Null where the picture does not name it. */
+export function stopOf({ track }: MimicSymbol, ability: string, language: string): string | null {
+	const values = valuesIn(ability);
+	const stop = track?.stops.find(({ value }) => values.includes(value));
+	return (stop && inLanguage(stop.title, language)) || null;
+}
+
 /** What is found of all resources at once. */
 export interface Found {
 	readonly doing: ReadonlyMap<string, Doing>;
@@ -57,6 +64,7 @@ export function nowOf(symbol: MimicSymbol, view: StationView, found: Found, lang
 	if (said !== '') return { text: said, tone };
 	// What a device of a person last measured says nothing of the person.
 	if (symbol.symbol === 'person' && !active) return { text: texts.free, tone };
+	if (symbol.texts.some(({ when }) => holds(when, variables) === null)) return { text: capital(say().common.unknown), tone: 'doubt' };
 	const key = found.keys.get(resource ?? '');
 	if (key === undefined) return { text: resource === null || symbol.parts.length > 0 ? '' : texts.rests, tone };
 	const value = valueOf(variables, key);
@@ -154,18 +162,20 @@ function worded(value: string): string {
 /** What happens now and what comes then, in one sentence. */
 export function happening(view: StationView): string {
 	const texts = say().mimic;
+	const silent = new Set(view.silent);
 	const running = Object.values(view.abilities)
-		.filter(runs)
+		.filter((ability) => runs(ability) && !silent.has(view.resources[ability.resource]?.title ?? ''))
 		.sort((a, b) => Number(a.human) - Number(b.human))
 		.map(({ title }) => title);
 	const next = nextSteps(view.plan)[0];
+	const now = running.length > NAMED ? texts.andMore(running.slice(0, NAMED).join(' · '), running.length - NAMED) : running.join(' · ');
+	// What is begun on a device that is not heard may be so, or not; and so may what comes after it.
+	if (silent.size > 0) return [now, texts.unheard(listed(view.silent), view.silent.length)].filter((each) => each !== '').join(' · ');
 	if (running.length === 0) {
 		// What a condition is called is told, never how it is written.
 		const waits = next === undefined ? '' : told(next.sentence, '');
-		if (view.silent.length > 0) return texts.unheard(listed(view.silent), view.silent.length);
 		return waits === '' ? texts.nothingMoves : texts.nothingMovesAnd(waits);
 	}
 	const then = next === undefined ? null : inSentence(next.title);
-	const now = running.length > NAMED ? texts.andMore(running.slice(0, NAMED).join(' · '), running.length - NAMED) : running.join(' · ');
 	return then === null ? now : texts.then(now, then);
 }

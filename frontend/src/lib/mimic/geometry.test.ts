@@ -1,7 +1,7 @@
 import * as fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
 import type { MimicStop, MimicTrack } from '#lib/contract.ts';
-import { along, crop, duration, firstPart, lengthOf, movement, nextBox, placeOf, route, steps, wayPath, wayPoints, type Point } from './geometry.ts';
+import { along, crop, duration, firstPart, lengthOf, movement, nextBox, placeOf, placesOf, route, steps, uncut, wayPath, wayPoints, type Point } from './geometry.ts';
 import { fit } from './measure.svelte.ts';
 
 const stop = (value: string, x: number, y: number): MimicStop => ({ value, title: {}, x, y, label: 'above', room: 100, branch: y > 0 });
@@ -138,6 +138,29 @@ describe('the picture', () => {
 				expect(shown.length).toBeLessThanOrEqual(Math.max(1, room));
 				if (text.length <= room) expect(shown).toBe(text);
 				else expect(shown.endsWith('…')).toBe(true);
+			})
+		);
+	});
+});
+
+describe('the edge of a part of the picture', () => {
+	it('knows all places at which it is drawn', () => {
+		const places = placesOf({ ...TRACK, stops: TRACK.stops.slice(0, 3) });
+		expect(places.slice(3)).toContainEqual({ x: 50, y: 0 });
+		expect(places.slice(3)).toContainEqual({ x: 200, y: 0 });
+	});
+
+	it('cuts nothing that may be drawn on it', () => {
+		expect(uncut([100, 20], 60, 26)).toBe(60);
+		expect(uncut([50], 60, 26)).toBe(24);
+		expect(uncut([70], 60, 26)).toBe(44);
+		// What is above it then may be cut by the new edge.
+		expect(uncut([30, 50], 60, 26)).toBe(4);
+		fc.assert(
+			fc.property(fc.array(fc.integer({ min: 0, max: 300 }), { maxLength: 9 }), fc.integer({ min: 0, max: 300 }), (places, edge) => {
+				const found = uncut(places, edge, 20);
+				expect(found).toBeLessThanOrEqual(edge);
+				for (const place of places) expect(Math.abs(place - found)).toBeGreaterThanOrEqual(20);
 			})
 		);
 	});

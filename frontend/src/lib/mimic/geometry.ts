@@ -118,6 +118,17 @@ export function placeOf(track: MimicTrack, at: Whereabouts): Point | null {
 	return onTheWay(track, at).at(-1) ?? null;
 }
 
+/** All places at which it may be drawn: its stops, and halfway between those with a way between them. */
+export function placesOf(track: MimicTrack): Point[] {
+	const between = track.ways.map(([from, to]) => placeOf(track, { from, to, kind: 'moving' }));
+	return [...track.stops, ...between].flatMap((place) => (place ? [{ x: place.x, y: place.y }] : []));
+}
+
+/** The edge that cuts nothing: above `edge` where something that reaches as far as `reach` around one of `places` is on it. */
+export function uncut(places: readonly number[], edge: number, reach: number): number {
+	return places.toSorted((a, b) => b - a).reduce((found, place) => (Math.abs(place - found) < reach ? place - reach : found), edge);
+}
+
 /** The points of a movement from one whereabouts to the next, along the ways where it went there. */
 export function movement(track: MimicTrack, before: Whereabouts, after: Whereabouts): Point[] {
 	if (before.to === before.from) return [...along(track.stops, route(track, before.to, after.from)), ...onTheWay(track, after).slice(1)];

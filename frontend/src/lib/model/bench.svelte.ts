@@ -1,13 +1,17 @@
 /** What the parts of this page share: the tree, what is chosen in it, what was found, and whether it can be edited. */
 import { createContext, tick } from 'svelte';
-import type { Finding } from '#lib/contract.ts';
+import type { Finding, Fix } from '#lib/contract.ts';
+import type { Refusal } from '#lib/rest/refusal.ts';
+import { say } from '#lib/text/text.svelte.ts';
 import { same, type Path } from './content.ts';
 import type { Draft } from './draft.svelte.ts';
+import { fixed } from './fixing.ts';
 import { countsOf, foundIn } from './found.ts';
 import type { Spot } from './language.ts';
+import type { PanelName } from './panels.ts';
 import { pathAt, placesOf } from './places.ts';
 import { inherited, layersOf } from './types.ts';
-import { lookupOf, nodeAt, STATION, treeOf, type Node } from './tree.ts';
+import { lookupOf, nodeAt, partOf, STATION, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
 export interface Sight {
@@ -16,17 +20,26 @@ export interface Sight {
 	readonly column: number;
 }
 
+/** With less than this, in rem, nothing below the form could be read. */
+const LEAST = 11;
+
 export class Bench {
 	readonly draft: Draft;
 	readonly #entry: () => string;
 	readonly #may: () => boolean;
-	readonly #look: (entry: string) => void;
+	readonly #look: (entry: string, form: boolean) => void;
 	/** What else can be written in a field than what the files tell. */
 	readonly further: (name: string, spot: Spot) => readonly string[];
 	/** Where the file editor is asked to go, each time anew. */
 	sight = $state.raw<Sight | null>(null);
-	/** The part whose usages are asked for; null for none. */
+	/** The part whose usages are asked for, where that is not the chosen one. */
 	sought = $state<string | null>(null);
+	/** What is shown of the draft below the form. */
+	panel = $state<PanelName>('problems');
+	/** How often something was asked for there: each time it comes in sight. */
+	asked = $state(0);
+	/** How high that is, in rem. */
+	below = $state(11);
 
 	readonly tree = $derived.by(() => treeOf(this.draft.files, this.draft.contents));
 	readonly lookup = $derived(lookupOf(this.tree));
@@ -39,7 +52,8 @@ export class Bench {
 		draft: Draft,
 		entry: () => string,
 		may: () => boolean,
-		look: (entry: string) => void,
+		/** Goes to an entry; `form`: to its form, whatever is shown of it now. */
+		look: (entry: string, form: boolean) => void,
 		further: (name: string, spot: Spot) => readonly string[] = () => []
 	) {
 		this.further = further;
@@ -49,6 +63,18 @@ export class Bench {
 		this.#look = look;
 	}
 
+	/** What was found is known of the draft as it is: it stands where it was found. */
+	readonly isCheckedNow = $derived.by(() => this.draft.check !== null && this.draft.check.number === this.draft.number);
+
+	/** Writes what a finding offers; why not, or null. What is being typed counts as done before. */
+	async mend(finding: Finding, fix: Fix): Promise<Refusal | null> {
+		await this.draft.flush();
+		const was = this.draft.text(finding.file);
+		const text = this.isCheckedNow ? fixed(was, finding, fix) : null;
+		if (text === null) return null; // it is another draft by now, of which it will be told again what is wrong
+		return this.draft.change(say().model.problems.mended(fix.was, fix.now), [{ kind: 'text', file: finding.file, was, text }]);
+	}
+
 	/** The id of what is chosen. */
 	get chosen(): string {
 		return this.#entry();
@@ -56,6 +82,11 @@ export class Bench {
 
 	get node(): Node | null {
 		return this.lookup.byId.get(this.chosen) ?? null;
+	}
+
+	/** The name of the ability that is chosen, without what stands for its parameters; null for another part. */
+	get ability(): string | null {
+		return this.node?.kind === 'ability' ? (partOf(this.node)?.replace(/^\w+:/, '') ?? null) : null;
 	}
 
 	/** What the chosen one was in, where it is there no more: renamed or deleted, by an undo or by somebody else. */
@@ -80,7 +111,7 @@ export class Bench {
 	}
 
 	choose(id: string): void {
-		if (id !== this.chosen) this.#look(id);
+		if (id !== this.chosen) this.#look(id, false);
 	}
 
 	/** The entry in which a line of a file is. */
@@ -89,10 +120,28 @@ export class Bench {
 		return nodeAt(this.lookup, file, path)?.id ?? file;
 	}
 
+	/** The entry that is a part, by its name; null where that is none of the tree. */
+	entryOf(part: string): string | null {
+		for (const node of this.lookup.byId.values()) if (partOf(node) === part) return node.id;
+		return null;
+	}
+
+	/** Shows something of the draft below the form, with room to see it. */
+	show(panel: PanelName): void {
+		this.panel = panel;
+		this.asked += 1;
+		this.below = Math.max(this.below, LEAST);
+	}
+
+	/** Shows where a part is used; null: the chosen one. */
+	seek(part: string | null): void {
+		this.sought = part;
+		this.show('usages');
+	}
+
 	/** Leads to a place in a file: chooses what is there, and shows it. */
 	lead(sight: Sight): void {
-		this.sought = null;
-		this.choose(this.entryAt(sight.file, sight.line));
+		this.#look(this.entryAt(sight.file, sight.line), true);
 		void tick().then(() => (this.sight = { ...sight }));
 	}
 

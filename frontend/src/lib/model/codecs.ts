@@ -1,6 +1,7 @@
 /** How the value of a field is written in a form, and read from it. */
 import { isList, isMapping, type Json } from './content.ts';
 import { isPairs, pairsBad, pairsFit, pairsRead, pairsShown, scalarRead, scalarShown, type Pair } from './pairs.ts';
+import { areParameters } from './parameters.ts';
 import type { FieldKind, FieldShape } from './shape.ts';
 
 /** A value as it is written in a form: a text, two, many, names with what is behind them, or a tick. */
@@ -46,6 +47,8 @@ export function fits(kind: FieldKind, value: Json | undefined): boolean {
 		case 'parts':
 		case 'lists':
 			return isMapping(value);
+		case 'parameters':
+			return areParameters(value);
 		case 'yaml':
 			return false;
 	}
@@ -154,4 +157,11 @@ export function badValue(shape: FieldShape, written: Written): BadValue | null {
 	}
 	if (kind === 'text' && shape.required && String(written).trim() === '') return 'required';
 	return null;
+}
+
+/** The least and the most of an interval, of which one number says both; null for what is none. */
+export function intervalOf(value: Json | undefined): readonly [number, number] | null {
+	if (typeof value === 'number') return [value, value];
+	const [least, most] = isList(value) ? value : [];
+	return typeof least === 'number' && typeof most === 'number' ? [least, most] : null;
 }

@@ -14,6 +14,8 @@ import type { Address, DraftChange,
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { ENDED } from '#lib/stream/connection.ts';
+import { say } from '#lib/text/text.svelte.ts';
+import { toasts } from '#lib/ui/toasts.svelte.ts';
 import { WorkshopSeen } from '#lib/workshop/workshop.svelte.ts';
 import { asJson, type Json } from './content.ts';
 import type { Writing } from './writing.svelte.ts';
@@ -24,9 +26,15 @@ const MOST_NAMED = 50;
 /** Milliseconds in which an edit of a large model is carried out. */
 const PATIENCE = 20_000;
 
+/** The last change is another one by now. */
+function notLast(): Refusal {
+	const { notLast: title, useUndo: detail } = say().model.remove;
+	return { title, detail, status: null, kind: null, retryAfter: null, place: null };
+}
+
 export class Draft {
 	/** What the stream says. */
-	readonly #seen = new WorkshopSeen();
+	readonly seen = new WorkshopSeen();
 	files = $state.raw<Readonly<Record<string, FileView>>>({});
 	/** What was last read of each file, also where its text cannot be read now. */
 	contents = $state.raw<Readonly<Record<string, Json | undefined>>>({});
@@ -44,11 +52,10 @@ export class Draft {
 	#reading = false;
 	#asked = 0;
 
-	/** Connects to the server's stream; the result disconnects. */
-	attach(url: string, ended: () => void): () => void {
+	/** Connects to the server's stream; the result disconnects. `ended` is called where the session has. */
+	attach(ended: () => void): () => void {
 		void this.#begin(); // meanwhile the stream connects
-		return this.#seen.attach(
-			url,
+		return this.seen.attach(
 			(isNew) => this.#told(isNew),
 			(code) => {
 				if (code === ENDED) ended();
@@ -58,25 +65,25 @@ export class Draft {
 
 	/** Whether the stream is heard. */
 	get live(): boolean {
-		return this.#seen.live;
+		return this.seen.live;
 	}
 
 	/** The number of the last change; null before anything was heard. */
 	get number(): number | null {
-		return this.#seen.view?.number ?? null;
+		return this.seen.view?.number ?? null;
 	}
 
 	get marks(): Readonly<Record<string, FileMark>> {
-		return this.#seen.view?.files ?? {};
+		return this.seen.view?.files ?? {};
 	}
 
 	get check(): ModelCheck | null {
-		return this.#seen.view?.check ?? null;
+		return this.seen.view?.check ?? null;
 	}
 
 	/** Why it is not known. */
 	get refusal(): Refusal | null {
-		return this.#seen.refusal ?? this.#refusal;
+		return this.seen.refusal ?? this.#refusal;
 	}
 
 	/** The text of a file; empty where there is none. */
@@ -100,6 +107,11 @@ export class Draft {
 	async again(what: 'undo' | 'redo'): Promise<Refusal | null> {
 		await this.flush();
 		return this.#act(what, {});
+	}
+
+	/** Tells a change with the way back, which takes back that one and no other. */
+	tell(title: string): void {
+		toasts.tell(title, { act: () => (this.undo === title ? this.again('undo') : Promise.resolve(notLast())) });
 	}
 
 	/** Sends whatever was typed. */

@@ -3,8 +3,9 @@
  *
  * It counts the characters of a text, where this page counts units of UTF-16.
  */
-import type { Value } from '#lib/contract.ts';
+import type { Message, Value } from '#lib/contract.ts';
 import { request } from '#lib/rest/request.ts';
+import { told } from '#lib/text/message.ts';
 import type { Path } from './content.ts';
 
 /** Where an expression stands. */
@@ -62,6 +63,10 @@ function here<Found extends Span>(text: string, found: Found): Found {
 	return { ...found, start: placed(text, found.start), end: placed(text, found.end) };
 }
 
+interface Problem extends Wrong {
+	readonly said: Message | null;
+}
+
 /** Milliseconds in which a text is looked at, the first time after a change of a large model. */
 const PATIENCE = 20_000;
 
@@ -72,8 +77,8 @@ async function ask<Value>(what: 'check' | 'completion' | 'format' | 'hover', bod
 
 /** What is wrong with it; null where the server did not say. */
 export async function wrongIn({ file, path }: Spot, text: string): Promise<readonly Wrong[] | null> {
-	const answer = await ask<{ problems: readonly Wrong[] }>('check', { file, path, text });
-	return answer === null ? null : answer.problems.map((each) => here(text, each));
+	const answer = await ask<{ problems: readonly Problem[] }>('check', { file, path, text });
+	return answer === null ? null : answer.problems.map((each) => ({ ...here(text, each), message: told(each.said, each.message) }));
 }
 
 /** What could stand at `offset`; null where nothing is known. */

@@ -4,7 +4,7 @@ import { capital } from '#lib/wording/capital.ts';
 import { isList, isMapping, same, shownPath, valueAt, type Json, type Path } from './content.ts';
 import { SPECIFICATIONS } from './specification.ts';
 import { typeFile } from './types.ts';
-import { IN_RESOURCE, messageFile, STATION, type EntryKind, type InResource, type Node } from './tree.ts';
+import { SCENARIOS, IN_RESOURCE, messageFile, STATION, type EntryKind, type InResource, type Node } from './tree.ts';
 
 /** Where something can be made: below which path of which file, and what. */
 export interface Place {
@@ -44,6 +44,7 @@ export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
 		{ kind: 'specification', file: 'specifications.yaml', path: [], section: 'specifications' },
 		{ kind: 'work_master', file: 'work_masters.yaml', path: [], section: 'work_masters' },
 		{ kind: 'shift', file: 'shifts.yaml', path: [], section: 'shifts' },
+		{ kind: 'scenario', file: SCENARIOS, path: [], section: 'tests' },
 		{ kind: 'message', file: '', path: null, section: 'messages' }
 	];
 	const all = [...inAbility, ...inResource, ...elsewhere];
@@ -80,6 +81,8 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 			return { ...title, operations: {} };
 		case 'shift':
 			return { ...title, from: '06:00', to: '14:00', days: ['mon', 'tue', 'wed', 'thu', 'fri'] };
+		case 'scenario':
+			return { ...title, steps: [{ holds: true }] };
 		case 'resource':
 		case 'type':
 			return { ...given, ...title };
@@ -91,7 +94,7 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 }
 
 /** The file of a resource, or of a type of some. */
-const ownFile = (kind: 'resource' | EntryKind, name: string): string =>
+export const ownFile = (kind: 'resource' | EntryKind, name: string): string =>
 	kind === 'type' ? typeFile(name) : `resources/${name}.yaml`;
 
 /** Edits that make it. */

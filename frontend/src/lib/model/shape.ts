@@ -3,7 +3,8 @@
 /**
  * How a field is written. `part` is one part below its name, `parts` are any number, each below a name of its own. Behind
  * the names of `named` is a scalar each, of `numbers` and `words` a list, of `bounds` what a person may set; `rows` are
- * those of a table, and `couples` those of a relation: a name, or several, on each side.
+ * those of a table, and `couples` those of a relation: a name, or several, on each side. `parameters` are those of a type of
+ * resources, each of one of the kinds that can be chosen.
  */
 export type FieldKind =
 	| 'text'
@@ -28,6 +29,7 @@ export type FieldKind =
 	| 'zone'
 	| 'part'
 	| 'parts'
+	| 'parameters'
 	| 'yaml';
 
 export interface FieldShape {
@@ -44,6 +46,8 @@ export interface FieldShape {
 	readonly loose?: boolean;
 	/** It has exactly so many entries. */
 	readonly count?: number;
+	/** What a number counts: seconds. */
+	readonly unit?: 's';
 	/** Only whole numbers. */
 	readonly whole?: boolean;
 	readonly least?: number;

@@ -91,8 +91,9 @@ function inShorthand(name: string, path: Spot['path'], contents: Contents): stri
 
 /** What could be written in the field `name` at a place, in alphabetical order but for the values of a type. */
 export function suggestionsFor(name: string, { file, path }: Spot, contents: Contents, files: readonly string[]): string[] {
-	const enumerations = ['enumerations', 'sets'].flatMap((key) => namesAt(contents[STATION], key));
 	const resource = contents[file];
+	const enumerations = ['enumerations', 'sets'].flatMap((key) => namesAt(contents[STATION], key));
+	if (file !== STATION) enumerations.push(...namesAt(resource, 'sets'));
 	const section = path[0];
 	const inShort = file === STATION ? inShorthand(name, path, contents) : null;
 	if (inShort !== null) return inShort;

@@ -17,7 +17,7 @@ const CONTENTS = {
 	'resources/robot.yaml': {
 		title: 'Robot',
 		measured: { pose: { type: 'pose' } },
-		abilities: { move: { title: 'Move', effects: { leaves: { kind: 'starting' } } } },
+		abilities: { move: { title: 'Move', effects: { leaves: { kind: 'starting', for: { what: 'tool' } } } } },
 		topics: 'nonsense'
 	},
 	'operations.yaml': { make: { title: 'Make' }, shift: { for: { to: 'pose' }, sequence: 'make' } }
@@ -65,6 +65,8 @@ describe('the tree', () => {
 		};
 		expect(at('resources/robot.yaml', 'abilities', 'move', 'start', 'when')).toBe('parameter:robot.move.to');
 		expect(at('resources/robot.yaml', 'abilities', 'move', 'effects', 'leaves', 'when')).toBe('parameter:robot.move.to');
+		const leaves = nodeAt(LOOKUP, 'resources/robot.yaml', ['abilities', 'move', 'effects', 'leaves', 'do', 0]);
+		expect(leaves && parameterOf(leaves, 'what')).toBe('parameter:robot.move.leaves.what');
 		expect(at('operations.yaml', 'make', 'goal')).toBe('parameter:operation:make.to');
 		expect(at('operations.yaml', 'shift', 'sequence')).toBe('parameter:sequence:shift.to');
 		expect(at('station.yaml', 'rest')).toBeNull();
@@ -81,7 +83,7 @@ describe('the tree', () => {
 		const robot = idOf('resources/robot.yaml', []);
 		const shown = (open: string[], sought: string): string[] =>
 			rowsOf(TREE, new Set(open), sought).map(({ node, level }) => `${level} ${node.name}`);
-		expect(shown([], '')).toEqual(['1 station', '1 resources', '1 operations', '1 specifications', '1 work_masters', '1 picture', '1 shifts', '1 messages']);
+		expect(shown([], '')).toEqual(['1 station', '1 resources', '1 operations', '1 specifications', '1 work_masters', '1 picture', '1 shifts', '1 tests', '1 messages']);
 		expect(shown(['#resources', robot], '')).toContain('3 abilities');
 		expect(shown([], 'mov')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
 		expect(shown([], 'robot.move')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
@@ -209,5 +211,7 @@ describe('what a station says for short', () => {
 		const measured = { ...contents, 'resources/robot.yaml': { measured: { at: { type: 'pose' } } } };
 		expect(suggestionsFor('initial', spot, measured, [])).toEqual(['nowhere', 'home', 'out']);
 		expect(suggestionsFor('for', spot, measured, [])).toEqual(['free', 'pose', 'spot']);
+		const own = { ...measured, 'resources/robot.yaml': { sets: { near: { of: 'pose', values: ['home'] } } } };
+		expect(suggestionsFor('parameters', spot, own, [])).toEqual(['free', 'near', 'pose', 'spot']);
 	});
 });

@@ -27,6 +27,7 @@ export type EntryKind =
 	| 'work_master'
 	| 'symbol'
 	| 'shift'
+	| 'scenario'
 	| 'message';
 
 /** Where entries of one kind stand together. */
@@ -55,6 +56,7 @@ export type SectionName =
 	| 'work_masters'
 	| 'picture'
 	| 'shifts'
+	| 'tests'
 	| 'messages';
 
 export interface Node {
@@ -72,12 +74,17 @@ export interface Node {
 	readonly of?: string;
 	/** The resource by which it is named: for what is in a type, an instance of that; null where there is none. */
 	readonly owner?: string | null;
+	/** What stands for values in an effect that is written once for several. */
+	readonly words?: readonly string[];
 }
 
 export const STATION = 'station.yaml';
 /** The file of the live picture. */
 export const PICTURE = 'mimic.yaml';
 const SHIFTS = 'shifts.yaml';
+/** The file that tests stand in which are made here. */
+export const SCENARIOS = 'tests/scenarios.yaml';
+const hasScenarios = (file: string): boolean => /^tests\/\w+\.yaml$/.test(file);
 const IN_FILES = { operations: 'operation', specifications: 'specification', work_masters: 'work_master' } as const;
 
 /** The sections of a resource, by the key under which each stands, and what is in them. */
@@ -119,7 +126,9 @@ export const messageFile = (name: string): string => `messages/${name}.${name.sp
 
 function entry(kind: EntryKind, file: string, path: Path, value: Json, children: readonly Node[] = []): Node {
 	const title = titleAt(value, ['title'], language());
-	return { id: idOf(file, path), kind, name: String(path.at(-1)), title, file, path, children };
+	const words = kind === 'effect' ? entriesOf(valueAt(value, ['for'])).map(([word]) => word) : [];
+	const made = { id: idOf(file, path), kind, name: String(path.at(-1)), title, file, path, children };
+	return words.length > 0 ? { ...made, words } : made;
 }
 
 function section(name: SectionName, file: string, path: Path, children: readonly Node[]): Node {
@@ -196,6 +205,7 @@ export function treeOf(
 		const name = messageOf(file);
 		return name === null ? [] : [{ id: idOf(file, []), kind: 'message', name, title: null, file, path: [], children: [] }];
 	});
+	const tests = there.filter(hasScenarios).flatMap((file) => entriesIn('scenario', file, [], contents[file]));
 	return [
 		{
 			id: idOf(STATION, []),
@@ -221,6 +231,7 @@ export function treeOf(
 		}),
 		section('picture', PICTURE, [], entriesIn('symbol', PICTURE, ['symbols'], contents[PICTURE])),
 		section('shifts', SHIFTS, [], entriesIn('shift', SHIFTS, [], contents[SHIFTS])),
+		section('tests', '', [], tests),
 		section('messages', '', [], messages)
 	];
 }
@@ -325,6 +336,7 @@ export function partOf(node: Node): string | null {
 		case 'section':
 		case 'symbol':
 		case 'shift':
+		case 'scenario':
 			return null;
 		case 'variable':
 		case 'ability':
@@ -343,6 +355,7 @@ export function partOf(node: Node): string | null {
 export function parameterOf(node: Node, name: string): string | null {
 	const [kind, ...rest] = (partOf(node) ?? '').split(':');
 	const owner = rest.join(':');
+	if (kind === 'effect' && node.words?.includes(name)) return `parameter:${owner}.${name}`;
 	if (kind === 'effect') return `parameter:${owner.slice(0, owner.lastIndexOf('.'))}.${name}`;
 	if (kind === 'ability' || kind === 'variable' || kind === 'predicate') return `parameter:${owner}.${name}`;
 	const others: readonly (string | undefined)[] = ['operation', 'specification', 'sequence', 'work_master'];
@@ -350,7 +363,7 @@ export function parameterOf(node: Node, name: string): string | null {
 }
 
 /** What has no form of fields: it is written as text. */
-const WITHOUT_FORM: readonly string[] = ['section', 'symbol', 'shift', 'message'];
+const WITHOUT_FORM: readonly string[] = ['section', 'symbol', 'shift', 'scenario', 'message'];
 
 /** The shape of a node's document: what its form has. */
 export function shapeOf(node: Node): string | null {

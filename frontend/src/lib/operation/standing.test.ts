@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Job, StationView } from '#lib/contract.ts';
 import { alarm, operation, PLAN, step, view } from '#lib/testing/view.ts';
-import { standingsOf, stoppedTone } from './standing.ts';
+import { isAtWork, standingsOf, stoppedTone } from './standing.ts';
 
 const standings = (over: Partial<StationView>): Record<string, string> => Object.fromEntries(standingsOf(view(over)));
 
@@ -31,8 +31,8 @@ test('one of which a step comes to no end has stopped, until that is over', () =
 	const steps = [step('run', 'nutrunner', 0, { id: '7', status: 'running', started: 100 })];
 	const of = { active: true, active_since: 90 };
 	const operations = {
-		tighten: operation({ ...of, first_step: '6', last_step: '8' }),
-		place: operation({ ...of, first_step: '9', last_step: '9' })
+		tighten: operation({ ...of, steps: ['6', '7', '8'] }),
+		place: operation({ ...of, steps: ['9'] })
 	};
 	const overdue = alarm({ kind: 'overdue', subject: 'run', resources: ['nutrunner'], since: 140 });
 	const at = (each: ReturnType<typeof alarm>): Record<string, string> =>
@@ -44,4 +44,9 @@ test('one of which a step comes to no end has stopped, until that is over', () =
 	// It is as urgent as the alarm that says so.
 	const tone = (priority: 'high' | 'medium'): string | null => stoppedTone(view({ plan: { ...PLAN, steps }, alarms: { overdue: { ...overdue, priority } } }));
 	expect([tone('medium'), tone('high'), stoppedTone(view())]).toEqual(['medium', 'high', null]);
+});
+
+test('of several that are under way it is told at which somebody is at work', () => {
+	const at = (ended: number | null, active = true): boolean => isAtWork(operation({ active, work: [{ began: 1, ended: 2 }, { began: 3, ended }] }));
+	expect([at(null), at(4), at(null, false), isAtWork(operation({ active: true }))]).toEqual([true, false, false, false]);
 });

@@ -1,5 +1,5 @@
 /** How far operations are. */
-import type { Operation, PlanStep, Priority, StationView } from '#lib/contract.ts';
+import type { Operation, Plan, PlanStep, Priority, StationView } from '#lib/contract.ts';
 import { stoppedBy } from '#lib/plan/status.ts';
 import { askedFor } from './asked.ts';
 
@@ -12,7 +12,7 @@ export function standingsOf(view: StationView): Map<string, OperationStanding> {
 	const stopped = view.plan.steps.filter((step) => stoppedBy(step, view.plan.steps, view.alarms) !== null);
 	return new Map(
 		Object.entries(view.operations).map(([name, operation]) => {
-			if (operation.active) return [name, stopped.some((step) => serves(step, operation)) ? 'stopped' : 'active'];
+			if (operation.active) return [name, stepsOf(view.plan, operation).some((step) => stopped.includes(step)) ? 'stopped' : 'active'];
 			const asked = askedFor(view, name)?.how;
 			if (asked === 'done' || asked === 'skipped') return [name, 'done'];
 			const done = asked !== 'later' && asked !== 'now' && operation.ended !== null && operation.ended >= began;
@@ -27,9 +27,14 @@ export function stoppedTone({ plan, alarms }: StationView): Priority | null {
 	return (['high', 'medium', 'low'] as const).find((priority) => all.includes(priority)) ?? null;
 }
 
-/** Whether what the plan does for an operation is done with this step too. */
-function serves({ id }: PlanStep, { first_step, last_step }: Operation): boolean {
-	return first_step !== null && last_step !== null && Number(first_step) <= Number(id) && Number(id) <= Number(last_step);
+/** Whether somebody is at work for an active operation now: a step that serves it runs. */
+export function isAtWork({ active, work }: Operation): boolean {
+	return active && work.at(-1)?.ended === null;
+}
+
+/** What the plan does for an operation. */
+export function stepsOf({ steps }: Plan, operation: Operation): PlanStep[] {
+	return steps.filter(({ id }) => operation.steps.includes(id));
 }
 
 /** When this round began: a round begins with the first operation of the model. */

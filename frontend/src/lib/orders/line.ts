@@ -28,6 +28,27 @@ export interface OrderLine {
 	readonly unknown: number;
 }
 
+/** The share of a part of the time line from which an order in it is more than a sliver. */
+const WIDE = 1 / 40;
+
+/** The longest of these parts of the time line (seconds) in which a usual order is still wide enough. */
+export function partFor({ lanes }: Pick<OrderLine, 'lanes'>, parts: readonly number[]): number {
+	const lengths = [...lanes.values()].flat().flatMap(({ from, to, open }) => (open ? [] : [to - from])).sort((a, b) => a - b);
+	const usual = lengths[Math.floor(lengths.length / 2)] ?? Infinity;
+	const fits = parts.filter((part) => usual >= part * WIDE);
+	return fits.length > 0 ? Math.max(...fits) : Math.min(...parts);
+}
+
+/** What titles say apart from the words with which all of them begin: a short bar has room for that. */
+export function ownWords(titles: readonly string[]): string[] {
+	if (new Set(titles).size < 2) return [...titles];
+	const all = titles.map((title) => title.split(' '));
+	const fewest = Math.min(...all.map(({ length }) => length));
+	let same = 0;
+	while (same < fewest - 1 && all.every((words) => words[same] === all[0]?.[same])) same += 1;
+	return all.map((words) => words.slice(same).join(' '));
+}
+
 /** The line of orders that are not over, in their order, and of what was made. */
 export function lineOf(orders: readonly JobOrder[], made: readonly JobResponse[], now: number): OrderLine {
 	const lanes = new Map<string, OrderBar[]>();

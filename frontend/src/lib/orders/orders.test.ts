@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { JobOrder, JobResponse, OrderOfWork } from '#lib/contract.ts';
-import { view as viewOf } from '#lib/testing/view.ts';
-import { lineOf } from './line.ts';
+import { operation, view as viewOf } from '#lib/testing/view.ts';
+import { lineOf, ownWords, partFor } from './line.ts';
 import { actsOf, inOrder, isOfDay, lastEnd, lateBy, progressOf, secondsOf, standing, titleOf, waitsText } from './orders.ts';
 
 function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
@@ -151,6 +151,13 @@ describe('the order of work over time', () => {
 		expect(lanes.get('truck_engine')).toMatchObject([{ id: 'run', from: 210, to: 300, open: true }]);
 		expect(unknown).toBe(2);
 	});
+
+	test('shows as much as leaves a usual order wide enough', () => {
+		const parts = [600, 1800, 7200];
+		const lasting = (...seconds: number[]): number =>
+			partFor(lineOf([], seconds.map((each) => ({ ...made, began: 100, ended: 100 + each })), 300), parts);
+		expect([lasting(20, 20, 900), lasting(60), lasting(600), lasting(5), lasting()]).toEqual([600, 1800, 7200, 600, 7200]);
+	});
 });
 
 test('what an order waits for is a sentence, and in short the first of it', () => {
@@ -160,19 +167,36 @@ test('what an order waits for is a sentence, and in short the first of it', () =
 	expect(waitsText(waiting('a plan', 'control'), true)).toBe('Waits: a plan +1');
 });
 
+test('of an operation that waits it is said in short until when', () => {
+	const waits = (...operations: string[]): Parameters<typeof waitsText>[0] => ({
+		waits_for: operations.map((each) => `“${each}”, which waits until the frame is on the engine`),
+		waits_for_messages: operations.map((operation) => ({
+			id: 'waits.precondition',
+			arguments: { operation, condition: { words: { en: 'the frame is on the engine' }, written: 'frame == on_engine' } }
+		})),
+		sentence: null
+	});
+	expect(waitsText(waits('Place pair 1', 'Place pair 2'), true)).toBe('Waits until the frame is on the engine');
+	expect(waitsText(waits('Place pair 1'))).toBe('Waits: “Place pair 1”, which waits until the frame is on the engine');
+});
+
+const JOB = {
+	title: 'e-1',
+	work_master: 'truck_engine',
+	state: 'running' as const,
+	stopping: false,
+	taken: 0,
+	begun: 0,
+	ended: null,
+	waits_for: [],
+	waits_for_messages: [],
+	sentence: null
+};
+
 test('how far an order has come is told by its job', () => {
 	const step = { waits_for: [], started: null, ended: null };
 	const job = {
-		title: 'e-1',
-		work_master: 'truck_engine',
-		state: 'running' as const,
-		stopping: false,
-		taken: 0,
-		begun: 0,
-		ended: null,
-		waits_for: [],
-		waits_for_messages: [],
-		sentence: null,
+		...JOB,
 		steps: {
 			place: { ...step, state: 'completed' as const },
 			tighten: { ...step, state: 'active' as const },
@@ -182,6 +206,20 @@ test('how far an order has come is told by its job', () => {
 	expect(progressOf(viewOf({ jobs: { 'e-1': job } }), 'e-1')).toEqual({ done: 1, all: 2, active: ['tighten'] });
 	expect(progressOf(viewOf({}), 'e-1')).toBeNull();
 	expect(progressOf(null, 'e-1')).toBeNull();
+});
+
+test('operations that differ in a parameter alone are told as one', () => {
+	const step = { waits_for: [], started: null, ended: null, state: 'active' as const };
+	const job = { ...JOB, steps: { 'tighten(1)': step, 'tighten(2)': step, unknown: step } };
+	const operations = { 'tighten(1)': operation({ title: 'Tighten pair 1' }), 'tighten(2)': operation({ title: 'Tighten pair 2' }) };
+	expect(progressOf(viewOf({ jobs: { 'e-1': job }, operations }), 'e-1')?.active).toEqual(['Tighten pair 1–2', 'unknown']);
+});
+
+test('a bar says what is its own', () => {
+	expect(ownWords(['Engine D13-4711', 'Engine D11-0288'])).toEqual(['D13-4711', 'D11-0288']);
+	expect(ownWords(['Engine', 'Engine D11-0288'])).toEqual(['Engine', 'Engine D11-0288']);
+	expect(ownWords(['Engine D13-4711'])).toEqual(['Engine D13-4711']);
+	expect(ownWords([])).toEqual([]);
 });
 
 test('a local time means the moment that it names here', () => {

@@ -1,7 +1,8 @@
 /** Job orders as they are shown: in which order, what they are called, how far they are and how late they are. */
-import type { JobOrder, JobResponse, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
+import type { JobOrder, JobResponse, Message, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
 import type { OrderCycle } from '#lib/figures/told.ts';
-import { told, toldAll } from '#lib/text/message.ts';
+import { groupsOf } from '#lib/operation/groups.ts';
+import { told, toldAll, toldHere } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { capital } from '#lib/wording/capital.ts';
 
@@ -54,6 +55,13 @@ export function standing(orders: readonly JobOrder[], stand: Stand): JobOrder[] 
 	return orders.filter(({ state }) => STANDS[stand].some((each) => each === state));
 }
 
+/** That an order waits for an operation says less than until when that waits; null of all else. */
+function conditionOf({ id, arguments: given }: Message): string | null {
+	const condition = given?.['condition'];
+	if (id !== 'waits.precondition' || condition === undefined) return null;
+	return toldHere({ id: 'sentence.until', arguments: { conditions: condition } });
+}
+
 type Waiting = Pick<JobOrder, 'waits_for' | 'waits_for_messages' | 'sentence'>;
 
 /**
@@ -61,10 +69,15 @@ type Waiting = Pick<JobOrder, 'waits_for' | 'waits_for_messages' | 'sentence'>;
  * it is the first that is said, and how many there are besides.
  */
 export function waitsText({ waits_for: reasons, waits_for_messages: messages, sentence }: Waiting, short = false): string {
-	const all = toldAll(messages, reasons).filter((_, place) => messages[place]?.id !== 'order-waits.earliest');
+	const others = (_: unknown, place: number): boolean => messages[place]?.id !== 'order-waits.earliest';
+	const all = toldAll(messages.filter(others), reasons.filter(others));
 	const [first] = all;
 	if (first === undefined) return '';
-	if (short && all.length > 1) return `${say().orders.waits(first)} +${String(all.length - 1)}`;
+	if (short) {
+		const [brief, ...more] = [...new Set(messages.length === reasons.length ? messages.filter(others).map(conditionOf) : [])];
+		if (brief) return `${capital(brief)}${more.length > 0 ? ` +${String(more.length)}` : ''}`;
+		if (all.length > 1) return `${say().orders.waits(first)} +${String(all.length - 1)}`;
+	}
 	return capital(told(sentence, say().orders.waits(all.join('; '))));
 }
 
@@ -95,15 +108,21 @@ export interface Progress {
 }
 
 /** How far the station has come with an order; null while it does not work on it. */
-export function progressOf(view: StationView | null, id: string): Progress | null {
+export function progressOf(view: StationView | null, id: string, plural?: (word: string) => string): Progress | null {
 	const job = view?.jobs[id];
 	if (view === null || job === undefined) return null;
 	const steps = Object.entries(job.steps).filter(([, { state }]) => state !== 'skipped');
 	return {
 		done: steps.filter(([, { state }]) => state === 'completed').length,
 		all: steps.length,
-		active: steps.filter(([, { state }]) => state === 'active').map(([name]) => view.operations[name]?.title ?? name)
+		active: activeIn(view, steps.filter(([, { state }]) => state === 'active').map(([name]) => name), plural)
 	};
+}
+
+/** The titles of operations; of those that differ in a parameter alone one for all. */
+function activeIn({ operations }: StationView, names: readonly string[], plural?: (word: string) => string): string[] {
+	const known = names.flatMap((name) => (operations[name] ? [[name, operations[name]] as const] : []));
+	return [...groupsOf(Object.fromEntries(known), plural).map(({ title }) => title), ...names.filter((name) => !operations[name])];
 }
 
 /** Seconds by which an order is late, or expected to be; 0 where it is not, or nobody knows. */

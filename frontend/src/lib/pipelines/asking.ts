@@ -1,5 +1,5 @@
 /** What the server is asked about the pipelines of the draft. */
-import type { PipelineFits, PipelineRuns, RecordedExample } from '#lib/contract.ts';
+import type { PipelineFits, PipelinePreview, PipelineRuns, RecordedExample } from '#lib/contract.ts';
 import { request, type Answer } from '#lib/rest/request.ts';
 
 const ADDRESS = '/api/v1/model/pipelines';
@@ -10,6 +10,11 @@ const PATIENCE = 30_000;
 export function fitsAt(pipeline: string, edge: number, field: string | null = null): Promise<Answer<PipelineFits>> {
 	const body = { pipeline, edge, ...(field !== null && { field }) };
 	return request('POST', `${ADDRESS}/suggestions`, { body, patience: PATIENCE });
+}
+
+/** What would come of edits; nothing is changed. */
+export function previewed(edits: readonly object[]): Promise<Answer<PipelinePreview>> {
+	return request('POST', `${ADDRESS}/preview`, { body: { edits }, patience: PATIENCE });
 }
 
 /** How the examples of a pipeline end. */

@@ -2,10 +2,12 @@
 import type { DraftPipeline, DraftPipelines, Finding } from '#lib/contract.ts';
 import type { Path } from '#lib/model/content.ts';
 import { pathAt, placesOf } from '#lib/model/places.ts';
+import { told } from '#lib/text/message.ts';
 import type { PartAt } from './address.ts';
 
 /** What a finding says, where its place is seen anyway: without `` `/robot/state` → stage 2 `map`: `` before it. */
-export const shortOf = (message: string): string => message.replace(/^`[^`]+` → (?:stage \d+ `[^`]+`|[^:]*): /, '');
+export const shortOf = ({ said, message }: Pick<Finding, 'said' | 'message'>): string =>
+	told(said, message).replace(/^`[^`]+` → (?:\w+ \d+ `[^`]+`|[^:]*): /, '');
 
 /** All that is found in a pipeline. */
 export function findingsIn({ findings, stages, sources }: DraftPipeline): Finding[] {

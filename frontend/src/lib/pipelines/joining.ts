@@ -20,9 +20,12 @@ export function joinOf(from: Box, to: Box, { pipelines }: Pick<DraftPipelines, '
 	const [source, target] = [pipelines[from.pipeline], pipelines[to.pipeline]];
 	if (to.kind === 'variable' && from.kind !== 'variable' && source && source.role !== 'outgoing')
 		return { pipeline: from.pipeline, edge: ended(from.pipeline), field: null, target: to.name, sources: false };
-	if (from.kind === 'variable' && target?.role === 'outgoing') {
+	if (from.kind === 'variable' && to.kind !== 'variable' && target?.role === 'outgoing') {
 		const read = target.first.find(({ variable }) => variable === from.name);
-		return { pipeline: target.id, edge: ended(target.id), field: read?.field ?? null, target: null, sources: false };
+		// A variable of the same resource is a field of the record by its own name.
+		const [local = ''] = from.name.split('.').slice(-1);
+		const field = read?.field ?? (local in (target.edges.at(-1)?.fields ?? {}) ? local : null);
+		return { pipeline: target.id, edge: ended(target.id), field, target: null, sources: false };
 	}
 	return null;
 }

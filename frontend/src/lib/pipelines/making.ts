@@ -1,17 +1,38 @@
 /** What is moved, taken out and joined: each as the edits that do it. */
-import type { DraftExample, DraftPipeline, DraftStage, Edit } from '#lib/contract.ts';
+import type { DraftExample, DraftPipeline, DraftStage, Edit, Json } from '#lib/contract.ts';
 
 /** Edits that take a stage out. */
 export function removal({ place, written }: Pick<DraftStage | DraftExample, 'place' | 'written'>): Edit[] {
 	return place === null ? [] : [{ kind: 'remove', file: place.file, path: [...place.path], was: written }];
 }
 
+type Stages = Pick<DraftPipeline, 'stages'>;
+
+/** Beside which of the stages that are written something stands at an edge: before it, else behind it; null where none is written. */
+function besideOf({ stages }: Stages, edge: number): { before: string | number } | { after: string | number } | null {
+	const [before, after] = [stages[edge]?.place?.path.at(-1), stages[edge - 1]?.place?.path.at(-1)];
+	return before !== undefined ? { before } : after !== undefined ? { after } : null;
+}
+
+/** Edits that put a stage to an edge; none where it stands there, or cannot go there. */
+export function relocation(pipeline: Stages, index: number, edge: number): Edit[] {
+	const { place, written } = pipeline.stages[index] ?? { place: null, written: null };
+	const beside = besideOf(pipeline, edge);
+	if (place === null || beside === null || edge === index || edge === index + 1 || edge > pipeline.stages.length) return [];
+	return [{ kind: 'move', file: place.file, path: [...place.path], was: written, ...beside }];
+}
+
 /** Edits that put a stage one further up or down; none where it cannot go there. */
-export function shift({ stages }: Pick<DraftPipeline, 'stages'>, index: number, by: 1 | -1): Edit[] {
-	const { place, written } = stages[index] ?? { place: null, written: null };
-	const beside = stages[index + by]?.place ?? null;
-	const step = beside?.path.at(-1);
-	if (place === null || beside === null || step === undefined) return [];
-	const where = by < 0 ? { before: step } : { after: step };
-	return [{ kind: 'move', file: place.file, path: [...place.path], was: written, ...where }];
+export const shift = (pipeline: Stages, index: number, by: 1 | -1): Edit[] =>
+	pipeline.stages[index + by]?.place ? relocation(pipeline, index, by < 0 ? index - 1 : index + 2) : [];
+
+/** Edits that write stages at an edge, as they are. */
+export function insertion(pipeline: Pick<DraftPipeline, 'stages' | 'place' | 'stages_path'>, edge: number, values: readonly Json[]): Edit[] {
+	const { place, stages_path: path } = pipeline;
+	if (path === null) return [];
+	const beside = besideOf(pipeline, edge);
+	const add = (value: Json, where: object): Edit => ({ kind: 'add', file: place.file, path: [...path, 0], value, ...where });
+	if (beside !== null && 'before' in beside) return values.map((value, at) => add(value, { before: Number(beside.before) + at }));
+	// Each stands before what was put there already.
+	return values.toReversed().map((value, at) => add(value, beside ?? (at === 0 ? {} : { before: 0 })));
 }

@@ -27,10 +27,8 @@ export class Passing {
 
 	/** Connects to the server's stream of these pipelines, or of all; the result disconnects. */
 	attach(pipelines: readonly string[] | null, ended: () => void): () => void {
-		const url = new URL('/api/v1/pipelines/stream', location.href);
-		url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-		for (const each of pipelines ?? []) url.searchParams.append('pipeline', each);
-		const connection = connect<FlowsMessage>(url.href, {
+		const asked = new URLSearchParams((pipelines ?? []).map((each) => ['pipeline', each]));
+		const connection = connect<FlowsMessage>(`/api/v1/pipelines/stream?${asked}`, {
 			opened: () => undefined,
 			heard: (message) => {
 				if (message.kind === 'flows') this.flows = message.flows;

@@ -8,6 +8,12 @@ export interface Spot {
 	readonly edge: number;
 }
 
+/** A field that a box shows, with what it is in the record that it stands for. */
+export interface Row {
+	readonly field: string;
+	readonly label: string;
+}
+
 export interface Box {
 	/** The same for as long as the same thing is drawn. */
 	readonly id: string;
@@ -22,6 +28,12 @@ export interface Box {
 	readonly troubles: readonly string[];
 	/** The type of a variable. */
 	readonly type: string | null;
+	/** The first fields of its record; none of a variable, which has a value. */
+	readonly rows: readonly Row[];
+	/** How many fields of its record are not among them. */
+	readonly more: number;
+	/** Where its record passes; null where it has none. */
+	readonly spot: Spot | null;
 }
 
 export interface Wire {
@@ -42,14 +54,11 @@ export interface Picture {
 	readonly wires: readonly Wire[];
 }
 
-export interface Point {
-	readonly x: number;
-	readonly y: number;
-}
-
-/** Where everything is. */
-export interface Layout {
-	readonly places: ReadonlyMap<string, Point>;
-	/** The corners of each wire, from its source to its target. */
-	readonly ways: ReadonlyMap<string, readonly Point[]>;
+/** A part of the picture that is laid out for itself, above or below the others. */
+export interface Lane extends Picture {
+	readonly id: string;
+	/** What stands above it; empty for nothing. */
+	readonly title: string;
+	/** The pipelines that begin or end at a device there. */
+	readonly pipelines: readonly string[];
 }

@@ -3,7 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { ticksOf } from '#lib/axis/ticks.ts';
 import type { PlanStep } from '#lib/contract.ts';
 import { step } from '#lib/testing/view.ts';
-import { cutAt, endOf, hasBegun, lateness, layOut, MOST_MARKS, timesOf, type Block, type Lane } from './lanes.ts';
+import { cutAt, endOf, hasBegun, laneHeight, lateness, layOut, MOST_MARKS, timesOf, type Block, type Lane } from './lanes.ts';
 
 const NOW = 1000;
 const ROOM = { words: 3, mark: 0.5 };
@@ -151,4 +151,20 @@ test('an axis of any length has few marks, and what is later than it is counted'
 		})
 	);
 	for (const length of [10, 200, 1506, 16_000, 1e6]) expect(ticksOf(-60, length, MOST_MARKS).length).toBeLessThanOrEqual(MOST_MARKS + 1);
+});
+
+test('lanes share the room, and those of several rows take theirs from the others', () => {
+	expect(laneHeight([1.25, 1.25], 5)).toBe(2.5);
+	expect(laneHeight([1.25, 3.75, 1.25], 6.75)).toBe(1.5);
+	expect(laneHeight([2.5, 2.5, 1.25], 7.5)).toBe(2.5);
+	expect(laneHeight([3, 3], 5)).toBe(0);
+	expect(laneHeight([], 5)).toBe(0);
+	fc.assert(
+		fc.property(fc.array(fc.integer({ min: 1, max: 6 }), { minLength: 1, maxLength: 12 }), fc.integer({ min: 0, max: 60 }), (needs, room) => {
+			const height = laneHeight(needs, room);
+			const sum = needs.reduce((all, need) => all + Math.max(height, need), 0);
+			if (height > 0) expect(sum).toBeCloseTo(room);
+			else expect(sum).toBeGreaterThanOrEqual(room);
+		})
+	);
 });

@@ -95,6 +95,15 @@ export function endOf(lanes: readonly Lane[]): number {
 	return Math.max(0, ...lanes.flatMap((lane) => lane.blocks.map((block) => block.to)));
 }
 
+/**
+ * The seconds of an axis on which all of a plan that nobody follows yet is in sight, also the words of what begins last:
+ * those need what lies after `words`, a share of the axis.
+ */
+export function lengthAhead(steps: readonly PlanStep[], words: number): number {
+	const starts = steps.map((step) => (step.expected_start ?? 0) / Math.max(words, 0.5));
+	return Math.max(1, ...starts, ...steps.map((step) => (step.expected_end ?? 0) * 1.04));
+}
+
 function pack(steps: readonly PlanStep[], now: number, late: number, room: Room): Drawn[][] {
 	const rows: Drawn[][] = [];
 	const timed = steps.map((step) => ({ step, ...timesOf(step, now, late) }));
@@ -131,4 +140,15 @@ function place(rows: Drawn[][], step: PlanStep, from: number, until: number, to:
 	const before = last(row);
 	if (before) before.to = Math.min(before.to, from + moved);
 	row.push({ step, from: from + moved, until: until + moved, to: to + moved, row: index });
+}
+
+/** How high a lane is where all share `room`; those that need more than their share take it from the others. */
+export function laneHeight(needs: readonly number[], room: number): number {
+	const rest = needs.toSorted((a, b) => b - a);
+	let left = room;
+	for (let most = rest[0]; most !== undefined && most > left / rest.length; most = rest[0]) {
+		left -= most;
+		rest.shift();
+	}
+	return rest.length === 0 ? 0 : left / rest.length;
 }

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { Job, Operation } from '#lib/contract.ts';
 import { alarm, PLAN, step, view } from '#lib/testing/view.ts';
-import { isUnheard, nothingNext } from './status.ts';
+import { isOfNoPlan, isUnheard, nothingNext } from './status.ts';
 
 const active = { active: true } as Operation;
 const idle = { ...PLAN, status: 'idle' as const };
@@ -29,4 +29,14 @@ test('a step runs unheard while an alarm tells that its device is silent, and no
 	expect(run && isUnheard(run, { a: { ...silent, resources: ['robot'] } })).toBe(false);
 	expect(run && isUnheard(run, { a: { ...silent, kind: 'overdue' } })).toBe(false);
 	expect(isUnheard(step('run', 'nutrunner', 0, { status: 'next' }), { a: silent })).toBe(false);
+});
+
+test('an alarm tells that there is no plan by itself, as what it means, or among what comes of its cause', () => {
+	const parts = [{ id: 'no-plan.text', arguments: {} }];
+	expect(isOfNoPlan(alarm({ kind: 'no-plan' }))).toBe(true);
+	expect(isOfNoPlan(alarm({ messages: { ...alarm().messages, parts } }))).toBe(true);
+	const means = { id: 'wait.no-plan', arguments: { count: 1, rest: '' } };
+	const consequence = { id: 'silent.consequence', arguments: { consequence: means } };
+	expect(isOfNoPlan(alarm({ messages: { ...alarm().messages, consequence } }))).toBe(true);
+	expect(isOfNoPlan(alarm())).toBe(false);
 });

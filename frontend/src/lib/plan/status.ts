@@ -29,6 +29,19 @@ const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
 /** Kinds of alarms that tell that nothing is heard of one, or of several. */
 const UNHEARD: ReadonlySet<string> = new Set(['silent', 'many-silent', 'never-heard']);
 
+/** Messages that tell that there is no plan: as a cause of an alarm, and as what an alarm means. */
+const NO_PLAN: ReadonlySet<string> = new Set(['no-plan.text', 'wait.no-plan']);
+
+/** Whether an alarm tells that there is no plan: by itself, as what it means, or among what comes of its cause. */
+export function isOfNoPlan({ kind, messages: { consequence, parts } }: Alarm): boolean {
+	return kind === 'no-plan' || [consequence, ...parts].some(tellsNoPlan);
+}
+
+function tellsNoPlan(said: unknown): boolean {
+	if (typeof said !== 'object' || said === null || !('id' in said) || !('arguments' in said)) return false;
+	return NO_PLAN.has(String(said.id)) || Object.values(said.arguments ?? {}).some(tellsNoPlan);
+}
+
 /** The most urgent alarm that lasts about the devices of a resource. */
 export function failing(resource: string, alarms: Alarms): Alarm | undefined {
 	return byUrgency(alarms).find(([, alarm]) => alarm.group === 'device' && !isOver(alarm) && alarm.resources.includes(resource))?.[1];

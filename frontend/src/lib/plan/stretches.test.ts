@@ -34,7 +34,22 @@ test('names that have no room beside one another stand one below the other, as f
 		['d', 0]
 	]);
 	expect(Math.max(...found.map(({ row }) => row))).toBeLessThan(ROWS);
-	expect(found.map((_, index) => roomOf(found, index))).toEqual([-10, Infinity, Infinity]);
+	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-25, -24, -5]);
+});
+
+test('without a plan what is worked on goes on, and what is only active is not told', () => {
+	const at = (work: readonly { began: number; ended: number | null }[]): ReturnType<typeof operation> =>
+		operation({ active: true, active_since: NOW - 20, work: [...work] });
+	const operations = { runs: at([{ began: NOW - 9, ended: NOW - 8 }, { began: NOW - 5, ended: null }]), rests: at([{ began: NOW - 9, ended: NOW - 8 }]), waits: at([]) };
+	const found = stretchesOf(operations, [], NOW, 60, 1);
+	expect(found.map(({ operation, from, to, standing }) => [operation, from, to, standing])).toEqual([['runs', -5, 0, 'now']]);
+	expect(roomOf(found, 0, 1)).toBe(Infinity);
+});
+
+test('the name of what is over ends where the next begins, if that is before its own end', () => {
+	const began = (at: number): ReturnType<typeof operation> => operation({ began: NOW - at, ended: NOW - at + 20 });
+	const found = stretchesOf({ a: began(50), b: began(49), c: began(40) }, [], NOW, 60, 5);
+	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-40, -29, -20]);
 });
 
 test('what is too long ago is not told', () => {

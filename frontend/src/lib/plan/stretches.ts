@@ -1,5 +1,6 @@
 /** What the plan is for: the stretch of time in which it serves each operation. */
 import type { Operation, PlanStep } from '#lib/contract.ts';
+import { isAtWork } from '#lib/operation/standing.ts';
 import { hasBegun, lateness, timesOf } from './lanes.ts';
 
 export interface Stretch {
@@ -27,16 +28,20 @@ export function stretchesOf(
 	const late = lateness(steps, now);
 	const byId = new Map(steps.map((step) => [step.id, step]));
 	const found: Omit<Stretch, 'row'>[] = [];
-	for (const [operation, { title, active, active_since, began, ended, first_step, last_step }] of Object.entries(operations)) {
+	for (const [operation, each] of Object.entries(operations)) {
+		const { title, active, active_since, began, ended, first_step, last_step } = each;
 		if (began !== null && ended !== null && ended - now > -since && !active)
 			found.push({ operation, title, from: began - now, to: ended - now, standing: 'past' });
 		const first = byId.get(first_step ?? '');
 		const last = byId.get(last_step ?? '');
 		if (!active || active_since === null) continue;
+		const running = isAtWork(each) ? each.work.at(-1) : undefined;
 		const to = last ? Math.max(0, timesOf(last, now, late).end) : 0;
 		if (first && !hasBegun(first)) found.push({ operation, title, from: timesOf(first, now, late).start, to, standing: 'ahead' });
 		// What is left out of the plan is served by none of its steps.
 		else if (first) found.push({ operation, title, from: Math.max(active_since, first.started ?? active_since) - now, to, standing: 'now' });
+		// Without a plan what runs goes on.
+		else if (running) found.push({ operation, title, from: running.began - now, to: 0, standing: 'now' });
 	}
 	found.sort((a, b) => a.from - b.from || a.to - b.to);
 	const rows: number[] = [];
@@ -50,9 +55,12 @@ export function stretchesOf(
 	});
 }
 
-/** Where the name of a stretch must end: where the next of its row begins. */
-export function roomOf(stretches: readonly Stretch[], index: number): number {
+/**
+ * Where the name of a stretch must end: where the next of its row begins. That of one that is over, for which `words` are
+ * needed, goes with it: it would be taken for what goes on.
+ */
+export function roomOf(stretches: readonly Stretch[], index: number, words: number): number {
 	const stretch = stretches[index];
-	const next = stretches.slice(index + 1).find(({ row }) => row === stretch?.row);
-	return next?.from ?? Infinity;
+	const next = stretches.slice(index + 1).find(({ row }) => row === stretch?.row)?.from ?? Infinity;
+	return stretch?.standing === 'past' ? Math.min(next, Math.max(stretch.to, stretch.from + words)) : next;
 }

@@ -8,6 +8,7 @@ test('an ability runs that was started, or that executes although nobody knows s
 		title: 'Place',
 		human: true,
 		restart: false,
+		moves: true,
 		enabled: null,
 		executing: null,
 		finished: null,

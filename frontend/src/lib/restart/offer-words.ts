@@ -4,6 +4,7 @@ import { told } from '#lib/text/message.ts';
 import { say, type Text } from '#lib/text/text.svelte.ts';
 import { inSentence, nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import { asksForHands, canBeTaken, onlySays } from './offer.ts';
+import { lengthOf } from './preview-lanes.ts';
 import { returning } from './returning.ts';
 import { operationTitles, resourceTitle } from './titles.ts';
 
@@ -23,6 +24,13 @@ export function timeWords(texts: Pick<Ways, 'seconds' | 'minutes'>, seconds: num
 	const whole = Math.ceil(seconds);
 	if (whole < 60) return texts.seconds(whole);
 	return whole < 600 ? texts.minutes(Math.floor(whole / 60), whole % 60) : texts.minutes(Math.round(whole / 60), 0);
+}
+
+/** Seconds of a way: its own, and those with what the station does afterwards, where that is more. What has nothing of its own is told as a whole. */
+export function timesOf({ effort, errand, then }: WayOffer): { readonly own: number; readonly all: number } {
+	const all = effort.time;
+	const own = errand && then && then.steps.length > 0 ? Math.min(all, lengthOf(errand) + effort.time - effort.seconds) : all;
+	return { own, all };
 }
 
 /** What it is called; where it only says what is true, with the warning that somebody has to have looked. */

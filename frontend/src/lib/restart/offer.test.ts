@@ -3,7 +3,7 @@ import { offer, preview } from '#lib/testing/offer.ts';
 import { operation, view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
 import { asksForHands, canBeTaken, goesOn, goesOnMeanwhile, mayBeWanted, onlySays } from './offer.ts';
-import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, timeWords } from './offer-words.ts';
+import { handsOf, kindWord, resourcesOf, stillAsked, storyOf, timesOf, timeWords } from './offer-words.ts';
 
 const CHANGE = { name: 'b', now: 'placed', then: 'empty', so: { id: 'as-it-was', arguments: { text: 'b is empty' } }, by_hand: null };
 
@@ -29,6 +29,16 @@ test('how long it takes is said as people say it', () => {
 	const { ways } = en.restart;
 	const said = (seconds: number): string => timeWords(ways, seconds);
 	expect([8.2, 59.2, 80, 119.5, 660].map(said)).toEqual(['≈ 9 s', '≈ 1 min', '≈ 1 min 20 s', '≈ 2 min', '≈ 11 min']);
+});
+
+test('what a way takes by itself is told from what the station does then', () => {
+	const effort = { ...offer().effort, seconds: 18, time: 20 };
+	const errand = preview('move', 'turn');
+	// Two seconds are people's.
+	expect(timesOf(offer({ errand, effort }))).toEqual({ own: 4, all: 20 });
+	expect(timesOf(offer({ errand, effort, then: null }))).toEqual({ own: 20, all: 20 });
+	expect(timesOf(offer({ errand, effort, then: preview() }))).toEqual({ own: 20, all: 20 });
+	expect(timesOf(offer({ effort }))).toEqual({ own: 20, all: 20 });
 });
 
 test('what a person does by hand is counted, before it and within it', () => {
@@ -58,7 +68,7 @@ test('whoever is to go in holds the station first, where it would go on by itsel
 test('who says too early that it is done hears what is not so yet', () => {
 	const silent = view({ resources: { robot: { title: 'Robot UR10', online: false, awaited_topics: ['/state'] } } });
 	expect(stillAsked(silent, offer({ online: ['robot'] }))).toBe('Checked: Robot UR10 is still not heard.');
-	expect(stillAsked(silent, offer({ physical: [CHANGE] }))).toBe('Checked: it is not so yet that b is empty (now placed).');
+	expect(stillAsked(silent, offer({ physical: [CHANGE] }))).toBe('Checked: it is not so yet that b is empty (now: placed).');
 	expect(stillAsked(silent, offer({ in_service: ['move'], online: ['robot'] }))).toMatch(/^Checked: Robot UR10 is still not heard, .* is still out of service\.$/);
 	const heard = view({ resources: { robot: { title: 'Robot UR10', online: true, awaited_topics: [] } } });
 	expect(stillAsked(heard, offer({ online: ['robot'] }))).toBe(null);

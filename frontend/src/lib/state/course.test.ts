@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { afterEach, expect, test, vi } from 'vitest';
 import type { RunRecord } from '#lib/contract.ts';
 import { alarm } from '#lib/testing/view.ts';
-import { courseOf, readAlarms, readCourse, since } from './course.ts';
+import { courseOf, coursesOf, readAlarms, readCourse, since } from './course.ts';
 
 afterEach(() => vi.unstubAllGlobals());
 
@@ -101,4 +101,17 @@ test('the alarms that came to a resource are read from the journal, and no other
 	expect(asked).toHaveLength(1);
 	vi.stubGlobal('fetch', () => Promise.reject(new TypeError('no way there')));
 	expect(await readAlarms('robot', 5)).toBeNull();
+});
+
+test('courses of all begin with what was so, and leave out what is not asked for', () => {
+	const records = [
+		record(13, 'ticked', { measured: { at: null }, changes: { other: 1 } }),
+		record(12, 'ticked', { started: ['robot.move'] }),
+		record(11, 'ticked', { measured: { at: 'kit' }, changes: { bolt: 'tight' } }),
+		record(9, 'ticked', { measured: { at: 'far' } })
+	];
+	expect([...coursesOf({ at: 'home', bolt: 'empty' }, 10, records)]).toEqual([
+		['at', [{ at: 10, value: 'home' }, { at: 11, value: 'kit' }, { at: 13, value: null }]],
+		['bolt', [{ at: 10, value: 'empty' }, { at: 11, value: 'tight' }]]
+	]);
 });

@@ -3,9 +3,10 @@
  * estimates and outputs with every tick, and what people have corrected or forced.
  */
 import { arrivals, turnsOf } from '#lib/alarm/record.ts';
-import type { Alarm, HistoryAnswer, RunRecord, Value } from '#lib/contract.ts';
+import type { Alarm, HistoryAnswer, Moment, Place, RunRecord, Value } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
+import type { Earlier } from '#lib/stream/recorder.ts';
 
 /** From `at` (seconds) on it was `value`; null where that was not known. */
 export interface Change {
@@ -81,6 +82,31 @@ async function readBack(query: Readonly<Record<string, string>>, from: number): 
 export async function readCourse(name: string, from: number): Promise<Read | Refusal> {
 	const past = await readBack({ name }, from);
 	return 'records' in past ? { course: courseOf(past.records, name), known: past.known } : past;
+}
+
+/** How all variables changed, by their names: from what they were at `from`, with records that are the newest first. */
+export function coursesOf(values: Readonly<Record<string, Value | null>>, from: number, records: readonly RunRecord[]): Map<string, Earlier[]> {
+	const found = new Map<string, Earlier[]>(Object.entries(values).map(([name, value]) => [name, [{ at: from, value }]]));
+	for (const { time, content } of records.toReversed())
+		for (const part of PARTS) {
+			const changed = content[part];
+			if (time < from || typeof changed !== 'object' || changed === null) continue;
+			for (const [name, value] of Object.entries(changed as Record<string, Value | null>)) found.get(name)?.push({ at: time, value });
+		}
+	return found;
+}
+
+/** Reads how all variables went from `from` on; null where that cannot be read, or is too much. */
+export async function readCourses(from: number): Promise<Map<string, Earlier[]> | null> {
+	const place = await request<Place>('GET', `/api/v1/history/at?time=${from}`, { patience: 20_000 });
+	if (!place.ok) return null;
+	const [moment, past] = await Promise.all([
+		request<Moment>('GET', `/api/v1/history/${place.value.number}`, { patience: 20_000 }),
+		readBack({}, place.value.time)
+	]);
+	if (!moment.ok || !('records' in past) || past.known !== null) return null;
+	const begin = Math.max(from, place.value.time);
+	return coursesOf(moment.value.past.values, begin, past.records.filter(({ number }) => number > place.value.number));
 }
 
 /** An alarm that came. */

@@ -13,6 +13,7 @@ import { nameOf, valueOf } from '#lib/wording/names.svelte.ts';
 import { arrange, entriesOf, followsValues, type Entry } from './arrange.ts';
 import { EVERYTHING, OF_NONE, type Criteria } from './criteria.ts';
 import { countsOf, doubtsOf, type Standing } from './standing.ts';
+import { keepWatched, keptWatched } from './watched.ts';
 import { keepHidden, keptHidden, type ColumnId } from './columns.ts';
 
 const EVERY = 1000;
@@ -25,6 +26,8 @@ export type Line =
 /** What is being done with variables in a dialog. */
 export type Task =
 	| { readonly what: 'details' | 'force'; readonly name: string }
+	/** With the condition that is offered. */
+	| { readonly what: 'breakpoints'; readonly condition: string }
 	| { readonly what: 'correct'; readonly correction: Correction }
 	/** With the values that were seen as it was opened. */
 	| { readonly what: 'confirm'; readonly values: Readonly<Record<string, Value>> };
@@ -40,6 +43,9 @@ export class VariableList {
 	readonly ticked = new SvelteSet<string>();
 	/** Resources whose variables are not shown. */
 	readonly folded = new SvelteSet<string>();
+	/** What this device keeps in sight, and whether nothing else is shown. */
+	readonly watched = new SvelteSet<string>(keptWatched());
+	watchedOnly = $state(false);
 	/** Columns that are not shown, which this device remembers. */
 	hidden = $state.raw<readonly ColumnId[]>(keptHidden());
 	task = $state.raw<Task | null>(null);
@@ -117,6 +123,12 @@ export class VariableList {
 		if (!this.folded.delete(resource)) this.folded.add(resource);
 	}
 
+	/** Keeps a variable in sight, or not any more. */
+	watch(name: string): void {
+		if (!this.watched.delete(name)) this.watched.add(name);
+		keepWatched(this.watched);
+	}
+
 	/** Shows a column, or not. */
 	show(column: ColumnId, shown: boolean): void {
 		this.hidden = shown ? this.hidden.filter((each) => each !== column) : [...this.hidden, column];
@@ -173,7 +185,9 @@ export class VariableList {
 
 	#in(view: StationView | null): readonly string[] {
 		const judged = view ?? this.#now();
-		return judged === null ? [] : arrange(this.#entries, this.criteria, judged, valueOf);
+		if (judged === null) return [];
+		const names = arrange(this.#entries, this.criteria, judged, valueOf);
+		return this.watchedOnly && this.watched.size > 0 ? names.filter((name) => this.watched.has(name)) : names;
 	}
 }
 

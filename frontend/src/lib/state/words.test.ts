@@ -1,10 +1,16 @@
 import { expect, test } from 'vitest';
 import { estimate, view } from '#lib/testing/view.ts';
 import { fullName, valueOf } from '#lib/wording/names.svelte.ts';
-import { agoWords, spanOf } from './words.ts';
+import { agoWords, evidenceText, spanOf } from './words.ts';
 
 test('values are said in words', () => {
 	expect([true, false, null, 7, 'above_engine'].map((value) => valueOf('v', value))).toEqual(['yes', 'no', 'unknown', '7', 'above engine']);
+});
+
+test('what was measured is said as variables and values are called', () => {
+	const shown = view({ variables: { 'robot.pose': estimate(), b: estimate(), n: estimate() } });
+	const said = ['robot.pose == above_engine', 'b', 'not b', 'n == 3', 'odd (text)'].map((each) => evidenceText(shown, each));
+	expect(said).toEqual(['Robot.pose: above engine', 'B: yes', 'B: no', 'N: 3', 'odd (text)']);
 });
 
 test('spans of time get coarser as they grow', () => {

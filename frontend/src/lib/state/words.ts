@@ -1,6 +1,7 @@
 /** How the ages of values and their resources are said, in the language of the page. */
 import type { StationView } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
+import { fullName, valueOf } from '#lib/wording/names.svelte.ts';
 
 /** A span of time in the coarsest unit that says enough. Clocks that disagree by a moment give none. */
 export function spanOf(seconds: number): readonly [number, 's' | 'min' | 'h' | 'days'] {
@@ -37,4 +38,15 @@ export function writerText(view: Pick<StationView, 'abilities'> | null, writer: 
 	if (writer === 'the model' || writer === 'the journal') return words[writer];
 	const job = /^job (.+)$/.exec(writer)?.[1];
 	return job === undefined ? (view?.abilities[writer]?.title ?? writer) : words.job(job);
+}
+
+/** What was measured, as it stands in a belief: `robot.pose == home`, `robot.moving` or `not robot.moving`. */
+const MEASURED = /^(not )?([^\s=]+)(?: == (.+))?$/;
+
+/** The same with the names that variables and values have for people: `Pose of the robot: home`. */
+export function evidenceText(view: Pick<StationView, 'resources' | 'variables'> | null, written: string): string {
+	const [, not, name, value] = MEASURED.exec(written) ?? [];
+	if (name === undefined) return written;
+	const said = value ?? not === undefined;
+	return `${fullName(view, name)}: ${valueOf(name, said)}`;
 }

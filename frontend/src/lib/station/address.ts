@@ -1,4 +1,4 @@
-/** What a person looks at on the page Station, as it stands in its address. */
+/** What a person looks at in the graph of Model, as it stands in the page's address. */
 import type { Filter } from './bands.ts';
 
 export interface Looked extends Filter {
@@ -26,11 +26,11 @@ export function lookedAt(query: Pick<URLSearchParams, 'get'>): Looked {
 }
 
 export function addressOf({ thing, steps, loose, resource, kind }: Partial<Looked>): string {
-	const query = new URLSearchParams();
+	const query = new URLSearchParams({ view: 'graph' });
 	if (thing) query.set('thing', thing);
 	if (steps !== undefined && steps !== USUAL_STEPS) query.set('steps', steps === Infinity ? 'all' : String(steps));
 	if (loose) query.set('loose', 'on');
 	if (resource) query.set('resource', resource);
 	if (kind) query.set('kind', kind);
-	return query.size === 0 ? '/station' : `/station?${query}`;
+	return `/model?${query}`;
 }

@@ -1,4 +1,4 @@
-/** What the parts of the page Station share: the model as a whole, what is chosen in it, and what is tied to that. */
+/** What the parts of the graph of Model share: the model as a whole, what is chosen in it, and what is tied to that. */
 import { createContext } from 'svelte';
 import type { Finding, ModelGraph } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';

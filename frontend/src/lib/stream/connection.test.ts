@@ -39,6 +39,7 @@ const listener = { opened: vi.fn(), heard: vi.fn(), closed: vi.fn() } satisfies 
 beforeEach(() => {
 	vi.useFakeTimers();
 	vi.stubGlobal('WebSocket', Socket);
+	vi.stubGlobal('location', { href: 'http://station/model?entry=a' });
 	Socket.all = [];
 });
 afterEach(() => {
@@ -58,8 +59,18 @@ test('the wait between attempts grows, stays below five seconds and never vanish
 });
 
 describe('a connection', () => {
+	test.each([
+		['http://station/model', 'ws://station/api/v1/stream'],
+		['https://station:8443/model', 'wss://station:8443/api/v1/stream']
+	])('from the page %s is to %s', (page, url) => {
+		vi.stubGlobal('location', { href: page });
+		const connection = connect('/api/v1/stream', listener);
+		expect(Socket.last.url).toBe(url);
+		connection.close();
+	});
+
 	test('is opened again for ever', () => {
-		const connection = connect('ws://here', listener);
+		const connection = connect('/api/v1/stream', listener);
 		for (let k = 1; k < 50; k++) {
 			Socket.last.onclose?.({ code: 1006 });
 			vi.advanceTimersByTime(5000);
@@ -69,7 +80,7 @@ describe('a connection', () => {
 	});
 
 	test('on which nothing is heard is given up and opened anew', () => {
-		const connection = connect('ws://here', listener);
+		const connection = connect('/api/v1/stream', listener);
 		const first = Socket.last;
 		first.open();
 		vi.advanceTimersByTime(12_000);
@@ -80,7 +91,7 @@ describe('a connection', () => {
 	});
 
 	test('that was given up is not listened to any more', () => {
-		const connection = connect('ws://here', listener);
+		const connection = connect('/api/v1/stream', listener);
 		const first = Socket.last;
 		first.open();
 		first.onclose?.({ code: 1006 });
@@ -90,7 +101,7 @@ describe('a connection', () => {
 	});
 
 	test('says with which code it was closed', () => {
-		const connection = connect('ws://here', listener);
+		const connection = connect('/api/v1/stream', listener);
 		Socket.last.open();
 		Socket.last.onclose?.({ code: ENDED });
 		expect(listener.closed).toHaveBeenCalledWith(ENDED);
@@ -98,7 +109,7 @@ describe('a connection', () => {
 	});
 
 	test('asks for a snapshot only when it is open', () => {
-		const connection = connect('ws://here', listener);
+		const connection = connect('/api/v1/stream', listener);
 		connection.resync();
 		expect(Socket.last.sent).toEqual([]);
 		Socket.last.open();
@@ -108,7 +119,7 @@ describe('a connection', () => {
 	});
 
 	test('that was closed stays closed', () => {
-		connect('ws://here', listener).close();
+		connect('/api/v1/stream', listener).close();
 		vi.advanceTimersByTime(60_000);
 		expect(Socket.all).toHaveLength(1);
 	});

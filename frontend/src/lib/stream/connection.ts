@@ -40,15 +40,23 @@ function close(socket: WebSocket): void {
 	else socket.close();
 }
 
+/** Where the browser finds a stream of the server that this page is from. */
+function streamAddress(path: string): string {
+	const url = new URL(path, location.href);
+	url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+	return url.href;
+}
+
 /**
- * Connects to `url`, where each message is a `Message` in JSON, and keeps connecting until `close`. After `silent`
- * milliseconds in which nothing was heard it connects anew.
+ * Connects to the server's stream at `path`, where each message is a `Message` in JSON, and keeps connecting until
+ * `close`. After `silent` milliseconds in which nothing was heard it connects anew.
  */
 export function connect<Message = StreamMessage>(
-	url: string,
+	path: string,
 	listener: Listener<Message>,
 	silent = SILENT
 ): Connection {
+	const url = streamAddress(path);
 	let socket: WebSocket | null = null;
 	let attempts = 0;
 	let retry: ReturnType<typeof setTimeout> | undefined;

@@ -65,6 +65,23 @@ describe('what was heard of a variable', () => {
 		expect(recorder.of('b')).toHaveLength(1);
 	});
 
+	test('goes back to what was before, as it is told', () => {
+		const recorder = new Recorder();
+		const b = made('placed', 990);
+		recorder.hear(snapshot(1000, { b }));
+		const empty = { at: 940, value: 'empty' };
+		recorder.recall(new Map([['b', [empty, { at: 970, value: null }, { at: 990, value: 'placed' }]], ['gone', [empty]]]), { b });
+		expect(recorder.of('b')).toEqual([
+			{ at: 940, low: 0, high: 0, last: 0, changes: 0 },
+			{ at: 970, low: NaN, high: NaN, last: NaN, changes: 1 },
+			{ at: 990, low: 1, high: 1, last: 1, changes: 1 }
+		]);
+		expect(recorder.of('gone')).toEqual([]);
+		// Told once more, nothing is there twice.
+		recorder.recall(new Map([['b', [empty]]]), { b });
+		expect(recorder.of('b')).toHaveLength(3);
+	});
+
 	test('is several values where it changed several times within a second', () => {
 		const recorder = new Recorder();
 		recorder.hear(snapshot(1000, { b: made('empty', 950) }));

@@ -5,7 +5,7 @@
  * messages name what has changed. And of each variable only a *stretch* is kept for each second in which it changed,
  * which bounds what a minute can take.
  */
-import type { StreamMessage, Variable } from '#lib/contract.ts';
+import type { StreamMessage, Value, Variable } from '#lib/contract.ts';
 
 /** Seconds that are kept. */
 export const WINDOW = 60;
@@ -23,6 +23,12 @@ export interface Stretch {
 	readonly last: number;
 	/** How often it changed within that second, as far as was heard. */
 	readonly changes: number;
+}
+
+/** From `at` on it was `value`; null where that was not known. */
+export interface Earlier {
+	readonly at: number;
+	readonly value: Value | null;
 }
 
 type Kept = { -readonly [Key in keyof Stretch]: Stretch[Key] };
@@ -61,6 +67,22 @@ export class Recorder {
 		return this.#tracks.get(name) ?? [];
 	}
 
+	/** Takes note of what was before anything was heard: the values of `variables` by their names, the oldest first. */
+	recall(past: ReadonlyMap<string, readonly Earlier[]>, variables: Readonly<Record<string, Variable>>): void {
+		for (const [name, earlier] of past) {
+			const track = this.#tracks.get(name);
+			const oldest = track?.[0];
+			const variable = variables[name];
+			if (track === undefined || oldest === undefined || variable === undefined) continue;
+			const before: Kept[] = [];
+			for (const { at, value } of earlier) if (at < oldest.at) extend(before, at, placeOf({ ...variable, value }));
+			const last = before.at(-1);
+			if (last === undefined) continue;
+			if (oldest.changes === 0 && !Object.is(last.last, oldest.last)) oldest.changes = 1;
+			track.unshift(...before);
+		}
+	}
+
 	#arriveAt(time: number): void {
 		if (Math.abs(time - this.#time) > TORN) this.#tracks.clear();
 		this.#time = time;
@@ -69,26 +91,28 @@ export class Recorder {
 	#note(name: string, variable: Variable): void {
 		const place = placeOf(variable);
 		const since = variable.since ?? this.#time;
-		const track = this.#tracks.get(name);
-		const newest = track?.at(-1);
-		if (track === undefined || newest === undefined) {
-			this.#tracks.set(name, [{ at: since, low: place, high: place, last: place, changes: 0 }]);
-			return;
-		}
-		if (Object.is(newest.last, place)) return;
-		const at = Math.max(newest.at, since);
-		if (Math.floor(at) === Math.floor(newest.at)) {
-			newest.low = extreme(newest.low, place, Math.min);
-			newest.high = extreme(newest.high, place, Math.max);
-			newest.last = place;
-			newest.changes += 1;
-		} else track.push({ at, low: place, high: place, last: place, changes: 1 });
+		const track = this.#tracks.get(name) ?? [];
+		this.#tracks.set(name, track);
+		extend(track, Math.max(track.at(-1)?.at ?? -Infinity, since), place);
 		while ((track[1]?.at ?? Infinity) < this.#time - WINDOW) track.shift();
 	}
 }
 
+/** Has a value at the end of what was before. */
+function extend(track: Kept[], at: number, place: number): void {
+	const newest = track.at(-1);
+	if (newest === undefined) track.push({ at, low: place, high: place, last: place, changes: 0 });
+	else if (Object.is(newest.last, place)) return;
+	else if (Math.floor(at) === Math.floor(newest.at)) {
+		newest.low = extreme(newest.low, place, Math.min);
+		newest.high = extreme(newest.high, place, Math.max);
+		newest.last = place;
+		newest.changes += 1;
+	} else track.push({ at, low: place, high: place, last: place, changes: 1 });
+}
+
 /** The place of a variable's value in its domain. */
-function placeOf({ value, domain }: Variable): number {
+function placeOf({ value, domain }: Pick<Variable, 'value' | 'domain'>): number {
 	if (value === null) return NaN;
 	const [first] = domain;
 	// A range of integers may be long, and has no holes.

@@ -45,13 +45,13 @@ export class Station {
 	});
 
 	/** Connects to the server's stream; the result disconnects. `closed` is told each time the connection is lost. */
-	attach(url: string, closed: (code: number) => void): () => void {
+	attach(closed: (code: number) => void): () => void {
 		const look = (): void => {
 			this.#now = performance.now();
 		};
 		let asked = -Infinity;
 		let attached = true;
-		const connection = connect(url, {
+		const connection = connect('/api/v1/stream', {
 			opened: () => {
 				this.#open = true;
 			},

@@ -4,6 +4,7 @@ import { countText, statesText } from './states.ts';
 
 const NOTHING: Analysis = {
 	pending: 'the safe states',
+	pending_message: { id: 'pending.safe', arguments: {} },
 	supervised: null,
 	reachable_states: null,
 	supervised_states: null,
@@ -27,7 +28,7 @@ test.each([
 test('the states are told as far as they are known', () => {
 	expect(statesText(NOTHING)).toBe('');
 	expect(statesText({ ...NOTHING, supervised: true, reachable_states: 180 })).toBe('180 states can be reached.');
-	const all = { ...NOTHING, pending: null, supervised: true, reachable_states: 180, supervised_states: 148 };
+	const all = { ...NOTHING, pending: null, pending_message: null, supervised: true, reachable_states: 180, supervised_states: 148 };
 	expect(statesText(all)).toBe('180 states can be reached, 148 of them with the supervisor.');
 	expect(statesText({ ...NOTHING, supervised: true, supervised_at_most: 22_512 })).toBe(
 		'At most 22\u202f512 states can be reached with the supervisor.'

@@ -8,14 +8,20 @@ type Messages = Promise<{ default: Catalogue['texts'] }>;
 /** What is told of an alarm: what is wrong, and what to do. */
 export type Teller = (alarm: NonNullable<WatchSnapshot['alarm']>) => { readonly text: string; readonly action: string };
 
-const MESSAGES: Readonly<Record<Exclude<Language, 'en'>, () => Messages>> = { sv: () => import('#lib/text/sv/messages.json') };
-
-/** It says itself in English what it says. */
-export const asWritten: Teller = ({ text, action }) => ({ text, action });
+const MESSAGES: Readonly<Record<Language, () => Messages>> = {
+	// The text that came has conditions as engineers write them.
+	en: async () => {
+		const [messages, findings] = await Promise.all([import('#lib/text/en/messages.json'), import('#lib/text/en/findings.json')]);
+		return { default: { ...messages.default, ...findings.default } };
+	},
+	sv: async () => {
+		const [messages, findings] = await Promise.all([import('#lib/text/sv/messages.json'), import('#lib/text/sv/findings.json')]);
+		return { default: { ...messages.default, ...findings.default } };
+	}
+};
 
 /** What tells an alarm in `language`. */
 export async function teller(language: Language): Promise<Teller> {
-	if (language === 'en') return asWritten;
 	const [messages] = await Promise.all([MESSAGES[language](), readRefusals()]);
 	const catalogue = { texts: { ...say().messages, ...messages.default }, language };
 	return ({ text, message, action, action_message }) => ({

@@ -21,13 +21,13 @@ export class WatchStation {
 		judge({ view: this.#snapshot, controller: this.#controller, gap: false }, this.#hearing, this.#open, this.#now)
 	);
 
-	/** Connects to the stream at `url`; the result disconnects. `closed` is called each time the connection is lost. */
-	attach(url: string, closed: () => void): () => void {
+	/** Connects to the stream; the result disconnects. `closed` is called each time the connection is lost. */
+	attach(closed: () => void): () => void {
 		const look = (): void => {
 			this.#now = performance.now();
 		};
 		let attached = true;
-		const connection = connect<WatchStreamMessage>(url, {
+		const connection = connect<WatchStreamMessage>('/api/v1/wearables/stream', {
 			opened: () => {
 				this.#open = true;
 			},

@@ -4,7 +4,7 @@ import type { PlanPreview, WayOffer } from '#lib/contract.ts';
 /** A plan of so many starts of the robot, one in each tick. */
 export function preview(...abilities: string[]): PlanPreview {
 	const steps = abilities.map((ability, tick) => {
-		return { tick, start: tick, end: tick + 1, ability, title: ability, resource: 'robot', human: false, restart: false };
+		return { tick, start: tick, end: tick + 1, ability, title: ability, resource: 'robot', human: false, restart: false, moves: true };
 	});
 	return { ticks: abilities.length, steps, minimal_ticks: true, minimal_starts: true };
 }

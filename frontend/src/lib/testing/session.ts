@@ -6,6 +6,8 @@ export function sessionAnswer(rest: Partial<SessionAnswer> = {}): SessionAnswer 
 	const person = { id: 'p-1', name: 'Operator A', role: 'operator' as const, issuer: null };
 	const signedIn: SessionAnswer = {
 		state: 'signed-in',
+		people: true,
+		station: { en: 'Bolt tightening station', sv: 'Station för skruvdragning' },
 		person,
 		session: 's-1',
 		kind: 'person',

@@ -52,6 +52,8 @@ export function operation(rest: Partial<Operation> = {}): Operation {
 		ended: null,
 		first_step: null,
 		last_step: null,
+		steps: [],
+		work: [],
 		goal: 'b == tightened',
 		precondition: 'b == placed',
 		sentence: null,
@@ -111,7 +113,7 @@ export function estimate(rest: Partial<Variable> = {}): Variable {
 }
 
 export function view(rest: Partial<StationView> = {}): StationView {
-	const station = { name: 'station', title: 'Station', description: '', transport: 'dds', emulated: true };
+	const station = { name: 'station', title: 'Station', titles: { '': 'Station' }, description: '', transport: 'dds', emulated: true };
 	return {
 		station,
 		tick: 0,
@@ -123,6 +125,8 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		silent: [],
 		failing: [],
 		stepping: false,
+		cycle_stop: null,
+		breakpoints: {},
 		production: 'started',
 		unconfirmed: false,
 		undecided: {},

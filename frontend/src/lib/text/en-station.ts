@@ -15,5 +15,6 @@ import { operate } from './en/operate.ts';
 import { orders } from './en/orders.ts';
 import { restart } from './en/restart.ts';
 import { state } from './en/state.ts';
+import { trace } from './en/trace.ts';
 
-export const station = { ...front, messages: { ...refusals, ...messages }, account, alarms, figures, frame, history, mimic, operate, orders, restart, state };
+export const station = { ...front, messages: { ...refusals, ...messages }, account, alarms, figures, frame, history, mimic, operate, orders, restart, state, trace };

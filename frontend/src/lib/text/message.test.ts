@@ -1,11 +1,13 @@
 import { describe, expect, test } from 'vitest';
+import findings from '#lib/text/en/findings.json';
 import refusals from '#lib/text/en/front.json';
 import messages from '#lib/text/en/messages.json';
 import { sv } from '#lib/text/sv.ts';
 import { alarm } from '#lib/testing/view.ts';
-import { tell, wordsOf } from './message.ts';
+import { cutOf, tell, told, toldAll, toldHere, wordsOf } from './message.ts';
+import { tellTitles } from '#lib/wording/titled.svelte.ts';
 
-const EN = { texts: { ...refusals, ...messages }, language: 'en' };
+const EN = { texts: { ...refusals, ...messages, ...findings }, language: 'en' };
 const SV = { texts: sv.messages, language: 'sv' };
 
 const waiting = (...titles: string[]) => ({
@@ -29,11 +31,54 @@ describe('a message', () => {
 		expect(tell(waiting('a', 'b', 'c', 'd', 'e'), SV)).toBe('Inget startas. ”a”, ”b”, ”c” och 2 till väntar.');
 	});
 
+	test('of which names were left out can be told as a whole', () => {
+		const names = { id: 'found.more', arguments: { names: '`a`, `b`', count: 2, rest: ['`c`', '`d`'] } };
+		const message = { id: 'found.too-many-states', arguments: { names } };
+		const cut = cutOf(message, EN);
+		expect(cut && [cut.before, cut.others, cut.after].join('')).toBe(tell(message, EN));
+		expect(cut?.others).toBe(' and 2 more');
+		expect(cut?.whole).toContain('of `a`, `b`, `c`, `d` it is not known');
+		expect(cutOf(waiting('Paint'), EN)).toBeNull();
+		expect(cutOf({ id: 'found.more', arguments: { names: '`a`', count: 2 } }, EN)).toBeNull();
+	});
+
 	test('has the words of the model in the language that there is', () => {
 		const said = (words: Record<string, string>) => tell({ id: 'as-it-was', arguments: { text: { words } } }, SV);
 		expect(said({ en: 'Battery low', sv: 'Batteriet är lågt' })).toBe('Batteriet är lågt');
 		expect(said({ en: 'Battery low' })).toBe('Battery low');
 		expect(said({ fi: 'Akku vähissä' })).toBe('Akku vähissä');
+	});
+});
+
+describe('what is found in a model', () => {
+	const unknown = {
+		id: 'wrong.unknown-variable',
+		arguments: { name: 'robot.poes', hint: { id: 'hint.meant', arguments: { name: 'robot.pose' } } }
+	};
+	const why = { id: 'obstacle.unusable', arguments: { model: { id: 'obstacle.model.newer', arguments: {} }, place: 'operations.yaml:3:7', what: unknown } };
+
+	test('is told with the names of the model as they are', () => {
+		const read = { id: 'found.never-read', arguments: { names: '`a`, `b`', count: 2 } };
+		expect(tell(read, SV)).toBe('inget läser `a`, `b`: ta bort dem, och ange deras fält under `ignore` om ett meddelande har dem');
+		expect(tell({ ...read, arguments: { names: '`a`', count: 1 } }, EN)).toBe(
+			'nothing reads `a`: leave it out, and list its field under `ignore` if a message has it'
+		);
+	});
+
+	test('stands in what follows from it', () => {
+		expect(tell(why, SV)).toBe('den nyare kan inte användas: operations.yaml:3:7: okänd variabel: `robot.poes`; menade du `robot.pose`?');
+	});
+
+	test('begins a sentence with a capital letter', () => {
+		expect(tell({ id: 'refused.edit-refused.why', arguments: { why } }, SV)).toMatch(/^Den nyare kan inte .*\.$/);
+		const name = { id: 'refused.edit-refused.why', arguments: { why: '`x` is there' } };
+		expect(tell(name, EN)).toBe('`x` is there.');
+	});
+
+	test('is written as it is found where the page does not know it', () => {
+		expect(told(null, 'it is odd', SV)).toBe('it is odd');
+		expect(told({ id: 'found.of-another-version', arguments: {} }, 'it is odd', SV)).toBe('it is odd');
+		expect(toldHere(null, SV)).toBeNull();
 	});
 });
 
@@ -54,4 +99,16 @@ describe('an alarm', () => {
 		const { messages: _, ...before } = alarm({ text: 'It is hot', parts: ['one'] });
 		expect(wordsOf(before, SV)).toMatchObject({ text: 'It is hot', parts: ['one'] });
 	});
+});
+
+test('what reads the same is told once', () => {
+	expect(toldAll(undefined, ['the pair is placed', 'the pair is placed', 'the robot is offline'], EN)).toEqual(['the pair is placed', 'the robot is offline']);
+});
+
+test('titles that were recorded in one text are said as they are called, one by one', () => {
+	const none = { station: {}, resources: {}, abilities: {}, tasks: {}, specifications: {}, work_masters: {} };
+	tellTitles({ ...none, operations: { a: { '': 'Place it', en: 'Put it in' }, b: { '': 'Tighten it', en: 'Make it tight' } } });
+	const message = { id: 'plan.made', arguments: { operations: 'Place it, Tighten it, Unknown' } };
+	expect(told(message, '', EN)).toBe('planned for Put it in, Make it tight, Unknown');
+	tellTitles(null);
 });

@@ -3,8 +3,8 @@ import type { Alarm, Argument, Item, Message } from '#lib/contract.ts';
 import { language, say } from '#lib/text/text.svelte.ts';
 import { titledAlone } from '#lib/wording/titled.svelte.ts';
 
-/** `{name}`, or `{name|waits|wait}` for what is said of one and of several. */
-const PLACE = /\{(\w+)(?:\|([^|}]*)\|([^|}]*))?\}/g;
+/** `{name}`, `{name|waits|wait}` for what is said of one and of several, or `{name^}` where a sentence begins with it. */
+const PLACE = /\{(\w+)(?:\|([^|}]*)\|([^|}]*))?(\^)?\}/g;
 /** Of a list so many are named, and the others counted. */
 const NAMED = 3;
 
@@ -25,7 +25,45 @@ const ofPage = (): Catalogue => ({ texts: say().messages, language: language() }
 
 /** What a message says; what was written in English, where there is none or the page does not know it. */
 export function told(message: Message | null | undefined, written: string, catalogue = ofPage()): string {
-	return (message && tell(message, catalogue)) ?? written;
+	return toldHere(message, catalogue) ?? written;
+}
+
+/** What a message says in the language of the page; null where there is none, or the page does not know it. */
+export function toldHere(message: Message | null | undefined, catalogue = ofPage()): string | null {
+	return message ? tell(message, catalogue) : null;
+}
+
+/** What is said where a list was cut, around the words for the `others`, and all of it with none left out. */
+export interface Cut {
+	readonly before: string;
+	readonly others: string;
+	readonly after: string;
+	readonly whole: string;
+}
+
+/** Of a list that was cut; what was left out is not in its words. */
+const MORE = 'found.more';
+
+/** A text that counts names in place of telling them (`and 65 more`), where the message has them; null of all others. */
+export function cutOf(message: Message | null | undefined, catalogue = ofPage()): Cut | null {
+	const list = message ? cutIn(message) : null;
+	const said = toldHere(message, catalogue);
+	if (list === null || said === null) return null;
+	const rest = list.arguments?.['rest'];
+	const others = tell({ id: MORE, arguments: { ...list.arguments, names: '' } }, catalogue) ?? '';
+	const at = others === '' ? -1 : said.indexOf(others);
+	if (at < 0 || !Array.isArray(rest)) return null;
+	const [before, after] = [said.slice(0, at), said.slice(at + others.length)];
+	return { before, others, after, whole: [before, ...rest.map((each) => worded(each, catalogue) ?? '')].join(', ') + after };
+}
+
+function cutIn({ id, arguments: given }: Message): Message | null {
+	if (id === MORE) return { id, arguments: given ?? {} };
+	for (const each of Object.values(given ?? {})) {
+		const found = typeof each === 'object' && 'id' in each ? cutIn(each) : null;
+		if (found !== null) return found;
+	}
+	return null;
 }
 
 /** What is said first, which leads, and all that is said after it. */
@@ -34,9 +72,9 @@ export function leading(text: string): readonly [lead: string, rest: string] {
 	return [lead.replace(/\.$/, ''), text.slice(lead.length).trim()];
 }
 
-/** The same of several. */
+/** The same of several; what reads the same, as of things with the same title, is told once. */
 export function toldAll(messages: readonly Message[] | undefined, written: readonly string[], catalogue = ofPage()): readonly string[] {
-	return written.map((each, index) => told(messages?.[index], each, catalogue));
+	return [...new Set(written.map((each, index) => told(messages?.[index], each, catalogue)))];
 }
 
 /** The words of an alarm. A record of before, or of a kind that the page does not know, is told as it was written. */
@@ -56,7 +94,7 @@ export function tell({ id, arguments: given }: Message, catalogue: Catalogue): s
 	const text = catalogue.texts[id];
 	if (text === undefined) return null;
 	let whole = true;
-	const said = text.replace(PLACE, (_, name: string, one?: string, several?: string) => {
+	const said = text.replace(PLACE, (_, name: string, one?: string, several?: string, begins?: string) => {
 		const argument = given?.[name];
 		// A text of another version: the page knows its places and not what stands in them.
 		if (argument === undefined) {
@@ -66,7 +104,7 @@ export function tell({ id, arguments: given }: Message, catalogue: Catalogue): s
 		if (one !== undefined && several !== undefined) return isOne(argument) ? one : several;
 		const word = worded(argument, catalogue);
 		whole &&= word !== null;
-		return word ?? '';
+		return begins && word ? word.charAt(0).toUpperCase() + word.slice(1) : (word ?? '');
 	});
 	return whole ? said : null;
 }
@@ -76,12 +114,18 @@ function isOne(argument: Argument): boolean {
 }
 
 function worded(argument: Argument, catalogue: Catalogue): string | null {
-	// A title in what was recorded is in English alone.
-	if (typeof argument === 'string') return titledAlone(argument);
-	if (typeof argument === 'number') return String(argument);
+	if (typeof argument === 'string') return recorded(argument);
+	// `4.9`, in Swedish `4,9`.
+	if (typeof argument === 'number') return new Intl.NumberFormat(catalogue.language, { useGrouping: false, maximumFractionDigits: 12 }).format(argument);
 	if (Array.isArray(argument)) return listed(argument, catalogue);
 	if ('words' in argument) return argument.words[catalogue.language] ?? argument.words['en'] ?? Object.values(argument.words)[0] ?? '';
 	return tell(argument, catalogue);
+}
+
+/** Titles in what was recorded are in English alone; several stand in one text there. */
+function recorded(text: string): string {
+	const alone = titledAlone(text);
+	return alone === text && text.includes(', ') ? text.split(', ').map(titledAlone).join(', ') : alone;
 }
 
 function listed(every: readonly Item[], catalogue: Catalogue): string | null {

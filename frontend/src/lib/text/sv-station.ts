@@ -3,6 +3,7 @@ import { front } from './sv-front.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
 import { figures } from './sv/figures.ts';
+import findings from './sv/findings.json';
 import { frame } from './sv/frame.ts';
 import refusals from './sv/front.json';
 import { history } from './sv/history.ts';
@@ -12,6 +13,7 @@ import { operate } from './sv/operate.ts';
 import { orders } from './sv/orders.ts';
 import { restart } from './sv/restart.ts';
 import { state } from './sv/state.ts';
+import { trace } from './sv/trace.ts';
 import type { OfStation } from './text.svelte.ts';
 
-export const station: OfStation = { ...front, account, alarms, figures, frame, history, mimic, operate, orders, restart, state, messages: { ...refusals, ...messages } };
+export const station: OfStation = { ...front, account, alarms, figures, frame, history, mimic, operate, orders, restart, state, trace, messages: { ...refusals, ...messages, ...findings } };

@@ -1,11 +1,12 @@
 import { describe, expect, test } from 'vitest';
 import { en as ofPages } from './en.ts';
+import findings from './en/findings.json';
 import refusals from './en/front.json';
 import messages from './en/messages.json';
 import { sv } from './sv.ts';
 
 /** With what the station says in English itself. */
-const en = { ...ofPages, messages: { ...refusals, ...messages } };
+const en = { ...ofPages, messages: { ...refusals, ...messages, ...findings } };
 
 /** Every text by where it stands; what takes arguments is there too. */
 function flat(texts: object, path = ''): [string, unknown][] {

@@ -1,6 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { modeMeaning, plannerTime } from './station.ts';
+import { unbroken } from './unbroken.ts';
 import { ageText, agoText, durationText } from './time.ts';
 import { valueText, variableName } from './values.ts';
 
@@ -72,4 +73,10 @@ test('no mode is said to carry anything out before production is started', () =>
 
 test('the time of the planner keeps two figures or so', () => {
 	expect([0.41, 12.3, 1234].map(plannerTime)).toEqual(['0.4 ms', '12 ms', '1.2 s']);
+});
+
+test('a word and its index stay on one line', () => {
+	expect(unbroken('Place bolt pair 5, then pair 12')).toBe('Place bolt pair\u00a05, then pair\u00a012');
+	expect(unbroken('since 14:05, 40 % of 3 parts')).toBe('since 14:05, 40\u00a0% of\u00a03 parts');
+	expect(unbroken('did not finish within 40 s')).toBe('did not finish within\u00a040\u00a0s');
 });

@@ -4,6 +4,7 @@ import { countsOf, stageOf, verdictOf } from './verdict.ts';
 
 const ANALYSIS: NonNullable<ModelCheck['analysis']> = {
 	pending: null,
+	pending_message: null,
 	supervised: true,
 	reachable_states: null,
 	supervised_states: null,
@@ -13,10 +14,10 @@ const ANALYSIS: NonNullable<ModelCheck['analysis']> = {
 	lifted: [],
 	findings: null
 };
-const DONE: ModelCheck = { number: 3, state: 'done', doing: '', findings: [], summary: null, analysis: ANALYSIS };
+const DONE: ModelCheck = { number: 3, state: 'done', doing: '', doing_message: null, looked: [], findings: [], summary: null, analysis: ANALYSIS };
 
 function found(severity: string): Finding {
-	return { severity, kind: 'x', file: 'a.yaml', line: 1, column: 1, message: 'It is so', members: [], trace: null };
+	return { severity, kind: 'x', file: 'a.yaml', line: 1, column: 1, message: 'It is so', said: null, members: [], trace: null, fixes: [] };
 }
 
 test('a check that is done says whether the draft can be used, and supervised', () => {
@@ -41,9 +42,9 @@ test('a check goes through its stages', () => {
 	const at = (state: ModelCheck['state'], doing: string): number | null => stageOf({ state, doing });
 	expect(at('waiting', 'the check begins')).toBe(-1);
 	expect(at('checking', 'reading it')).toBe(0);
-	expect(at('checking', 'the safe states')).toBe(2);
-	expect(at('checking', 'why they are none')).toBe(3);
-	expect(at('checking', 'the guards')).toBe(4);
+	expect(at('checking', 'the safe states')).toBe(3);
+	expect(at('checking', 'why they are none')).toBe(4);
+	expect(at('checking', 'the guards')).toBe(5);
 	expect(at('checking', 'something new')).toBeNull();
-	expect(at('done', '')).toBe(5);
+	expect(at('done', '')).toBe(6);
 });

@@ -28,7 +28,7 @@ export function countsOf(findings: readonly { readonly severity: string }[]): Co
 }
 
 /** What a check looks for, one after the other, as it calls it itself. */
-export const STAGES = ['reading it', 'what is suspicious', 'the safe states', 'the findings', 'the guards'] as const;
+export const STAGES = ['reading it', 'the examples of pipelines', 'what is suspicious', 'the safe states', 'the findings', 'the guards'] as const;
 
 /** What takes the place of the last stages where there are no safe states. */
 const WHY_NONE = 'why they are none';
@@ -40,4 +40,9 @@ export function stageOf(check: Pick<ModelCheck, 'state' | 'doing'>): number | nu
 	if (check.doing === WHY_NONE) return STAGES.indexOf('the findings');
 	const stage = STAGES.findIndex((each) => each === check.doing);
 	return stage < 0 ? null : stage;
+}
+
+/** Seconds that the check took in all. */
+export function secondsOf(check: Pick<ModelCheck, 'looked'>): number {
+	return check.looked.reduce((sum, { seconds }) => sum + seconds, 0);
 }

@@ -8,6 +8,7 @@ import type { ModelCheck, Workshop, WorkshopMessage } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { connect } from '#lib/stream/connection.ts';
+import { undeployed } from './undeployed.svelte.ts';
 
 /** Milliseconds between two questions whether the server is still there, and after which it is taken for gone. */
 const ASK = 10_000;
@@ -20,23 +21,27 @@ export class WorkshopSeen {
 	live = $state(false);
 	/** Why nothing is known of the draft. */
 	refusal = $state.raw<Refusal | null>(null);
+	/** When the check was seen to be done, in seconds; null where it was done before, or is not. */
+	checked = $state<number | null>(null);
 
 	/**
-	 * Connects to the stream at `url`; the result disconnects. `told` is called with each message, and whether the draft is
+	 * Connects to the stream; the result disconnects. `told` is called with each message, and whether the draft is
 	 * another one; `closed`, with the code, each time the connection is lost.
 	 */
-	attach(url: string, told: (isNew: boolean) => void, closed: (code: number) => void): () => void {
+	attach(told: (isNew: boolean) => void, closed: (code: number) => void): () => void {
 		let attached = true;
 		const connection = connect<WorkshopMessage>(
-			url,
+			'/api/v1/model/stream',
 			{
 				opened: () => undefined,
 				heard: (message) => {
 					if (message.kind !== 'workshop') return;
 					const before = this.view?.number;
+					this.#see(this.view?.check ?? null, message.workshop.check);
 					this.view = message.workshop;
 					this.live = true;
 					this.refusal = null;
+					undeployed.changes = message.workshop.changes;
 					told(before !== message.workshop.number);
 				},
 				closed: (code) => {
@@ -56,6 +61,12 @@ export class WorkshopSeen {
 		};
 	}
 
+	/** Several messages may tell of one check. */
+	#see(before: ModelCheck | null, now: ModelCheck): void {
+		if (now.state !== 'done') this.checked = null;
+		else if (before !== null && (before.state !== 'done' || before.number !== now.number)) this.checked = Date.now() / 1000;
+	}
+
 	/** A handshake that is refused does not say why. */
 	async #ask(): Promise<void> {
 		const answer = await request<ModelCheck>('GET', '/api/v1/model/check');
@@ -66,7 +77,7 @@ export class WorkshopSeen {
 const [useWorkshop, setWorkshop] = createContext<WorkshopSeen>();
 export { useWorkshop };
 
-/** Makes it for all components below. */
-export function provideWorkshop(): WorkshopSeen {
-	return setWorkshop(new WorkshopSeen());
+/** Makes it for all components below, unless the page has it already. */
+export function provideWorkshop(seen = new WorkshopSeen()): WorkshopSeen {
+	return setWorkshop(seen);
 }

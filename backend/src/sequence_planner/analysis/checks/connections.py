@@ -11,6 +11,7 @@ from sequence_planner.analysis.checks.warning import ModelWarning, families, lis
 from sequence_planner.automaton.automaton import Automaton, Kind, VariableDeclaration, target
 from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Place
+from sequence_planner.texts.message import Message, message
 
 
 @dataclass(frozen=True)
@@ -37,15 +38,15 @@ def check_connections(automaton: Automaton, connections: Connections) -> Iterato
         where = place(automaton, *members)
         match variable.kind:
             case Kind.MEASURED if none(connections.fed | acknowledged):
-                yield ModelWarning(where, "nothing-feeds", _unfed(family))
+                yield ModelWarning(where, "nothing-feeds", message("found.nothing-feeds", variable=family))
             case Kind.OUTPUT if none(connections.carried | called):
-                yield ModelWarning(where, "carried-nowhere", _uncarried(family))
+                yield ModelWarning(where, "carried-nowhere", message("found.carried-nowhere", variable=family))
             case Kind.OUTPUT | Kind.ESTIMATED if none(written) and not none(read):
                 yield ModelWarning(where, "never-written", _unwritten(family, variable))
         if variable.kind in (Kind.MEASURED, Kind.ESTIMATED) and none(read | connections.carried):
             idle[where].append(family)
     for where, names in idle.items():
-        yield ModelWarning(where, "never-read", _unread(names))
+        yield ModelWarning(where, "never-read", message("found.never-read", names=listed(names), count=len(names)))
 
 
 def _read(automaton: Automaton) -> set[str]:
@@ -63,25 +64,7 @@ def _read(automaton: Automaton) -> set[str]:
     return found.union(*(variables(condition) for condition in conditions))
 
 
-def _unfed(name: str) -> str:
-    return (
-        f"no topic feeds `{name}`, and it is no acknowledgement: it stays unknown, and what depends on it never "
-        "happens. Give it a field of an incoming topic, or make it an estimate if no message says it"
-    )
-
-
-def _uncarried(name: str) -> str:
-    return (
-        f"no topic carries `{name}`: no device ever hears of it. Give it a field of an outgoing topic, or make it an "
-        "estimate if it is not for a device"
-    )
-
-
-def _unwritten(name: str, variable: VariableDeclaration) -> str:
-    always = variable.initial if not isinstance(variable.initial, bool) else str(variable.initial).lower()
-    return f"no ability writes `{name}`: it stays `{always}`. Write the action that is missing, or leave it out"
-
-
-def _unread(names: list[str]) -> str:
-    it, ignore = ("it", "its field") if len(names) == 1 else ("them", "their fields")
-    return f"nothing reads {listed(names)}: leave {it} out, and list {ignore} under `ignore` if a message has {it}"
+def _unwritten(name: str, variable: VariableDeclaration) -> Message:
+    always = str(variable.initial)
+    value = always.lower() if isinstance(variable.initial, bool) else always
+    return message("found.never-written", variable=name, value=value)

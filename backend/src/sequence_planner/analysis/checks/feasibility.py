@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from sequence_planner.analysis.checks.reachability import ReachabilityQuery
 from sequence_planner.analysis.checks.relaxed_reachability import Growth
-from sequence_planner.analysis.checks.warning import quoted
+from sequence_planner.analysis.checks.warning import quoted, turn_in_words
 from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation, target
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
@@ -19,6 +19,7 @@ from sequence_planner.language.syntax import Comparison, Constant, Expression, V
 from sequence_planner.synthesis.bdd import Function
 from sequence_planner.synthesis.reachability import Tracer
 from sequence_planner.synthesis.traces import Trace
+from sequence_planner.texts.message import Message, message
 
 UNKNOWN = "too-many-states"  # the kind of a finding that says that nothing is known
 
@@ -81,18 +82,14 @@ class Possibility:
             yield self._never_allowed(subject, *known)
         elif (beyond := self._with_guards(subject.abilities, supervised=False)) is not None:
             trace = inquiry.way(beyond[1], supervised=False)
-            message = (
-                f"never starts under the supervisor: its guards hold only {self._after(trace)}. Let another way lead "
-                "there, forbid less, or leave it out"
-            )
+            said = message("found.start-beyond", after=self._after(trace))
             cause = self._cause(trace)
-            yield FeasibilityFinding("never-allowed", subject, message, trace, cause=cause, consequence=True)
+            yield FeasibilityFinding("never-allowed", subject, said, trace, cause=cause, consequence=True)
         elif self._is_news(*(conjunction(each.enabled, each.start_guard) for each in subject.abilities)):
             first = subject.abilities[0]
             guard = simplify(conjunction(first.enabled, first.start_guard))
-            yield FeasibilityFinding(
-                "never-starts", subject, f"never starts: {_never(self._automaton, guard)}", relative=True
-            )
+            why = _never(self._automaton, guard)
+            yield FeasibilityFinding("never-starts", subject, message("found.never-starts", why=why), relative=True)
 
     def _begun(self, ability: Ability) -> Expression:
         """What its start brings about."""
@@ -134,33 +131,27 @@ class Possibility:
             broken = inquiry.diagrams.disjunction(inquiry.forbidden().values())
             trace = Tracer(inquiry.plant, starts=False).onward(trace, broken) or trace
         after = [step.after(where & inquiry.safe) for step in inquiry.plant.starts[ability.name]]
-        consequence = self._consequence(inquiry.diagrams.disjunction(after))
-        message = (
-            f"never starts, as the supervisor forbids it wherever it could: it would lead to {consequence}. Let "
-            "something else happen before it, forbid less, or leave it out"
-        )
-        return FeasibilityFinding("never-allowed", subject, message, trace, cause=_causes([ability.name]))
+        said = message("found.never-allowed", what=self._consequence(inquiry.diagrams.disjunction(after)))
+        return FeasibilityFinding("never-allowed", subject, said, trace, cause=_causes([ability.name]))
 
     def _consequence(self, states: Function) -> str:
         """Say what comes of `states`, in some of them one thing and in others another."""
         broken, restless = self._inquiry.broken_unasked(states), self._inquiry.unbroken_unasked(states)
-        parts = [f"what {_quoted(broken)} forbids"] if broken else []
-        parts += ["states from which rest cannot be reached any more"] if restless else []
-        return ", or to ".join(parts)
+        parts = [message("found.leads-to.broken", specifications=_quoted(broken))] if broken else []
+        parts += [message("found.leads-to.restless")] if restless else []
+        return message("found.leads-to.either", one=parts[0], other=parts[1]) if len(parts) > 1 else "".join(parts)
 
-    def _after(self, trace: Trace | None) -> str:
+    def _after(self, trace: Trace | None) -> Message:
         """Say where a trace leaves the safe states."""
         number = self._leaving(trace)
         if trace is None or number is None:
-            return "after states that are not safe"
+            return message("found.after")
         step = trace.steps[number - 1]
         if step.forbidden_by:
-            what = f"step {number} of the shortest way breaks {_quoted(step.forbidden_by)}"
-        elif broken := self._inquiry.broken_unasked(self._inquiry.diagrams.states(step.state)):
-            what = f"after step {number} of the shortest way {_quoted(broken)} could be broken without any start"
-        else:
-            what = f"after step {number} of the shortest way it is no longer certain that rest can be reached"
-        return f"after states that are not safe: {what}"
+            return message("found.after.breaks", step=number, specifications=_quoted(step.forbidden_by))
+        if broken := self._inquiry.broken_unasked(self._inquiry.diagrams.states(step.state)):
+            return message("found.after.could-break", step=number, specifications=_quoted(broken))
+        return message("found.after.restless", step=number)
 
     def _cause(self, trace: Trace | None) -> tuple[str, ...]:
         """Return what leaves the safe states on it."""
@@ -181,19 +172,19 @@ class Possibility:
             yield from self._goal(subject, operation, active)
         elif (beyond := inquiry.reached(active, supervised=False)).satisfiable():
             trace = inquiry.way(beyond, supervised=False)
-            message = (
-                f"never becomes active under the supervisor: its precondition holds only {self._after(trace)}. Let "
-                "another way lead there, or forbid less"
-            )
+            said = message("found.active-beyond", after=self._after(trace))
             cause = self._cause(trace)
-            yield FeasibilityFinding("never-active", subject, message, trace, cause=cause, consequence=True)
+            yield FeasibilityFinding("never-active", subject, said, trace, cause=cause, consequence=True)
         elif self._is_news(operation.precondition):
-            in_sequence = self._out_of_turn(operation)
-            keys = () if in_sequence is None else (f"operation.{operation.name}.sequence.{in_sequence}",)
-            where = "" if in_sequence is None else f" in the sequence `{in_sequence}`, {operation.turns[in_sequence]}"
-            message = f"never becomes active{where}: {_never(self._automaton, operation.precondition)}"
-            subject = replace(subject, keys=(*keys, *subject.keys))
-            yield FeasibilityFinding("never-active", subject, message, relative=not keys)
+            name, why = self._out_of_turn(operation), _never(self._automaton, operation.precondition)
+            if name is None:
+                said = message("found.never-active", why=why)
+                yield FeasibilityFinding("never-active", subject, said, relative=True)
+            else:
+                turn = turn_in_words(operation.turns[name])
+                said = message("found.never-active.sequence", sequence=name, turn=turn, why=why)
+                subject = replace(subject, keys=(f"operation.{operation.name}.sequence.{name}", *subject.keys))
+                yield FeasibilityFinding("never-active", subject, said)
 
     def _out_of_turn(self, operation: Operation) -> str | None:
         """The sequence that keeps the operation from ever becoming active; None where its own precondition does."""
@@ -211,16 +202,11 @@ class Possibility:
                 return  # a goal of the automaton, which nobody undertakes again in each state
         elif (lost := inquiry.reached(goal, supervised=False, faults=False)).satisfiable():
             trace = inquiry.way(lost, supervised=False, faults=False)
-            message = (
-                f"cannot be {'reached' if plain else 'completed'} under the supervisor, though it could without it: "
-                f"{'it' if plain else 'its goal'} holds only {self._after(trace)}. Let another way lead there, or "
-                "forbid less"
-            )
-            yield FeasibilityFinding("goal-lost", subject, message, trace, cause=self._cause(trace))
+            said = message("found.goal-lost.plain" if plain else "found.goal-lost", after=self._after(trace))
+            yield FeasibilityFinding("goal-lost", subject, said, trace, cause=self._cause(trace))
             return
         elif plain:
-            message = "cannot be reached, with or without the supervisor: write what was meant, or what is missing"
-            yield FeasibilityFinding("goal-out-of-reach", subject, message)
+            yield FeasibilityFinding("goal-out-of-reach", subject, message("found.goal-out-of-reach.plain"))
             return
         elif not self._may_by_its_words(operation.goal):
             return
@@ -236,19 +222,14 @@ class Possibility:
             trace, fault = without, None
         leads = inquiry.leads(bad if trace is None else inquiry.diagrams.states(trace.last), goal)
         if leads is None:
-            cause = "nothing that the supervisor allows leads there"
-        elif leads:
-            cause = "the supervisor forbids all that would lead there"
+            cause = message("found.cause.allowed")
         else:
-            cause = "no ability and no effect leads there, with or without the supervisor"
+            cause = message("found.cause.forbidden" if leads else "found.cause.nothing")
         if fault is not None:
             return FeasibilityFinding("goal-out-of-reach", subject, self._after_a_fault(fault, cause), trace)
-        where = "in the initial state" if trace is not None and not trace.steps else "after some steps"
-        message = (
-            f"cannot always be completed: {where} its precondition holds, and its goal cannot be reached any more, as "
-            f"{cause}. Let the precondition exclude that, or add what is missing"
-        )
-        return FeasibilityFinding("goal-out-of-reach", subject, message, trace)
+        initially = trace is not None and not trace.steps
+        said = message(f"found.goal-out-of-reach.{'initial' if initially else 'later'}", cause=cause)
+        return FeasibilityFinding("goal-out-of-reach", subject, said, trace)
 
     def _last_fault(self, trace: Trace | None) -> Effect | None:
         """The last thing on it that nobody counts on."""
@@ -256,20 +237,12 @@ class Possibility:
         steps = () if trace is None else reversed(trace.steps)
         return next((faults[name] for step in steps for name in step.names if name in faults), None)
 
-    def _after_a_fault(self, fault: Effect, cause: str) -> str:
+    def _after_a_fault(self, fault: Effect, cause: Message) -> Message:
         """Return what is said where no way without a fault leads there: a person may have meant it."""
         abilities = [each for each in self._automaton.abilities.values() if each.resource == fault.resource]
         by_person = bool(abilities) and all(each.human is not None for each in abilities)
-        what = "a person has done" if by_person else "there was the fault"
-        meant = (
-            "That is as it should be where the person meant it; let the precondition exclude it where not"
-            if by_person
-            else "Let the precondition exclude that, or add what is missing, unless that much is lost with the fault"
-        )
-        return (
-            f"cannot be completed once {what} `{fault.name}`, which nobody counts on: its precondition holds, "
-            f"and its goal cannot be reached any more, as {cause}. {meant}"
-        )
+        of = "person" if by_person else "fault"
+        return message(f"found.goal-out-of-reach.{of}", fault=fault.name, cause=cause)
 
 
 def _quoted(names: Iterable[str]) -> str:
@@ -281,8 +254,5 @@ def _causes(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(without_arguments(event_of(name)) for name in names)
 
 
-def _never(automaton: Automaton, condition: Expression) -> str:
-    return (
-        f"{quoted(automaton, condition)} holds in no state that can be reached, with or without the supervisor. Write "
-        "what was meant, or the action or effect that is missing"
-    )
+def _never(automaton: Automaton, condition: Expression) -> Message:
+    return message("found.never-reached", condition=quoted(automaton, condition))

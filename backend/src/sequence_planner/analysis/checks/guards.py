@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from functools import partial
+from functools import partial, reduce
 from itertools import combinations, islice
 from math import prod
 
@@ -49,6 +49,7 @@ from sequence_planner.planning.sat.solver import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol
 from sequence_planner.synthesis.conflicts import conflicting_finishes
 from sequence_planner.synthesis.transition_relation import MOST_BITS, NodeLimit, TooMuchError
+from sequence_planner.texts.message import Message, message
 
 # Whether there is any state that satisfies something, reachable or not: one question to a SAT solver.
 
@@ -346,14 +347,12 @@ def _confirmed(
         found = conflicting_finishes(automaton, cone, (one.name, other.name), variable, NodeLimit(MOST_EFFORT))
         if found is None:
             return None
-        how, seen, trace = "meet in a reachable state", found.seen, found.trace
+        how, seen, trace = message("found.write-conflict.meet"), found.seen, found.trace
     except TooMuchError:
-        how, seen = "might meet (there are too many states to say whether such a one can be reached)", witness
-    message = (
-        f"the finishes of `{one.name}` and `{other.name}` would write different values to `{variable}`, and then "
-        f"neither is applied. They {how}: {described(seen, read)}. Let their finish guards exclude each other"
-    )
-    return ModelWarning(place(automaton, f"{other.name}.finish", other.name), "write-conflict", message, trace)
+        how, seen = message("found.write-conflict.may-meet"), witness
+    values = described(seen, read)
+    said = message("found.write-conflict", one=one.name, other=other.name, variable=variable, how=how, values=values)
+    return ModelWarning(place(automaton, f"{other.name}.finish", other.name), "write-conflict", said, trace)
 
 
 # Conditions that cannot hold, or always do: by their own words, or because nothing ever brings them about.
@@ -372,8 +371,7 @@ def check_guards(automaton: Automaton) -> Iterator[ModelWarning]:
     never, always = _constant(automaton, written)
 
     def holding(part: ModelCondition) -> tuple[str, str]:
-        always_true = f"{quoted(automaton, part.expression)} always holds, whatever the values of its variables"
-        return "always-holds", f"{always_true}: leave it out, or write what was meant"
+        return "always-holds", message("found.always-holds", condition=quoted(automaton, part.expression))
 
     contradictions = _Contradictions(automaton)
     yield from reporting.warnings(always, holding, some=False)
@@ -390,13 +388,10 @@ def check_alarms(automaton: Automaton) -> Iterator[ModelWarning]:
     """Alarms that are always there, and those that never are, even where that was written as `true` or `false`."""
     alarms = automaton.alarms
     never, always = _constant(automaton, [ModelCondition(name, "when", each.when) for name, each in alarms.items()])
-    for kind, found, comes in (("always-holds", always, "always"), ("never-holds", never, "never")):
+    for comes, found in (("always", always), ("never", never)):
         for part in found:
-            message = (
-                f"the alarm `{part.key}` is {comes} there, since {quoted(automaton, part.expression)} {comes} holds: "
-                "write when it is to be there"
-            )
-            yield ModelWarning(alarms[part.key].place, kind, message)
+            said = message(f"found.alarm-{comes}", alarm=part.key, condition=quoted(automaton, part.expression))
+            yield ModelWarning(alarms[part.key].place, f"{comes}-holds", said)
 
 
 MOST_TOLD = 200  # instances of which it is looked whether the same is said
@@ -426,15 +421,16 @@ class _Reporting:
         """
         for members, is_all in self._worth_saying(found, some):
             first = members[0]
-            kind, message = said(first)
+            kind, words = said(first)
             where = place(self._automaton, first.key, first.key.rpartition(".")[0])
             told = told_together(self._automaton, {part.key: said(part)[1] for part in members[:MOST_TOLD]})
             if len(members) > 1 and [len(each.members) for each in told] == [len(members)]:
                 yield ModelWarning(where, kind, told[0].message, members=told[0].members)
             elif is_all:
-                yield ModelWarning(where, kind, message)
+                yield ModelWarning(where, kind, words)
             else:
-                yield ModelWarning(where, kind, f"of {listed([each.key for each in members])}: {message}")
+                names = listed([each.key for each in members])
+                yield ModelWarning(where, kind, message("found.of", names=names, what=words))
 
     def _worth_saying(
         self, found: Collection[ModelCondition], some: bool
@@ -496,9 +492,9 @@ class _Contradictions:
 
     def of(self, part: ModelCondition) -> tuple[str, str]:
         """Say what is wrong with a part that never holds."""
-        return "never-holds", f"{self._excluding(part)}{_so(part)}: write what was meant"
+        return "never-holds", message("found.meant", what=self._excluding(part), so=part.so)
 
-    def _excluding(self, part: ModelCondition) -> str:
+    def _excluding(self, part: ModelCondition) -> Message:
         wording = wording_of(self._automaton)
         words = [each for piece in conjuncts(part.expression) for each in wording.told_parts(piece)]
         few = [*((at,) for at in range(len(words))), *combinations(range(len(words)), 2)]
@@ -508,30 +504,27 @@ class _Contradictions:
             if _constant(self._automaton, [ModelCondition(part.key, part.what, piece, old_flags=part.old_flags)])[0]:
                 self._before = numbers
                 if len(some) > 1:
-                    return f"{' and '.join(shortened(phrase(each)) for each in some)} exclude each other"
-                is_named = some[0].words != some[0].condition
-                meant = f", that is {shortened(print_expression(piece))}," if is_named else ""
-                return f"{shortened(phrase(*some))}{meant} never holds"
-        return f"{quoted(self._automaton, part.expression)} never holds"
+                    one, other = (shortened(phrase(each)) for each in some)
+                    return message("found.meant.exclude", one=one, other=other)
+                said = shortened(phrase(*some))
+                if some[0].words == some[0].condition:
+                    return message("found.meant.never", condition=said)
+                meaning = shortened(print_expression(piece))
+                return message("found.meant.never-that-is", condition=said, meaning=meaning)
+        return message("found.meant.never", condition=quoted(self._automaton, part.expression))
 
 
 def _stuck(automaton: Automaton, growth: Growth, part: ModelCondition) -> tuple[str, str]:
     """Return what is said of a part that nothing brings about."""
     lacking = list(_lacking(automaton, growth, part.expression)) or [quoted(automaton, part.expression)]
-    more = f" and {len(lacking) - MOST_NAMED} more" if len(lacking) > MOST_NAMED else ""
-    what = f"{' and '.join(lacking[:MOST_NAMED])}{more}"
+    condition = reduce(lambda most, last: message("list.and", most=most, last=last), lacking[:MOST_NAMED])
+    if len(lacking) > MOST_NAMED:
+        condition = message("found.more", names=condition, count=len(lacking) - MOST_NAMED, rest=lacking[MOST_NAMED:])
     if growth.any_measurement:
-        return "unreachable", (
-            f"nothing ever makes {what} true, neither an action nor a message{_so(part)}: "
-            "write what was meant, or the action that is missing"
-        )
+        return "unreachable", message("found.unreachable", condition=condition, so=part.so)
     if part.what == "effect's condition":
-        return "effect-never-happens", (
-            f"nothing ever makes {what} true, so this effect never happens: no output and no other effect leads to it"
-        )
-    return "nothing-brings-about", (
-        f"no effect brings about {what}{_so(part)} in any plan: write the effect with which the device does it"
-    )
+        return "effect-never-happens", message("found.effect-never-happens", condition=condition)
+    return "nothing-brings-about", message("found.nothing-brings-about", condition=condition, so=part.so)
 
 
 def _lacking(automaton: Automaton, growth: Growth, condition: Expression) -> Iterator[str]:
@@ -543,7 +536,3 @@ def _lacking(automaton: Automaton, growth: Growth, condition: Expression) -> Ite
             yield from (quoted(automaton, each) for each in left)
         elif left:
             yield shortened(phrase(told))
-
-
-def _so(part: ModelCondition) -> str:
-    return f", {part.consequence}" if part.consequence else ""

@@ -24,6 +24,7 @@ from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_expression
 from sequence_planner.language.syntax import FALSE, Constant, Expression, conjunction, conjuncts, variables
+from sequence_planner.texts.message import message
 
 # Effects under the same condition that leave a device in different states: a plan takes whichever suits it.
 
@@ -41,12 +42,11 @@ def check_effects(automaton: Automaton) -> Iterator[ModelWarning]:
             if names in said or not (written := _contradictory(one, other)) or not _same(automaton, one, other):
                 continue
             said.add(names)
-            message = (
-                f"`{one.name}` and `{other.name}` happen under the same condition and write different values to "
-                f"{listed(written)}: a plan counts on whichever suits it. Let their conditions exclude each other, "
-                "or mark the one that nobody is to count on with `fault: true`"
+            yield ModelWarning(
+                place(automaton, other.name),
+                "contradictory-effects",
+                message("found.contradictory-effects", one=one.name, other=other.name, variables=listed(written)),
             )
-            yield ModelWarning(place(automaton, other.name), "contradictory-effects", message)
 
 
 def _same(automaton: Automaton, one: Effect, other: Effect) -> bool:
@@ -84,13 +84,12 @@ def check_executing(automaton: Automaton) -> Iterator[ModelWarning]:
         for name in names:
             ability = automaton.abilities[name]
             if _needs_executing(automaton, ability) and (missing := _not_yet(automaton, ability)) is not None:
-                message = (
-                    f"`{family}` finishes only after it was seen executing, and right after its start "
-                    f"`{print_expression(missing)}` may not hold yet: a device that is done before a message says that "
-                    "it is at work is never seen to finish. Let the finish guard read the command and the result "
-                    "instead of `executing`"
+                condition = print_expression(missing)
+                yield ModelWarning(
+                    place(automaton, f"{name}.finish", name),
+                    "relies-on-executing",
+                    message("found.relies-on-executing", ability=family, condition=condition),
                 )
-                yield ModelWarning(place(automaton, f"{name}.finish", name), "relies-on-executing", message)
                 break
 
 
@@ -139,21 +138,15 @@ _OPERATIONS_FILE = "operations.yaml"  # has a place where it is there and holds 
 def check_operations(automaton: Automaton) -> Iterator[ModelWarning]:
     """A file of operations without any, and operations whose local specification reads nothing at all."""
     if not automaton.operations and _OPERATIONS_FILE in automaton.places:
-        message = (
-            "there is no operation here, so the station never does anything by itself: write one, or delete the file"
-        )
-        yield ModelWarning(automaton.places[_OPERATIONS_FILE], "no-operation", message)
+        yield ModelWarning(automaton.places[_OPERATIONS_FILE], "no-operation", message("found.no-operation"))
     for family, names in families(automaton.operations).items():
         local = automaton.operations[names[0]].local
         if local is None:
             continue
         where = place(automaton, f"operation.{names[0]}.local")
         if not isinstance(local, Constant) and not any(variables(local)):
-            message = (
-                f"the local specification `{print_expression(local)}` of `{family}` reads no variable, so it only says "
-                "how long the run is: write what must hold on the way, or leave it out"
-            )
-            yield ModelWarning(where, "empty-local-specification", message)
+            said = message("found.empty-local-specification", formula=print_expression(local), operation=family)
+            yield ModelWarning(where, "empty-local-specification", said)
 
 
 # Tasks that nobody is ever asked for, and tasks of which a person could not tell which one is acknowledged.
@@ -182,23 +175,21 @@ def check_people(automaton: Automaton) -> Iterator[ModelWarning]:
                 continue
             reported += 1
             when = described(state, dict.fromkeys(variables(both)))
-            message = (
-                f"the tasks of `{one.name}` and `{other.name}` can be open at once ({when}), and `{acknowledgement}` "
-                "acknowledges both: give each its own, or let `executing` tell which one is asked for"
+            said = message(
+                "found.shared-acknowledgement",
+                one=one.name,
+                other=other.name,
+                when=when,
+                acknowledgement=acknowledgement,
             )
-            yield ModelWarning(
-                place(automaton, f"{other.name}.executing", other.name), "shared-acknowledgement", message
-            )
+            yield ModelWarning(place(automaton, f"{other.name}.executing", other.name), "shared-acknowledgement", said)
 
 
 def _never_open(automaton: Automaton) -> Iterator[ModelWarning]:
     for ability in automaton.abilities.values():
         if ability.human is not None and ability.executing == FALSE:
-            message = (
-                f"the task of `{ability.name}` is never open: a task is open while its ability executes, and this one "
-                "never does. Write `executing`, such as that the request is there and the acknowledgement is not"
-            )
-            yield ModelWarning(place(automaton, f"{ability.name}.executing", ability.name), "task-never-open", message)
+            said = message("found.task-never-open", ability=ability.name)
+            yield ModelWarning(place(automaton, f"{ability.name}.executing", ability.name), "task-never-open", said)
 
 
 # Specifications that forbid nothing: most often something else was meant.
@@ -209,18 +200,15 @@ _SPECIFICATIONS_FILE = "specifications.yaml"  # has a place where it is there an
 def check_specifications(automaton: Automaton) -> Iterator[ModelWarning]:
     """A file of specifications without any, and those of which no expansion forbids any state, reachable or not."""
     if not automaton.specifications and _SPECIFICATIONS_FILE in automaton.places:
-        message = "there is no specification here, so nothing is forbidden: write one, or delete the file"
-        yield ModelWarning(automaton.places[_SPECIFICATIONS_FILE], "no-specification", message)
+        where = automaton.places[_SPECIFICATIONS_FILE]
+        yield ModelWarning(where, "no-specification", message("found.no-specification"))
     written: dict[str, list[Specification]] = defaultdict(list)
     for specification in automaton.specifications.values():
         written[without_arguments(specification.name.partition(": ")[0])].append(specification)
     for name, expansions in written.items():
         if not any(_forbids(automaton, each) for each in expansions):
-            message = (
-                f"`{name}` forbids nothing: no state, reachable or not, is as it says (see `show`). An ability without "
-                "`executing` never executes, so it excludes nothing either"
-            )
-            yield ModelWarning(place(automaton, expansions[0].name), "forbids-nothing", message)
+            said = message("found.forbids-nothing", specification=name)
+            yield ModelWarning(place(automaton, expansions[0].name), "forbids-nothing", said)
 
 
 def _forbids(automaton: Automaton, specification: Specification) -> bool:

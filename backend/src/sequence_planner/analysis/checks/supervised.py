@@ -23,6 +23,7 @@ from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.synthesis.supervisor import Supervision
 from sequence_planner.synthesis.transition_relation import MOST_BITS, NodeLimit, TooMuchError
+from sequence_planner.texts.message import message
 
 MOST_EFFORT = 20_000_000  # nodes, see `synthesis.transition_relation`: a few seconds
 MOST_EFFORT_IN_PARTS = 5_000_000
@@ -163,11 +164,8 @@ def _warnings(
     unknown = [each.subject for each in found if each.kind == UNKNOWN]
     if unknown:
         names = listed([subject.name for subject in unknown])
-        message = (
-            f"of {names} it is not known whether they are always possible: too many states bear on them to be looked "
-            "at. Check parts of the station on their own"
-        )
-        yield ModelWarning(place(automaton, *unknown[0].keys), UNKNOWN, message)
+        where = place(automaton, *unknown[0].keys)
+        yield ModelWarning(where, UNKNOWN, message("found.too-many-states", names=names))
     for each in (each for each in found if each.kind != UNKNOWN):
         alike[each.kind, without_arguments(each.subject.name)].append(each)
     for (_, family), members in alike.items():
@@ -181,7 +179,11 @@ def _told(automaton: Automaton, found: Sequence[FeasibilityFinding]) -> Iterator
     """What is said of instances: what they share once, and so what differs in the values of an index only."""
     by_name = {_indexed(each.subject): each for each in found}
     together = told_together(
-        automaton, {name: f"`{each.subject.name}` {each.message}" for name, each in by_name.items()}
+        automaton,
+        {
+            name: message("found.subject", subject=f"`{each.subject.name}`", what=each.message)
+            for name, each in by_name.items()
+        },
     )
     left: dict[str, list[FeasibilityFinding]] = defaultdict(list)
     for told in together:
@@ -195,8 +197,9 @@ def _told(automaton: Automaton, found: Sequence[FeasibilityFinding]) -> Iterator
     for members in left.values():
         first = members[0]
         said = listed([each.subject.name for each in members])
-        said = f"each of {said}" if len(members) > 1 else said
-        yield ModelWarning(place(automaton, *first.subject.keys), first.kind, f"{said} {first.message}", first.trace)
+        subject = message("found.each", names=said) if len(members) > 1 else said
+        words = message("found.subject", subject=subject, what=first.message)
+        yield ModelWarning(place(automaton, *first.subject.keys), first.kind, words, first.trace)
 
 
 def _indexed(subject: Subject) -> str:

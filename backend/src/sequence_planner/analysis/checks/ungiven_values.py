@@ -14,6 +14,7 @@ from sequence_planner.model.stages.map import MapStage, TableStage, is_same
 from sequence_planner.model.stages.match import MatchNamesStage
 from sequence_planner.model.stages.support import PassingStage
 from sequence_planner.pipelines.graph import StationPipelines
+from sequence_planner.texts.message import Message, message
 
 
 def check_never_given(automaton: Automaton, pipelines: StationPipelines) -> Iterator[ModelWarning]:
@@ -49,10 +50,6 @@ def may_give(stage: Stage, field: str, value: Value) -> bool:
     return True
 
 
-def _message(variable: str, kind: str, never: list[Value]) -> str:
+def _message(variable: str, stage: str, never: list[Value]) -> Message:
     values = listed([print_value(value) for value in never])
-    it = "it" if len(never) == 1 else "them"
-    return (
-        f"no message ever makes `{variable}` {values}, since this `{kind}` never gives {it}, and emulated devices "
-        f"cannot say {it}: let the stage give {it}, or take {it} out of the type of `{variable}`"
-    )
+    return message("found.never-given", variable=variable, values=values, stage=stage, count=len(never))

@@ -15,6 +15,7 @@ from sequence_planner.language.syntax import TRUE, Constant
 from sequence_planner.language.types import Place
 from sequence_planner.synthesis.diagnosis import Unmeetable
 from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
+from sequence_planner.texts.message import Message, message
 
 CANNOT_BE_MET = "specification-cannot-be-met"
 
@@ -22,18 +23,20 @@ CANNOT_BE_MET = "specification-cannot-be-met"
 def unmeetable(automaton: Automaton, reason: Unmeetable, where: Place) -> ModelWarning:
     """The warning for an automaton without supervisor: `where` is the place of the specifications."""
     conflict = minimal_conflict(automaton, reason.trace)
-    message = f"{reason.message}. {_in_conflict(automaton, conflict)}"
-    return ModelWarning(where, CANNOT_BE_MET, message, reason.trace)
+    said = message("found.unmet", why=reason.message, conflict=_in_conflict(automaton, conflict))
+    return ModelWarning(where, CANNOT_BE_MET, said, reason.trace)
 
 
-def _in_conflict(automaton: Automaton, conflict: Conflict) -> str:
+def _in_conflict(automaton: Automaton, conflict: Conflict) -> Message:
     """Say what would already be enough, as a sentence."""
     rest = "marked" if automaton.one_at_a_time else "rest"
-    specifications = specifications_folded(wording_of(automaton), conflict.specifications)
-    text = f"Already these conflict: {listed(specifications or (rest,), most=None)}"
+    folded = specifications_folded(wording_of(automaton), conflict.specifications)
+    specifications = listed(folded or (rest,), most=None)
+    said = message("found.conflict", specifications=specifications)
     if conflict.uncontrollable:
-        text += f", with what no start decides: {listed(conflict.uncontrollable, most=None)}"
-    return text if conflict.minimal else f"{text} (perhaps fewer would do: not all was tried)"
+        uncontrollable = listed(conflict.uncontrollable, most=None)
+        said = message("found.conflict.uncontrollable", specifications=specifications, uncontrollable=uncontrollable)
+    return said if conflict.minimal else message("found.conflict.perhaps-fewer", conflict=said)
 
 
 # A new product, which is there from when a job begins, as soon as the supervisor allows what it brings.
@@ -50,9 +53,9 @@ def never_brought(automaton: Automaton, safe: StateSet) -> Iterator[ModelWarning
                 for name, specification in automaton.specifications.items()
                 if simplify(replaced(specification.forbidden, brought)) == TRUE
             ]
-            why = f"{listed(breaks)} forbids it" if breaks else "it is so in no safe state"
-            message = (
-                f"no job of `{master.name}` ever begins: its product brings `{described(values, values)}`, and {why}. "
-                "Bring what is safe, or let the specification be about less"
-            )
-            yield ModelWarning(place(automaton, f"work_master.{master.name}.brings"), "never-allowed", message)
+            why = message("found.never-brought.unsafe")
+            if breaks:
+                why = message("found.never-brought.forbidden", specifications=listed(breaks))
+            brings = described(values, values)
+            said = message("found.never-brought", work_master=master.name, values=brings, why=why)
+            yield ModelWarning(place(automaton, f"work_master.{master.name}.brings"), "never-allowed", said)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from sequence_planner.automaton.automaton import Ability, Automaton, State
+from sequence_planner.automaton.automaton import Ability, Automaton, State, Turn
 from sequence_planner.automaton.findings import without_arguments
 from sequence_planner.automaton.lifting.index_folding import IndexFolding
 from sequence_planner.automaton.lifting.wording import wording_of
@@ -16,6 +16,7 @@ from sequence_planner.language.printer import print_value
 from sequence_planner.language.syntax import TRUE, Expression, conjunction
 from sequence_planner.language.types import Place
 from sequence_planner.synthesis.traces import Trace
+from sequence_planner.texts.message import Argument, Message, message
 
 # The conditions of a model, each with what it is and what it depends on.
 
@@ -24,13 +25,14 @@ from sequence_planner.synthesis.traces import Trace
 class ModelCondition:
     """A condition of the model. Its place is under `key`; without the parts `needs` it means nothing.
 
-    With `old_flags` it is read over new measured values and the flags of the tick before.
+    With `old_flags` it is read over new measured values and the flags of the tick before. `so` says what comes of its
+    never holding.
     """
 
     key: str
     what: str
     expression: Expression
-    consequence: str = ""  # of its never holding
+    so: str = ""
     needs: tuple[str, ...] = ()
     old_flags: bool = False
 
@@ -59,42 +61,51 @@ def parts(automaton: Automaton) -> Iterator[ModelCondition]:
     for effect in automaton.effects:
         ability_name = effect.name.rpartition(".")[0]
         needs = _start_parts(ability_name)
-        yield ModelCondition(effect.name, "effect's condition", effect.guard, "so the effect never happens", needs)
+        yield ModelCondition(effect.name, "effect's condition", effect.guard, message("found.so.effect"), needs)
     for operation in automaton.operations.values():
-        key, consequence = f"operation.{operation.name}", "so the operation never becomes active"
+        key, so = f"operation.{operation.name}", message("found.so.inactive")
         written = operation.precondition if operation.written is None else operation.written
-        conditions = [ModelCondition(key, "precondition", written, consequence)]
+        conditions = [ModelCondition(key, "precondition", written, so)]
         for sequence, turn in operation.turns.items():
             both, what = conjunction(written, turn.condition), f"precondition in the sequence `{sequence}`"
-            consequence = f"so `{operation.name}` never becomes active in the sequence `{sequence}`, {turn}"
+            said = turn_in_words(turn)
+            so = message("found.so.out-of-turn", operation=operation.name, sequence=sequence, turn=said)
             place_in_it = f"{key}.sequence.{sequence}"
-            conditions.append(ModelCondition(place_in_it, what, both, consequence, (conditions[0].name,)))
+            conditions.append(ModelCondition(place_in_it, what, both, so, (conditions[0].name,)))
         yield from conditions
         active = tuple(each.name for each in conditions)
-        yield ModelCondition(key, "goal", operation.goal, "so the operation is never completed", active)
+        yield ModelCondition(key, "goal", operation.goal, message("found.so.incomplete"), active)
 
 
 def _of_ability(ability: Ability) -> Iterator[ModelCondition]:
     name = ability.name
     needs: tuple[str, ...] = _start_parts(name)
-    yield ModelCondition(f"{name}.enabled", "condition", ability.enabled, "so the ability never starts")
+    unstarted = message("found.so.unstarted")
+    yield ModelCondition(f"{name}.enabled", "condition", ability.enabled, unstarted)
     if ability.start_guard != TRUE:
         both = conjunction(ability.enabled, ability.start_guard)
-        yield ModelCondition(
-            f"{name}.start", "start guard with `enabled`", both, "so the ability never starts", needs[:1]
-        )
+        yield ModelCondition(f"{name}.start", "start guard with `enabled`", both, unstarted, needs[:1])
     executing = ModelCondition(f"{name}.executing", "condition", ability.executing, "", needs)
     yield executing
     yield ModelCondition(f"{name}.finished", "condition", ability.finished, "", needs)
     if ability.finish_guard is not None:
         needs = (*needs, executing.name)
-        yield ModelCondition(
-            f"{name}.finish", "finish guard", ability.finish_guard, "so the ability never finishes", needs, True
-        )
+        so = message("found.so.unfinished")
+        yield ModelCondition(f"{name}.finish", "finish guard", ability.finish_guard, so, needs, True)
 
 
 def _start_parts(ability: str) -> tuple[str, str]:
     return f"{ability}.enabled: condition", f"{ability}.start: start guard with `enabled`"
+
+
+def turn_in_words(turn: Turn) -> Message:
+    """Tell when it is an operation's turn; it is behind or beside at least one."""
+    words = [
+        message(f"found.turn.{way}", names=listed(names, most=None))
+        for way, names in (("behind", turn.after), ("beside", turn.beside))
+        if names
+    ]
+    return words[0] if len(words) == 1 else message("list.and", most=words[0], last=words[1])
 
 
 # A suspicion about a model, and how the parts of a model are named in it.
@@ -135,9 +146,11 @@ def families(names: Iterable[str]) -> Mapping[str, tuple[str, ...]]:
 
 
 def listed(names: Sequence[str], most: int | None = MOST_NAMED) -> str:
-    """Several names, in backticks; of more than `most` only the first."""
+    """Several names, in backticks; of more than `most` only the first are told, and the others on demand."""
     shown = ", ".join(f"`{name}`" for name in names[:most])
-    return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"
+    if most is None or len(names) <= most:
+        return shown
+    return message("found.more", names=shown, count=len(names) - most, rest=[f"`{name}`" for name in names[most:]])
 
 
 class ToldTogether(NamedTuple):
@@ -156,11 +169,31 @@ def told_together(automaton: Automaton, messages: Mapping[str, str]) -> list[Tol
     prose = {name: tuple(each[::2]) for name, each in pieces.items()}
     found = []
     for each in IndexFolding(wording_of(automaton)).folded_texts(code, prose):
-        told = list(pieces[each.members[0]])
+        first = each.members[0]
+        told = list(pieces[first])
         told[1::2] = each.conditions
-        over = "" if each.over is None else f"for {each.over}: "
-        found.append(ToldTogether(f"{over}{'`'.join(told)}", each.members))
+        said = _with_code(messages[first], dict(zip(code[first], each.conditions, strict=True)), "`".join(told))
+        found.append(
+            ToldTogether(said if each.over is None else message("found.for", over=each.over, what=said), each.members)
+        )
     return found
+
+
+def _with_code(said: str, code: Mapping[str, str], told: str) -> str:
+    """A message with other words in the place of what it has in backticks, as it is `told` in English."""
+
+    def changed(argument: Argument) -> Argument:
+        match argument:
+            case Message():
+                return Message(argument.id, {name: changed(each) for name, each in argument.arguments.items()})
+            case str():
+                pieces = argument.split("`")
+                pieces[1::2] = [code.get(each, each) for each in pieces[1::2]]
+                return code.get(argument, "`".join(pieces))
+        return argument
+
+    made = changed(said)
+    return made if isinstance(made, Message) and made == told else told
 
 
 def quoted(automaton: Automaton, expression: Expression) -> str:

@@ -37,10 +37,11 @@ from sequence_planner.language.syntax import (
     UnaryTemporal,
     Variable,
     conjunction,
+    conjuncts,
 )
 from sequence_planner.language.types import EnumerationType, Value
-from sequence_planner.texts.grammar import ENGLISH, GRAMMARS, Clause, Grammar
-from sequence_planner.texts.message import Message, Sentence, Wording, message
+from sequence_planner.texts.grammar import ENGLISH, GRAMMARS, OF_WHAT_IS_SO, Clause, Grammar
+from sequence_planner.texts.message import Message, Sentence, Title, Wording, message
 from sequence_planner.texts.names import within_sentence
 
 MOST_KNOWN = 2000  # sentences that are kept
@@ -110,6 +111,7 @@ class Sentences:
         self._automaton = automaton
         self._names = SpokenNames(automaton)
         self._known: dict[tuple[int, ...], tuple[tuple[Expression, ...], Wording]] = {}
+        self._groups: dict[int, tuple[Expression, Sequence[frozenset[int]]]] = {}
         self._titled = dict(self._predicates())
         self._long = sorted(
             ((form, named) for form, named in self._titled.items() if isinstance(form, Junction)),
@@ -117,8 +119,30 @@ class Sentences:
         )
 
     def tell_missing(self, condition: Expression, state: Valuation, written: str) -> Sentence:
-        """Say what of a condition does not hold for certain; all of it where nothing is to be told."""
-        return self.tell_so(untrue(condition, state) or [condition], written)
+        """Say what of a condition does not hold for certain, with what a title puts together with it; all of it where
+        nothing is to be told. What is to end is denied as what is so: `no longer`.
+        """
+        missing = untrue(condition, state)
+        ends = bool(missing) and all(evaluate(each, state) is False for each in missing)
+        told = [id(each) for each in missing]
+        for group in self._spoken_together(condition):
+            if not group.isdisjoint(told):
+                told += group
+        parts = [each for each in conjuncts(condition) if id(each) in told] or [condition]
+        return Sentence(self.tell_conditions(*parts, ends=ends).words, written)
+
+    def _spoken_together(self, condition: Expression) -> Sequence[frozenset[int]]:
+        """The parts of a condition, by their ids, that predicates with a title put together."""
+        known = self._groups.get(id(condition))
+        if known is None or known[0] is not condition:
+            if len(self._groups) >= MOST_KNOWN:
+                self._groups.clear()
+            forms = [(normal_form(each), id(each)) for each in conjuncts(condition)] if self._long else []
+            every = {form for form, _ in forms}
+            wholes = [whole.parts for whole, _ in self._long if whole.is_all and whole.parts <= every]
+            groups = [frozenset(each for form, each in forms if form in parts) for parts in wholes]
+            known = self._groups[id(condition)] = condition, groups
+        return known[1]
 
     def tell_operation(
         self, operation: Operation, state: Valuation, goal: str, precondition: str, *, active: bool
@@ -136,15 +160,18 @@ class Sentences:
         """Say that all of some conditions hold, which the model writes so."""
         return Sentence(self.tell_conditions(*conditions).words, written)
 
-    def tell_conditions(self, *conditions: Expression) -> Wording:
-        """Say that all of some conditions hold. What is said of the same objects again is known."""
-        key = tuple(map(id, conditions))
+    def tell_conditions(self, *conditions: Expression, ends: bool = False) -> Wording:
+        """Say that all of some conditions hold; with `ends` none does, and what is denied is so now. What is said of
+        the same objects again is known.
+        """
+        key = (ends, *map(id, conditions))
         known = self._known.get(key)
         if known is None or any(one is not other for one, other in zip(known[0], conditions, strict=True)):
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
             part = self._read(conjunction(*conditions), True)
-            told = Wording({grammar.language: self._told(part, grammar) for grammar in GRAMMARS})
+            grammars = OF_WHAT_IS_SO if ends else GRAMMARS
+            told = Wording({grammar.language: self._told(part, grammar) for grammar in grammars})
             known = self._known[key] = conditions, told
         return known[1]
 
@@ -176,6 +203,10 @@ class Sentences:
         type_ = self._automaton.types[variable]
         words = {each.language: self._names.words(variable, type_, each).get(value, str(value)) for each in GRAMMARS}
         return Sentence(words, print_value(value))
+
+    def call_part(self, name: str, title: str) -> Sentence:
+        """What a part of the model is called that is no variable; it is written by its name."""
+        return Sentence(title.words if isinstance(title, Title) else {ENGLISH.language: title}, name)
 
     def tell_by_hand(self, variable: str, value: Value) -> Sentence | None:
         """What a person does so that a variable gets a value, where the model says so."""

@@ -7,13 +7,14 @@ from collections.abc import Collection, Iterator, Mapping
 
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.findings import Findings, without_arguments
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.shorthand.titles import Titles, VariableTitles, Words
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Type, Value
 from sequence_planner.model import documents, fields
 from sequence_planner.model.fields import by_language, words_of
 from sequence_planner.model.loader import Station
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import message
 
 VALUE = "value"  # stands in a phrase for what the variable is
 _KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
@@ -61,14 +62,14 @@ class TitleReader:
             if isinstance(document, documents.EnumerationDocument) and type_ is not None:
                 self._read_values(document.titles, type_, str(name))
                 found[type_] = {**found.get(type_, {}), **self._included(str(name), ())}
-        for name, chosen in self._station.station.sets.items():
-            if str(name) in self._enumerations:
-                found.setdefault(self._enumerations[str(name)], self._of_domain(str(chosen.of), ()))
+        for named, chosen in self._all_sets():
+            if named in self._enumerations:
+                found.setdefault(self._enumerations[named], self._of_domain(str(chosen.of), ()))
         return {type_: titles for type_, titles in found.items() if titles}
 
     def _of_domain(self, name: str, around: tuple[str, ...]) -> Mapping[Value, Words]:
         """The titles of the values of an enumeration, or of that which a set is of."""
-        sets = {str(each): str(document.of) for each, document in self._station.station.sets.items()}
+        sets = {each: str(document.of) for each, document in self._all_sets()}
         return (
             self._of_domain(sets[name], (*around, name))
             if name in sets and name not in around
@@ -86,11 +87,17 @@ class TitleReader:
 
     def _sets(self) -> dict[frozenset[Value], Words]:
         found: dict[frozenset[Value], Words] = {}
-        for name, document in self._station.station.sets.items():
-            if document.title is not None and str(name) in self._enumerations:
+        for name, document in self._all_sets():
+            if document.title is not None and name in self._enumerations:
                 self._check_words(document.title, {})
-                found.setdefault(frozenset(self._enumerations[str(name)].values), words_of(document.title))
+                found.setdefault(frozenset(self._enumerations[name].values), words_of(document.title))
         return found
+
+    def _all_sets(self) -> Iterator[tuple[str, documents.SetDocument]]:
+        """The sets of the station, and those of its resources by their full names."""
+        yield from ((str(name), document) for name, document in self._station.station.sets.items())
+        for resource, whole in self._station.resources.items():
+            yield from ((f"{resource}.{name}", document) for name, document in whole.sets.items())
 
     def _predicates(self) -> Iterator[tuple[str, Words]]:
         sections = [("", self._station.station.predicates)]
@@ -114,8 +121,7 @@ class TitleReader:
             for language, said in by_language(text).items():
                 before = told.setdefault((language, said.strip().casefold()), key)
                 if before is not key:
-                    message = f"`{said}` is what `{before}` is called already: nobody could tell them apart"
-                    self._findings.add(said, f"{message}; write other words for one of them")
+                    self._findings.add(said, message("wrong.same-words", words=str(said), other=str(before)))
         return found
 
     def _read_by_hand(
@@ -123,8 +129,7 @@ class TitleReader:
     ) -> dict[Value, Words]:
         """What a person does so that a variable gets a value; one that is not measured has no value of the station."""
         if document.by_hand and not is_measured:
-            message = f"`by_hand` is for what is measured: nobody at the station gives `{owner}` a value"
-            self._findings.add(next(iter(document.by_hand)), message)
+            self._findings.add(next(iter(document.by_hand)), message("wrong.by-hand", name=owner))
         if type_ is None:
             return {}
         found: dict[Value, Words] = {}
@@ -143,20 +148,21 @@ class TitleReader:
                 yield key, domain[str(key)], text
             else:
                 near = suggestion(str(key), domain)
-                self._findings.add(key, f"`{key}` is no value of `{owner}`, which ranges over {type_}{near}")
+                self._findings.add(
+                    key, message("wrong.no-value-of", value=str(key), name=owner, range=str(type_), hint=near)
+                )
 
     def _check_phrase(self, phrase: fields.Words | None) -> None:
         for said in by_language(phrase).values():
             if f"{{{VALUE}}}" not in said:
-                message = f"a phrase has a place for the value: write `{{{VALUE}}}` in it"
-                self._findings.add(said, f"{message}, as in `the robot is at {{{VALUE}}}`")
+                self._findings.add(said, message("wrong.phrase", place=f"{{{VALUE}}}"))
 
     def _check_words(self, text: fields.Words | None, known: Collection[str]) -> None:
         for said in by_language(text).values():
             for match in _IN_BRACES.finditer(said):
                 if match[1] not in known:
                     near = suggestion(match[1], map(str, known))
-                    self._findings.add(said, f"`{match[0]}` stands for no parameter here{near}")
+                    self._findings.add(said, message("wrong.no-parameter", text=match[0], hint=near))
 
 
 def _written(type_: Type, value: Value) -> str:

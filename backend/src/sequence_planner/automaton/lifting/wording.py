@@ -22,9 +22,10 @@ from sequence_planner.automaton.lifting.normal_form import (
 )
 from sequence_planner.core.immutable import replace
 from sequence_planner.language.evaluator import Valuation, evaluate
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, expand, resolve_predicate
+from sequence_planner.language.resolver import expand, resolve_predicate
 from sequence_planner.language.shorthand.vocabulary import NamedPredicate
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.substitution import rebuilt
@@ -91,7 +92,7 @@ class ModelWording:
     def __init__(self, automaton: Automaton) -> None:
         self._parts: dict[int, tuple[Expression, tuple[ToldPart, ...]]] = {}
         self.indices = automaton.indices
-        self.scope = NameScope(automaton.types, vocabulary=automaton.vocabulary)
+        self.scope = automaton.scope
         self._vocabulary = automaton.vocabulary
 
     def __bool__(self) -> bool:

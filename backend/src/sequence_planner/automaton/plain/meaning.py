@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Callable
 from itertools import islice
@@ -17,20 +16,14 @@ from sequence_planner.automaton.automaton import (
     Specification,
     VariableDeclaration,
 )
-from sequence_planner.automaton.declarations import MOST_VALUES
 from sequence_planner.automaton.plain.events import NUMBER_SIGN
 from sequence_planner.automaton.plain.updates import enabling_guard
 from sequence_planner.automaton.plain.valuations import TooEntangledError, valuations_of
-from sequence_planner.language.lexer import KEYWORDS, MOST_DIGITS
+from sequence_planner.automaton.plain.variables import declared_types, unknown_variable, unlimited
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_formula
 from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.resolver import (
-    NameScope,
-    resolve_assignment,
-    resolve_formula,
-    resolve_predicate,
-    suggestion,
-)
+from sequence_planner.language.resolver import resolve_assignment, resolve_formula, resolve_predicate
 from sequence_planner.language.simplifier import simplify, simplify_assignment
 from sequence_planner.language.syntax import (
     FALSE,
@@ -47,101 +40,10 @@ from sequence_planner.language.syntax import (
     conjuncts,
     first_temporal,
 )
-from sequence_planner.language.types import (
-    BOOLEAN,
-    EnumerationType,
-    IntegerRange,
-    Place,
-    Type,
-    Value,
-    contains,
-)
-from sequence_planner.model.efa_document import (
-    DomainDocument,
-    PlainModel,
-    RangeDocument,
-    TransitionDocument,
-    UpdateDocument,
-)
+from sequence_planner.language.types import Place, Type, Value, contains
+from sequence_planner.model.efa_document import PlainModel, TransitionDocument, UpdateDocument
 from sequence_planner.model.fields import Predicate
 from sequence_planner.model.source import Finding, ModelError, SourceText
-
-# The variables of a plain automaton, with names that expressions can read.
-
-_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-
-
-def declared_types(model: PlainModel, findings: list[Finding]) -> dict[str, Type]:
-    """The type of each variable; what is wrong with a name or a domain is added to `findings`.
-
-    A variable may be a word or several joined by dots; a value is a word.
-    """
-    types: dict[str, Type] = {}
-    for name, domain in model.content.variables.items():
-        if not all(map(_is_word, name.split("."))):
-            findings.append(_unreadable("variable", name))
-        elif (type_ := _type(model, name, domain, findings)) is not None:
-            types[str(name)] = type_
-    return types
-
-
-def _is_word(text: str) -> bool:
-    return _WORD.fullmatch(text) is not None and text not in KEYWORDS
-
-
-def _unreadable(what: str, name: SourceText) -> Finding:
-    readable = re.sub(r"[^A-Za-z0-9_]", "_", name)
-    if not _is_word(readable):
-        readable = f"{what[0]}_{readable}"
-    message = (
-        f"expressions cannot read the {what} `{name}`: a name has letters, digits and `_`, begins with no digit and is "
-        f"no word of the language; rename it everywhere, for example to `{readable}`"
-    )
-    return Finding(name.place, message)
-
-
-def _type(model: PlainModel, name: SourceText, domain: DomainDocument, findings: list[Finding]) -> Type | None:
-    place = model.source.place_of_value(("variables", str(name)))
-    if isinstance(domain, SourceText):
-        if domain == "bool":
-            return BOOLEAN
-        findings.append(
-            Finding(place, f'unknown domain `{domain}`: write "bool", a list of values, or {{"min": 0, "max": 3}}')
-        )
-        return None
-    if isinstance(domain, RangeDocument):
-        if (wrong := _wrong_range(domain.least, domain.most)) is not None:
-            findings.append(Finding(place, wrong))
-            return None
-        return IntegerRange(domain.least, domain.most)
-    return _listed(name, domain, place, findings)
-
-
-def _wrong_range(least: int, most: int) -> str | None:
-    if least > most:
-        return f"the range {least}..{most} is empty: write the smaller number as min"
-    if most - least >= MOST_VALUES:
-        return f"the range {least}..{most} has more than {MOST_VALUES} values: use a coarser measure"
-    if max(-least, most) >= 10**MOST_DIGITS:
-        return f"integers have at most {MOST_DIGITS} digits"
-    return None
-
-
-def _listed(
-    name: SourceText, domain: list[SourceText | int], place: Place, findings: list[Finding]
-) -> EnumerationType | None:
-    words = [value for value in domain if isinstance(value, SourceText)]
-    if len(words) < len(domain):
-        message = 'a list of values holds names; write integers as a range, such as {"min": 0, "max": 3}'
-        findings.append(Finding(place, message))
-        return None
-    for index, word in enumerate(words):
-        if not _is_word(word):
-            findings.append(_unreadable("value", word))
-        elif word in words[:index]:
-            findings.append(Finding(word.place, f"duplicate value `{word}` of `{name}`"))
-    return EnumerationType(tuple(map(str, words)))
-
 
 # The automaton that the document of a plain automaton means: `docs/semantics.md`, "Supervisor".
 
@@ -161,12 +63,6 @@ def plain_automaton(model: PlainModel) -> Automaton:
     if findings:
         raise ModelError(findings)
     return automaton
-
-
-def _unlimited(type_: Type) -> Type:
-    """The type, or all integers: an update beyond a range is no mistake, and disables its transition."""
-    limit = 10 ** (2 * MOST_DIGITS)
-    return IntegerRange(-limit, limit) if isinstance(type_, IntegerRange) else type_
 
 
 class _Meaning:
@@ -251,18 +147,17 @@ class _Meaning:
     def _update(self, index: int, variable: SourceText, value: UpdateDocument) -> Assignment | None:
         name = str(variable)
         if name not in self._types:
-            message = f"unknown variable `{name}`{suggestion(name, self._types)}"
-            self._findings.append(Finding(variable.place, message))
+            self._findings.append(unknown_variable(variable, self._types))
             return None
         written_to = Variable(name, self._types[name])
         if not isinstance(value, SourceText):
-            if not contains(_unlimited(written_to.type), value):
+            if not contains(unlimited(written_to.type), value):
                 place = self._model.source.place_of_value(("transitions", index, "set", name))
                 message = f"`{print_value(value)}` is no value of `{name}`, which ranges over {written_to.type}"
                 self._findings.append(Finding(place, message))
                 return None
             return Assignment(written_to, Constant(value))
-        written = NameScope({**self._types, _WRITTEN: _unlimited(written_to.type)})
+        written = NameScope({**self._types, _WRITTEN: unlimited(written_to.type)})
         action = self._read(
             value, lambda: resolve_assignment(Assignment(Name((Component(_WRITTEN),)), parse(value)), written)
         )

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from sequence_planner.automaton.automaton import Branches, Operation, Turn
+from sequence_planner.automaton.automaton import Branches, GroupKind, Operation, OperationGroup, Turn
 from sequence_planner.automaton.declarations import OPERATION, Declarations
 from sequence_planner.automaton.findings import Findings
 from sequence_planner.automaton.sequences.reading import (
@@ -164,6 +164,7 @@ class StationSequences:
     ) -> None:
         self.reader = SequenceReader(declarations, findings, station, operations)
         self._places = declarations.places
+        self._groups = declarations.groups
 
     def ordered(self, operations: Mapping[str, Operation]) -> dict[str, Operation]:
         """The operations in the order of all sequences."""
@@ -171,12 +172,14 @@ class StationSequences:
         for name, term in self.reader.terms.items():
             for each in term.operations():
                 self._places[f"{OPERATION}.{each.name}.sequence.{name}"] = each.text.place
+        self._groups += [group for name, term in terms.items() for group in _groups(term, name, for_jobs=False)]
         return in_sequences(terms, operations)
 
-    def order_of(self, document: WorkMasterDocument) -> StepOrder:
-        """The steps of a job: those of its sequence, and those that are written one by one."""
+    def order_of(self, document: WorkMasterDocument, name: str) -> StepOrder:
+        """The steps of a job: those of its sequence, and those that are written one by one; `name` is of its master."""
         written = (self.reader.term_of(each) for each in (document, *(document.orders or ())))
         terms = [term for term in written if term is not None]
+        self._groups += [group for term in terms for group in _groups(term, name, for_jobs=True)]
         steps: dict[SourceText, tuple[SourceText, ...]] = {}
         for step, before in (each for term in terms for each in _steps(term).items()):
             steps[step] = (*steps.get(step, ()), *before)
@@ -204,3 +207,11 @@ def _branches(term: SequenceTerm, kind: SequenceKind) -> tuple[Branches, ...]:
         for part in terms_within(term)
         if part.kind == kind and len(part.parts) > 1
     )
+
+
+def _groups(term: SequenceTerm, name: str, *, for_jobs: bool) -> Iterator[OperationGroup]:
+    """The operations of each part that puts several beside one another."""
+    for part in terms_within(term):
+        if part.kind is not None and part.kind != "sequence" and len(part.parts) > 1:
+            names = tuple(each.name for each in part.operations())
+            yield OperationGroup(GroupKind(part.kind), names, name, for_jobs)

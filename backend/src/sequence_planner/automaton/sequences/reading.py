@@ -9,13 +9,15 @@ from itertools import pairwise
 
 from sequence_planner.automaton.declarations import OPERATION, Declarations
 from sequence_planner.automaton.findings import Binding, Findings, with_arguments, without_arguments
+from sequence_planner.language.names.scope import NameScope
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, suggestion
 from sequence_planner.language.syntax import ExpressionError, Name
 from sequence_planner.language.types import Place
 from sequence_planner.model.loader import Station
 from sequence_planner.model.sequences import SequenceKind, SequencePart
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import message
 
 
 @dataclass(frozen=True)
@@ -85,8 +87,8 @@ class SequenceReader:
         seen: dict[str, SourceText] = {}
         for each in () if term is None else term.operations():
             if each.name in seen:
-                message = f"`{each.name}` is in this sequence already, at line {seen[each.name].place.line}"
-                self.findings.add(each.text, f"{message}: an operation stands once in it")
+                line = seen[each.name].place.line
+                self.findings.add(each.text, message("wrong.in-sequence-already", name=each.name, line=line))
                 term = None
             seen.setdefault(each.name, each.text)
         return term
@@ -97,7 +99,7 @@ class SequenceReader:
         try:
             written = parse(text)
             if not isinstance(written, Name) or len(written.path) != 1:
-                raise ExpressionError("expected the name of an operation, such as `tighten(left)`", written.span)
+                raise ExpressionError(message("wrong.expected-operation"), written.span)
         except ExpressionError as error:
             self.findings.add_within(text, error.span, error.message)
             return None
@@ -108,7 +110,7 @@ class SequenceReader:
             self.used.add(name)
             if name in names:
                 circle = " → ".join((*names[names.index(name) :], name))
-                self.findings.add(text, f"sequences stand in each other in a circle: {circle}")
+                self.findings.add(text, message("wrong.sequences-in-circle", names=circle))
                 return None
             return self._part(known, {}, (*names, name))
         if f"{OPERATION}.{without_arguments(name)}" not in self._declarations.broken:
@@ -165,6 +167,6 @@ def read_sequences(reader: SequenceReader) -> dict[str, SequenceTerm]:
         circle = error.args[1]
         said = [before[later][earlier] for earlier, later in pairwise(circle)]
         names = [f"`{each}`" for each in dict.fromkeys(name for name, _ in said)]
-        message = f"sequences order these in a circle, each before the next: {' → '.join(circle)} ({', '.join(names)})"
-        reader.findings.add(said[-1][1], message)
+        wrong = message("wrong.order-in-circle", names=" → ".join(circle), sequences=", ".join(names))
+        reader.findings.add(said[-1][1], wrong)
     return terms

@@ -15,7 +15,7 @@ from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import AsJson, StationFolder, print_json, refuse
 from sequence_planner.editor.folds.finder import Fold, FoldFinder
 from sequence_planner.editor.folds.views import fold_view
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.model.files import Files, read_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.yaml.saving import add_file, digest, edit_file

@@ -10,9 +10,9 @@ from typing import Annotated, Literal
 
 import typer
 
-from sequence_planner.analysis.report import FindingDocument
+from sequence_planner.analysis.report import FindingDocument, error_document
 from sequence_planner.cli.analysing import Limits, finding_lines
-from sequence_planner.cli.model.check import check_model, unusable
+from sequence_planner.cli.model.check import check_model
 from sequence_planner.cli.options import UNUSABLE, AsJson, StationFolder, print_json
 from sequence_planner.cli.part_options import TransportOption
 from sequence_planner.cli.station.controller import Domain, Seconds, look
@@ -96,7 +96,7 @@ def _say(answer: _Answer, resource: str, json: bool) -> None:
     topic = answer.topic
     if json:
         told = {"topic": topic.name, "type": topic.type_name, "direction": topic.direction, "resource": resource}
-        findings = [*map(unusable, answer.errors), *(each.model_dump() for each in answer.findings)]
+        findings = [each.model_dump() for each in (*map(error_document, answer.errors), *answer.findings)]
         print_json({**told, "made": answer.made, "difference": answer.difference, "findings": findings})
     else:
         typer.echo(answer.difference, nl=False)

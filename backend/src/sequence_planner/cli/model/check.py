@@ -20,6 +20,7 @@ from sequence_planner.cli.analysing import (
     Limits,
     checked,
     counts_line,
+    finding_document,
     finding_lines,
     within,
 )
@@ -92,7 +93,7 @@ def check(
     limits = Limits(deadline, memory)
     told = _told_before(of := _key(model, emulator)) or _told(model, limits, of, emulator=emulator, json=json)
     if json:
-        findings = [each.model_dump() for each in told.findings]
+        findings = list(map(finding_document, told.findings))
         print_json({"model": str(model), "findings": findings, "summary": told.summary})
     else:
         lines = [line for each in told.findings for line in finding_lines(each, runs)]
@@ -170,7 +171,7 @@ def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checke
 
 def unusable(finding: Finding) -> dict[str, object]:
     """A finding that makes a model unusable, as a document."""
-    return error_document(finding).model_dump()
+    return finding_document(error_document(finding))
 
 
 def _summary(checked: Checked) -> dict[str, object]:

@@ -20,8 +20,6 @@ from sequence_planner.export.efa import efa_text, names_in_document, plain_of_st
 from sequence_planner.export.pddl import pddl_text
 from sequence_planner.export.sequential import ExportError, sequential
 from sequence_planner.export.smv import smv_text
-from sequence_planner.language.parser import parse
-from sequence_planner.language.resolver import NameScope, resolve_predicate
 from sequence_planner.language.syntax import ExpressionError
 from sequence_planner.planning.problem import Goal, goals_of
 from sequence_planner.planning.single.derived import for_planning
@@ -103,7 +101,7 @@ def _write_question(
 
 def _goal(automaton: Automaton, text: str) -> Goal:
     try:
-        return Goal(text, resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary)))
+        return Goal(text, automaton.read_condition(text))
     except ExpressionError as error:
         refuse(f"--goal {text!r}: {error.message}")
 

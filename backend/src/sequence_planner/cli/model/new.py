@@ -50,7 +50,8 @@ def new(
     if empty:  # a demonstration would forget the draft
         typer.echo(f"\nNow: sequence-planner run {folder} --emulator")
         return
-    typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner run {folder} --emulator --demonstration")
+    run = f"sequence-planner run {folder} --emulator --demonstration"
+    typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner test {folder}\n     {run}")
 
 
 def _named_after(folder: Path) -> str:

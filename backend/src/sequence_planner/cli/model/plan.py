@@ -18,9 +18,8 @@ from sequence_planner.cli.initial_state import StartingPoint, StateFile, moment,
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.export.sequential import ExportError, sequential
 from sequence_planner.export.unified import UnifiedPlanning, planners
-from sequence_planner.language.parser import parse
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.printer import print_value
-from sequence_planner.language.resolver import NameScope, resolve_predicate, suggestion
 from sequence_planner.language.syntax import Expression, ExpressionError
 from sequence_planner.planning.diagnosis import (
     Diagnosis,
@@ -560,6 +559,6 @@ def _active(automaton: Automaton, before: StartingPoint) -> frozenset[str]:
 
 def _predicate(automaton: Automaton, text: str, option: str) -> Expression:
     try:
-        return resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary))
+        return automaton.read_condition(text)
     except ExpressionError as error:
         refuse(f"{option} {text!r}: {error.message}")

@@ -25,11 +25,10 @@ from sequence_planner.cli.model.pipelines import chosen, pipeline_lines
 from sequence_planner.cli.model.synthesize import Guards, added_lines, described_automaton
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.controller.io.pipeline_graph import pipelines_view
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.printer import print_assignment, print_expression, print_value
-from sequence_planner.language.resolver import NameScope, expand, suggestion
 from sequence_planner.language.syntax import (
     FALSE,
-    NOWHERE,
     TRUE,
     Assignment,
     Expression,
@@ -243,9 +242,8 @@ def _meaning(automaton: Automaton, name: str) -> str | None:
     predicate = automaton.vocabulary.predicates[name]
     if predicate.parameters:
         return None
-    scope = NameScope(automaton.types, vocabulary=automaton.vocabulary)
     try:
-        return print_expression(expand(predicate, (), scope, NOWHERE))
+        return print_expression(automaton.read_condition(name))
     except ExpressionError:  # it reads the activity of an operation, which nothing else does
         return None
 
@@ -321,6 +319,8 @@ def _ability(ability: Ability, added: Sequence[str], said: Said) -> Lines:
     yield from _actions("cancel", ability.cancel_actions, said, "    ")
     if ability.human is not None:
         yield f"    person      {ability.human.text} (acknowledged by {ability.human.acknowledgement})"
+    if not ability.moves:
+        yield "    nothing moves by it"
     limits = {"react": ability.timeouts.react, "finish": ability.timeouts.finish}
     for name, seconds in limits.items():
         if seconds is not None:

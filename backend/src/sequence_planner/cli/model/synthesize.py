@@ -19,6 +19,7 @@ from sequence_planner.cli.analysing import (
     Found,
     Limits,
     analysed,
+    finding_document,
     finding_lines,
     read_within,
 )
@@ -132,6 +133,7 @@ def _described_ability(ability: Ability, guard: GuardDocument | None) -> Json:
         else {"when": print_expression(ability.finish_guard), "do": _described_actions(ability.finish_actions)},
         "cancel": _described_actions(ability.cancel_actions),
         "restart": ability.restart,
+        "moves": ability.moves,
         "human": None if human is None else {"task": human.text, "acknowledgement": human.acknowledgement},
         "timeouts": {
             "react": ability.timeouts.react,
@@ -210,7 +212,7 @@ def _document(automaton: Automaton, found: Found) -> dict[str, object]:
         "guards": guards,
         "origins": None if document.guards is None else {n: g.model_dump() for n, g in document.guards.items()},
         "lifted": None if document.lifted is None else [each.model_dump() for each in document.lifted],
-        "findings": None if document.findings is None else [each.model_dump() for each in document.findings],
+        "findings": None if document.findings is None else list(map(finding_document, document.findings)),
         "unfinished": found.unfinished,
     }
 

@@ -29,9 +29,8 @@ from sequence_planner.cli.initial_state import StartingPoint, StateFile, moment,
 from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.language.evaluator import evaluate, holds
-from sequence_planner.language.parser import parse_assignment
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.resolver import NameScope, resolve_assignment, suggestion
 from sequence_planner.language.syntax import Expression, ExpressionError, conjuncts
 from sequence_planner.language.types import Value, contains
 from sequence_planner.synthesis.supervisor import SynthesisError
@@ -240,9 +239,7 @@ def _measured(automaton: Automaton, state: State, texts: Iterable[str]) -> dict[
     measured: dict[str, Value | None] = {}
     for text in texts:
         try:
-            action = resolve_assignment(
-                parse_assignment(text), NameScope(automaton.types, vocabulary=automaton.vocabulary)
-            )
+            action = automaton.read_action(text)
         except ExpressionError as error:
             refuse(f"--set {text!r}: {error.message}")
         name = target(action)

@@ -104,7 +104,7 @@ def _station(model: Path) -> StationDocument:
         document = read_yaml(model / "station.yaml", str(model / "station.yaml"))
     except ModelError as error:
         refuse(str(error))
-    from sequence_planner.model.loader import station_packages  # noqa: PLC0415
+    from sequence_planner.model.reading.folder import station_packages  # noqa: PLC0415
 
     try:
         return station_packages(document)

@@ -21,7 +21,7 @@ from sequence_planner.cli.part_options import (
     until_interrupted,
 )
 from sequence_planner.core.logging import configure_logs
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.model.source import ModelError
 from sequence_planner.process.parent_watch import NOT_EMULATED
 from sequence_planner.ros.qos import QualityOfService

@@ -13,6 +13,7 @@ from sequence_planner.core.data_models import DataModel
 from sequence_planner.texts.message import joined, message
 
 Handler = Callable[..., Any]
+Made = DataModel | None  # by a command
 
 
 def handlers(features: Iterable[object]) -> dict[type, Handler]:
@@ -63,8 +64,10 @@ class CommandBus:
         self._require_one = require_one
         self._real_devices = real_devices
 
-    def execute(self, command: Command, moment: Timestamp) -> None:
-        """Do what is asked for, if its actor may. Raises `CommandRefused`; nothing has changed then."""
+    def execute(self, command: Command, moment: Timestamp) -> Made:
+        """Do what is asked for, if its actor may; return what that makes. Raises `CommandRefused`; nothing has changed
+        then.
+        """
         actor = command.actor
         if actor.kind is ActorKind.DEMONSTRATION and not command.harmless and (there := list(self._real_devices())):
             raise CommandRefused(
@@ -73,11 +76,12 @@ class CommandBus:
         if command.needs_control and actor.kind is not ActorKind.SYSTEM:
             self._in_control.require(actor)
         self._require_one(command.for_two)
-        self.perform(command, moment)
+        return self.perform(command, moment)
 
-    def perform(self, command: Command, moment: Timestamp) -> None:
+    def perform(self, command: Command, moment: Timestamp) -> Made:
         """Do it, whoever wants it: what two people have agreed on. Raises `CommandRefused`."""
-        self._handlers[type(command)](command, moment)
+        made: Made = self._handlers[type(command)](command, moment)
+        return made
 
 
 class QueryBus:

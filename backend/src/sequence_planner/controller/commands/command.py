@@ -24,6 +24,8 @@ LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader 
 Why = Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
 Revision = Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
 GivenValue = StrictBool | StrictInt | StrictStr
+LONGEST_PREDICATE = 4000  # characters
+Predicate = Annotated[str, Field(min_length=1, max_length=LONGEST_PREDICATE)]
 Answer = TypeVar("Answer", bound=DataModel)
 GivenValues = Annotated[dict[str, GivenValue], Field(min_length=1, max_length=200)]
 
@@ -60,12 +62,14 @@ class Command(DataModel):
     """`actor` is who asks, `reason` why, in that person's words. `subject` is on what it acts, for the record.
 
     What moves devices is for the one session in control. `harmless` is what only ever stops them: it is carried out
-    even where it cannot be recorded. `kind` is what the record calls it, for good.
+    even where it cannot be recorded. `kind` is what the record calls it, for good. Who gives it is answered with the
+    document that it `makes`, where it makes one.
     """
 
     routes: ClassVar[tuple[Route, ...]] = ()
     for_control: ClassVar[bool] = False
     about: ClassVar[str] = ""  # its subject, with its fields in braces
+    makes: ClassVar[type[DataModel] | None] = None
     actor: Actor
     reason: str | None = Field(default=None, max_length=LONGEST_REASON)
     kind: str
@@ -146,6 +150,7 @@ class CommandRefused(Refused):
 
 Given = TypeVar("Given", bound=Command)
 Asked = TypeVar("Asked", bound=Query[Any])
+Made = TypeVar("Made", bound=DataModel | None)
 Told = TypeVar("Told", bound=DataModel | Awaitable[DataModel])
 Feature = TypeVar("Feature")
 HANDLES = "_handles"  # of a function: the command that it handles, or the query that it answers
@@ -153,10 +158,12 @@ HANDLES = "_handles"  # of a function: the command that it handles, or the query
 
 def handles(
     command: type[Given],
-) -> Callable[[Callable[[Feature, Given, Timestamp], None]], Callable[[Feature, Given, Timestamp], None]]:
-    """Declare that a method carries out a command, now. It raises `CommandRefused`, and nothing has changed then."""
+) -> Callable[[Callable[[Feature, Given, Timestamp], Made]], Callable[[Feature, Given, Timestamp], Made]]:
+    """Declare that a method carries out a command, now, and returns what that makes. It raises `CommandRefused`, and
+    nothing has changed then.
+    """
 
-    def declare(method: Callable[[Feature, Given, Timestamp], None]) -> Callable[[Feature, Given, Timestamp], None]:
+    def declare(method: Callable[[Feature, Given, Timestamp], Made]) -> Callable[[Feature, Given, Timestamp], Made]:
         setattr(method, HANDLES, command)
         return method
 

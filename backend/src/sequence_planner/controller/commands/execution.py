@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool
 
-from sequence_planner.controller.commands.command import Command, Route, Why
-from sequence_planner.controller.views.station import FieldValue
+from sequence_planner.controller.commands.command import Command, Predicate, Route, Why
+from sequence_planner.controller.views.station import FieldValue, MadeBreakpointView
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 
 _REASON_TEXT = "To ask for it is all that there is to say, but perhaps why."
@@ -72,6 +72,34 @@ class StartProduction(Command):
     for_control = True
 
 
+class SetCycleStop(Command):
+    """Have the station pause when the product that is in work is done, or not. Anybody may ask for it, as for a pause;
+    to take that back takes control.
+
+    Of a station that works by order, no job begins meanwhile, and it pauses once those that have begun are over; else
+    it pauses when the operation that comes after all others of a work master is completed. Each change of the mode ends
+    it. 409 `no-product-end` where the model does not tell when a product is done.
+    """
+
+    routes = (
+        Route(
+            "PUT",
+            "/mode/cycle-stop",
+            "set_cycle_stop",
+            tag="modes",
+            body="CycleStopBody",
+            body_text="Whether the station is to pause when the product is done.",
+        ),
+    )
+    kind: Literal["set-cycle-stop"] = "set-cycle-stop"
+    on: StrictBool
+
+    @property
+    def needs_control(self) -> bool:
+        """To go on needs it."""
+        return not self.on
+
+
 class SetStepping(Command):
     """For commissioning: have every single start wait for a person's step, or none. It takes control."""
 
@@ -131,6 +159,49 @@ class SetService(Command):
     of: ServiceKind
     name: Annotated[str, Field(max_length=400)]
     in_service: StrictBool
+
+
+class SetBreakpoint(Command):
+    """For commissioning: have the station pause as soon as a condition becomes true, after the tick in which it does.
+
+    It takes no control, as pausing does not. It is forgotten when the controller begins anew. 422 `bad-predicate` names
+    the place; 409 `too-many-breakpoints`.
+    """
+
+    routes = (
+        Route(
+            "POST",
+            "/breakpoints",
+            "set_breakpoint",
+            tag="modes",
+            body="BreakpointBody",
+            body_text="The condition, in the model's language.",
+            role="engineer",
+            refusals=(409, 422, 504),
+        ),
+    )
+    kind: Literal["set-breakpoint"] = "set-breakpoint"
+    about = "{condition}"
+    makes = MadeBreakpointView
+    condition: Predicate
+
+
+class RemoveBreakpoint(Command):
+    """Have the station pause for a condition no more. A pause that has come of it stays."""
+
+    routes = (
+        Route(
+            "DELETE",
+            "/breakpoints/{id}",
+            "remove_breakpoint",
+            tag="modes",
+            role="engineer",
+            refusals=(404, 409, 504),
+        ),
+    )
+    kind: Literal["remove-breakpoint"] = "remove-breakpoint"
+    about = "{id}"
+    id: Annotated[str, Field(pattern=r"^[0-9]{1,9}$")]
 
 
 class Deploy(Command):

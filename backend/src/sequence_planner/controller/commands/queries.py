@@ -6,11 +6,13 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from sequence_planner.controller.commands.command import GivenValues, Query, Route
+from sequence_planner.controller.commands.command import LONGEST_PREDICATE, GivenValues, Predicate, Query, Route
+from sequence_planner.controller.tracing.schemas import TraceView
 from sequence_planner.controller.views.details import (
     AbilityDefinitionView,
     CorrectionPreview,
     NamesView,
+    OperationDefinitionView,
     ShiftsView,
     WhyNotView,
     WorkMastersView,
@@ -22,10 +24,8 @@ from sequence_planner.mimic.views import MimicView
 
 TOLD_WITHIN = 1.0  # seconds: who watches over the station asks again soon
 ADVISED_WITHIN = 15.0  # seconds: the advisor answers one after the other
-LONGEST_PREDICATE = 4000  # characters
 
 Name = Annotated[str, Field(max_length=400)]
-Predicate = Annotated[str, Field(min_length=1, max_length=LONGEST_PREDICATE)]
 _GOAL_TEXT = "What shall hold, in the model's language."
 
 
@@ -169,6 +169,37 @@ class AskOperationBlockers(Query[WhyNotView]):
     )
     patience: ClassVar[float | None] = ADVISED_WITHIN
     kind: Literal["ask-operation-blockers"] = "ask-operation-blockers"
+    name: Name
+
+
+class AskOperationDefinition(Query[OperationDefinitionView]):
+    """What it begins with and ends with as that is written, and what of it holds now."""
+
+    routes = (
+        Route(
+            "GET",
+            "/operations/{name}/definition",
+            "operation_definition",
+            tag="station",
+            role="viewer",
+            refusals=(404, 504),
+        ),
+    )
+    kind: Literal["ask-operation-definition"] = "ask-operation-definition"
+    name: Name
+
+
+class AskTrace(Query[TraceView]):
+    """A variable from the message that tells it, through each stage, to the conditions that read it and what has
+    changed since; an output the other way.
+
+    It is made of what is known anyhow; nothing is recorded for it.
+    """
+
+    routes = (
+        Route("GET", "/variables/{name}/trace", "variable_trace", tag="station", role="viewer", refusals=(404, 504)),
+    )
+    kind: Literal["ask-trace"] = "ask-trace"
     name: Name
 
 

@@ -54,6 +54,7 @@ class Abilities:
                 title=ability.title,
                 human=ability.human is not None,
                 restart=ability.restart,
+                moves=ability.moves,
                 enabled=_truth(state[ability.flag("enabled")]),
                 executing=_truth(state[ability.flag("executing")]),
                 finished=_truth(state[ability.flag("finished")]),

@@ -17,7 +17,7 @@ from sequence_planner.simulation.manual_interface import NODE as EMULATED_DEVICE
 
 LOG = structlog.get_logger(__name__)
 
-Handle = Callable[[Command], Awaitable[bool | None]]
+Handle = Callable[[Command], Awaitable[object]]
 
 
 async def start_when_alone(controller: Controller, handle: Handle, look_every: float = 0.2) -> None:

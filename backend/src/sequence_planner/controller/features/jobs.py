@@ -9,12 +9,12 @@ from sequence_planner.automaton.automaton import Automaton, WorkMaster, target
 from sequence_planner.controller.alarms.manager import AlarmManager
 from sequence_planner.controller.commands.command import CommandRefused, answers, handles
 from sequence_planner.controller.commands.jobs import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
-from sequence_planner.controller.commands.queries import AboutWorkMasters
+from sequence_planner.controller.commands.queries import AboutWorkMasters, AskOperationDefinition
 from sequence_planner.controller.features.tasks import TaskHandler
 from sequence_planner.controller.recovery.explain import ConditionContext
 from sequence_planner.controller.recovery.explain import waits_for as start_waits_for
-from sequence_planner.controller.views.automaton_diagram import work_masters_view
-from sequence_planner.controller.views.details import WorkMastersView
+from sequence_planner.controller.views.automaton_diagram import Drawing, work_masters_view
+from sequence_planner.controller.views.details import OperationDefinitionView, WorkMastersView
 from sequence_planner.controller.views.jobs import Around, job_views, waits_for
 from sequence_planner.controller.views.wording import hint_of
 from sequence_planner.core.clock import Timestamp
@@ -143,6 +143,15 @@ class JobHandler:
     def work_masters(self, query: AboutWorkMasters) -> WorkMastersView:
         """All work masters of the station, and what its abilities write."""
         return work_masters_view(self._automaton)
+
+    @answers(AskOperationDefinition)
+    def operation(self, query: AskOperationDefinition) -> OperationDefinitionView:
+        """How an operation is defined, and what of that holds now. Raises `CommandRefused`."""
+        operation = self._automaton.operations.get(query.name)
+        if operation is None:
+            raise CommandRefused("unknown-operation", message("refused.unknown-operation.those", name=query.name), 404)
+        drawing = Drawing(self._automaton, self._execution.state, {}, None)
+        return drawing.of_operation(operation, self._execution.revision)
 
     def _known(self, name: str) -> Job:
         job = self._jobs.get(name)

@@ -11,6 +11,7 @@ from sequence_planner.controller.commands.execution import (
     Deploy,
     EnterRestart,
     LeaveRestart,
+    SetCycleStop,
     SetMode,
     SetService,
     SetStepping,
@@ -21,11 +22,19 @@ from sequence_planner.controller.io.devices import Devices
 from sequence_planner.controller.io.links import DeviceLinks
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.safe_state import SafeStateMonitor
-from sequence_planner.controller.views.execution import failing, goes_on, packml, service_views, standing
+from sequence_planner.controller.views.execution import (
+    cycle_stop_view,
+    failing,
+    goes_on,
+    packml,
+    service_views,
+    standing,
+)
 from sequence_planner.controller.views.station import PackML, StationStanding
 from sequence_planner.controller.views.wording import plan_running
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
+from sequence_planner.execution.products import final_operations
 from sequence_planner.execution.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.texts.message import Message, joined, message
 
@@ -74,9 +83,16 @@ class Modes:
             "standing": standing(execution, self._outside.certain, silent) if commands else StationStanding.PREPARING,
             "failing": [title for title in fail if title not in silent],
             "stepping": execution.conduct.stepping,
+            "cycle_stop": cycle_stop_view(execution.conduct.cycle_stop),
             "production": execution.production if commands else Production.PREPARING,
             "out_of_service": service_views(execution.automaton, execution.conduct),
         }
+
+    def stop_after_cycle(self, moment: Timestamp) -> None:
+        """Pause, where that was wished for when the product is done, and it is."""
+        stop = self._execution.conduct.cycle_stop
+        if stop is not None and stop.reached and self._execution.mode is Mode.AUTOMATIC:
+            self._execution.change_mode(Mode.PAUSED, stop.by, moment)
 
     def note_standing(self, moment: Timestamp) -> None:
         """Write down how the station stands, where that has changed for good."""
@@ -115,6 +131,20 @@ class Modes:
         if execution.operator_plan is not None:
             raise plan_running(execution.operator_plan.title)
         execution.change_mode(Mode.PAUSED, command.actor.name, moment)
+
+    @handles(SetCycleStop)
+    def set_cycle_stop(self, command: SetCycleStop, moment: Timestamp) -> None:
+        """Pause when the product is done, or go on as ever."""
+        execution = self._execution
+        if command.on:
+            if execution.mode is not Mode.AUTOMATIC:
+                raise CommandRefused(
+                    "not-automatic", message("refused.not-automatic.now", mode=message(f"mode.{execution.mode}"))
+                )
+            if not execution.conduct.jobs.by_order and not final_operations(execution.automaton):
+                raise CommandRefused("no-product-end", message("refused.no-product-end.pause"))
+        if command.on or execution.conduct.cycle_stop is not None:
+            execution.set_cycle_stop(command.on, command.actor.name, command.reason or "", moment)
 
     @handles(SetStepping)
     def set_stepping(self, command: SetStepping, moment: Timestamp) -> None:

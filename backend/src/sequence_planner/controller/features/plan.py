@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
+from pydantic import JsonValue, ValidationError
+
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.controller.alarms.consequences import Consequences
 from sequence_planner.controller.alarms.kinds import LEFT_OUT, LOCAL, NO_PLAN, PLANNER, UNDECIDED, Cause, silences
@@ -11,11 +13,13 @@ from sequence_planner.controller.recovery.explain import ConditionContext, waits
 from sequence_planner.controller.views.station import (
     DiagnosisView,
     DroppedStepView,
+    OperationProgress,
     OperationView,
     PlanStepView,
     PlanView,
     ReplacementView,
     StepStatus,
+    WorkSpan,
 )
 from sequence_planner.controller.views.wording import diagnosis_view, reason_text
 from sequence_planner.core.clock import Timestamp
@@ -69,6 +73,7 @@ class LivePlan:
         """Its part of the view."""
         execution = self._execution
         order, plan, answer = execution.plan.order, execution.plan.order.plan, execution.plan.answer
+        self._timetable.look_through(moment.epoch)
         expected = self._timetable.expected(self._around.guards())
         steps = [
             self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING, expected) for step in order.past
@@ -162,6 +167,8 @@ class LivePlan:
         plan, follows = execution.plan, silences(self._execution.conduct.silent)
         if not execution.conduct.executes_operations:
             return
+        if self._overtaken():
+            return
         if plan.status is PlanStatus.NONE and (follows or not execution.blind):
             waiting = self._consequences.waiting(execution.active)
             yield NO_PLAN.cause(
@@ -169,6 +176,17 @@ class LivePlan:
             )
         elif plan.status is not PlanStatus.NONE and plan.answer is not None:
             yield from self._left_out(plan.answer, follows)
+
+    def _overtaken(self) -> bool:
+        """Return whether the last answer is of a moment in which nobody knew what is known by now.
+
+        At a start it comes often just after the first messages, and says nothing of what they tell: it is asked anew.
+        """
+        plan = self._execution.plan
+        if plan.status is PlanStatus.PLANNING:
+            return True
+        answer, none = plan.answer, plan.status is PlanStatus.NONE
+        return none and answer is not None and not self._execution.blind and plan.reason == why_none(answer, blind=True)
 
     def _why_none(self) -> Message:
         plan = self._execution.plan
@@ -205,7 +223,7 @@ def _why(execution: Executor) -> DiagnosisView | None:
     if diagnosis is None or diagnosis.reason is None:
         return None
     conduct = execution.conduct
-    return diagnosis_view(diagnosis, conduct.out_of(ServiceKind.RESOURCE), conduct.answers)
+    return diagnosis_view(execution.automaton, diagnosis, conduct.out_of(ServiceKind.RESOURCE), conduct.answers)
 
 
 def _contract(plan: Plan | None) -> Contract | None:
@@ -223,16 +241,42 @@ def _epoch(moment: Timestamp | None) -> float | None:
     return None if moment is None else moment.epoch
 
 
-class Operations:
-    """The operations of `execution`: which are active, since when, and how often each was completed."""
+MOST_SPANS = 40
+"""Of an operation no more times of work than this are kept: the last ones."""
 
-    def __init__(self, execution: Executor, timetable: Forecast) -> None:
+KIND = "operations"  # of the records of how far operations are: the first of a life has all, others what has changed
+
+
+def progress_from(content: Mapping[str, JsonValue]) -> dict[str, OperationProgress]:
+    """Return what such a record says; nothing where it is of a program that wrote it differently."""
+    try:
+        return {name: OperationProgress.model_validate(written) for name, written in content.items()}
+    except ValidationError:
+        return {}
+
+
+class Operations:
+    """The operations of `execution`: which are active, since when, and how often each was completed.
+
+    `tell` hears of all when the first has changed, and then of each that has; `before` came back. What was active as
+    the last life ended has been so since then when it is the same again.
+    """
+
+    def __init__(
+        self,
+        execution: Executor,
+        timetable: Forecast,
+        before: Mapping[str, OperationProgress] | None = None,
+        tell: Callable[[Mapping[str, JsonValue]], None] = lambda progress: None,
+    ) -> None:
         self._execution = execution
         self._timetable = timetable
-        self._active_since: dict[str, float] = {}
-        self._last: dict[str, tuple[float, float]] = {}  # when each began and ended the last time
+        self._tell = tell
+        self._has_told = False
         operations = execution.automaton.operations
-        self._completed: dict[str, int] = dict.fromkeys(operations, 0)
+        known = before or {}
+        self._progress = {name: _come_back(known.get(name, OperationProgress())) for name in operations}
+        self._active = frozenset[str]()
         self._conditions = {
             name: (print_expression(each.goal), print_expression(each.precondition))
             for name, each in operations.items()
@@ -240,11 +284,45 @@ class Operations:
 
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: remember what has changed."""
-        now = moment.epoch
-        for operation in outcome.completed:
-            self._completed[operation] += 1
-            self._last[operation] = self._active_since.get(operation, now), now
-        self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
+        now, changed = moment.epoch, set[str]()
+        for name in outcome.completed:
+            known = self._progress[name]
+            began = now if known.active_since is None else known.active_since
+            work = _rested(known.work, now)
+            self._progress[name] = OperationProgress(completed=known.completed + 1, began=began, ended=now, work=work)
+            changed.add(name)
+        active = self._execution.active
+        for name in self._active - active:
+            known = self._progress[name]
+            rested = {"active_since": None, "work": _rested(known.work, now)}
+            self._progress[name] = known.model_copy(update=rested)
+        for name in active:
+            if self._progress[name].active_since is None:
+                self._progress[name] = self._progress[name].model_copy(update={"active_since": now, "work": ()})
+        changed |= self._active ^ active
+        changed |= self._worked(active, now)
+        self._active = active
+        if changed:
+            all_, self._has_told = not self._has_told, True
+            self._tell(self.journalled() if all_ else _document({name: self._progress[name] for name in changed}))
+
+    def _worked(self, active: Collection[str], now: float) -> set[str]:
+        """Take note of where work began or ended, and return the operations of which it did."""
+        running = {step.number for step in self._execution.plan.order.running}
+        changed = set[str]()
+        for name in active:
+            known = self._progress[name]
+            was = bool(known.work) and known.work[-1].ended is None
+            if was == (not running.isdisjoint(self._timetable.outlook.steps_for(name))):
+                continue
+            work = _rested(known.work, now) if was else (*known.work, WorkSpan(began=now, ended=None))[-MOST_SPANS:]
+            self._progress[name] = known.model_copy(update={"work": work})
+            changed.add(name)
+        return changed
+
+    def journalled(self) -> dict[str, JsonValue]:
+        """How far all are, as a record has it."""
+        return _document(self._progress)
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""
@@ -254,17 +332,20 @@ class Operations:
         jobs, automaton = execution.conduct.jobs, execution.automaton
         sentences = sentences_of(automaton)
         asking = {name: job.id for job in jobs.under_way for name in automaton.work_masters[job.work_master].operations}
-        outlook, never = self._timetable.outlook, (None, None)
+        self._timetable.look_through(moment.epoch)
+        outlook, never, progress = self._timetable.outlook, (None, None), self._progress
         views = {
             operation.name: OperationView(
                 title=operation.title,
                 active=operation.name in active,
-                active_since=self._active_since.get(operation.name),
-                completed=self._completed[operation.name],
-                began=self._last.get(operation.name, never)[0],
-                ended=self._last.get(operation.name, never)[1],
+                active_since=progress[operation.name].active_since if operation.name in active else None,
+                completed=progress[operation.name].completed,
+                began=progress[operation.name].began,
+                ended=progress[operation.name].ended,
                 first_step=_id(outlook.serves.get(operation.name, never)[0]),
                 last_step=_id(outlook.serves.get(operation.name, never)[1]),
+                steps=[str(number) for number in sorted(outlook.steps_for(operation.name))],
+                work=list(progress[operation.name].work),
                 goal=self._conditions[operation.name][0],
                 precondition=self._conditions[operation.name][1],
                 sentence=sentences.tell_operation(
@@ -278,3 +359,20 @@ class Operations:
             for operation in automaton.operations.values()
         }
         return {"operations": views}
+
+
+def _rested(work: tuple[WorkSpan, ...], now: float) -> tuple[WorkSpan, ...]:
+    """The times of work, none of which goes on after `now`."""
+    if not work or work[-1].ended is not None:
+        return work
+    return (*work[:-1], work[-1].model_copy(update={"ended": now}))
+
+
+def _come_back(progress: OperationProgress) -> OperationProgress:
+    """The progress of an earlier life: when that ended nobody knows, and so neither how long was worked at last."""
+    known = tuple(span for span in progress.work if span.ended is not None)
+    return progress.model_copy(update={"work": known})
+
+
+def _document(progress: Mapping[str, OperationProgress]) -> dict[str, JsonValue]:
+    return {name: each.model_dump(mode="json") for name, each in progress.items()}

@@ -122,7 +122,7 @@ class OpenTasks:
             return {"tasks": {}}
         abilities = self._execution.automaton.abilities
         names = self._execution.plan.order.names if self._goes_on() else ()
-        moves = [abilities[name] for name in names if abilities[name].human is None][:_NEXT_MOVES]
+        moves = [each for each in map(abilities.__getitem__, names) if each.moves and each.human is None][:_NEXT_MOVES]
         views = {
             id_: TaskView(
                 revision=task.revision,

@@ -209,11 +209,14 @@ class Variables:
         self._feeds, self._beliefs = feeds, beliefs
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._commanded: dict[str, str] = {}
+        self.began: float | None = None
+        """The first tick: a value of then may be as old as can be."""
         self._names: NamesView | None = None
 
     def after_tick(self, outcome: TickOutcome, moment: Timestamp) -> None:
         """After a tick: remember what has changed, and who commanded it."""
         automaton, now = self._execution.automaton, moment.epoch
+        self.began = now if self.began is None else self.began
         changed = set()
         for name in automaton.variables:
             value = self._execution.state[name]
@@ -242,6 +245,10 @@ class Variables:
         """Return when a variable was first seen with the value that it has; None before the first tick."""
         seen = self._since.get(name)
         return None if seen is None else seen[1]
+
+    def commanded_by(self, name: str) -> str | None:
+        """Return the ability that has written the value of an output; None where none has."""
+        return self._commanded.get(name)
 
     def view_part(self, moment: Timestamp) -> dict[str, object]:
         """Its part of the view."""

@@ -16,6 +16,7 @@ from sequence_planner.pipelines.runtime import RunningPipelines
 from sequence_planner.ros.transport import Sample
 from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.ros.types.messages import MessageRegistry
+from sequence_planner.texts.message import message
 
 # What devices say that makes no sense: reported once for each cause, with how often and when.
 #
@@ -191,10 +192,10 @@ class Inputs:
         """The time when `wake` next makes a difference if nothing comes before."""
         return self.running.due
 
-    def abandon(self, topic: str, why: str = "its publishers have gone") -> None:
-        """Disregard what the topic said: the last publisher has gone, or a promise has been broken."""
+    def abandon(self, topic: str, why: str | None = None) -> None:
+        """Disregard what the topic said: the last publisher has gone, or a promise has been broken as `why` says."""
         self.topics[topic].abandoned = True
-        self.topics[topic].why = why
+        self.topics[topic].why = message("silent.gone") if why is None else why
 
     def measured(self, now: float) -> dict[str, Value | None]:
         """The values of all measured variables that topics feed; unknown are those of which a topic is not fresh."""

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from sequence_planner.controller.commands.approvals import ApprovedCommand, ForceVariable
 from sequence_planner.controller.commands.bus import Handler
 from sequence_planner.controller.features.approvals import Approvals
+from sequence_planner.controller.features.commissioning import Breakpoints, Forces
 from sequence_planner.controller.features.control_lock import ControlLock
-from sequence_planner.controller.features.forces import Forces
 from sequence_planner.controller.planner_client import AdvisorClient
 from sequence_planner.controller.recovery.consistency import ConsistencyMonitor
 from sequence_planner.controller.recovery.corrections import Corrections
@@ -29,16 +29,17 @@ def build_recovery(
     still: StallDetector,
     in_control: ControlLock,
     feeds: Mapping[str, str],
+    timed: frozenset[str],
     since: Callable[[str], float | None],
     guards: Callable[[], Mapping[str, SupervisorGuard]],
     real_devices: Callable[[], Sequence[str]],
     perform: Handler,
-) -> tuple[ConditionContext, Forces, Approvals, tuple[object, ...]]:
+) -> tuple[ConditionContext, Forces, Breakpoints, Approvals, tuple[object, ...]]:
     """Build what explanations draw on, the features that build.py names, and all others.
 
     `perform` carries out what two people have agreed on.
     """
-    around = ConditionContext(feeds, since, beliefs, guards)
+    around = ConditionContext(feeds, since, beliefs, guards, timed)
     forces = Forces(execution)
 
     def require_feasible(command: ApprovedCommand) -> None:
@@ -51,4 +52,4 @@ def build_recovery(
     corrections = Corrections(execution, advisor.answer, beliefs, consistency, approvals.require_one)
     offers = Offers(execution, advisor, corrections.correct, consistency.impossible, still)
     others = (corrections, offers, Trials(execution, around, real_devices), WhyNot(execution, around, advisor))
-    return around, forces, approvals, others
+    return around, forces, Breakpoints(execution), approvals, others

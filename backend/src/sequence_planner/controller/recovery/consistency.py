@@ -312,14 +312,15 @@ def _reaction(automaton: Automaton, effect: Effect, state: State) -> Message | N
             changes[target(action)] = value if applies else None
     if not changes:
         return None
+    sentences = sentences_of(automaton)
+    resource = sentences.call_part(effect.resource, automaton.resources.get(effect.resource, effect.resource))
     if guard is None:
         unknown = sorted(n for n in read_variables(automaton, (effect.guard,)) if state[n] is None)
-        return message("reacts.may", resource=effect.resource, variables=" and ".join(unknown))
+        return message("reacts.may", resource=resource, variables=" and ".join(unknown))
     said = [
-        message("reacts.changes", variable=n) if v is None else sentences_of(automaton).tell_value(n, v)
-        for n, v in changes.items()
+        message("reacts.changes", variable=n) if v is None else sentences.tell_value(n, v) for n, v in changes.items()
     ]
-    return message("reacts.does", resource=effect.resource, changes=said)
+    return message("reacts.does", resource=resource, changes=said)
 
 
 # What a person should look at: beliefs that do not fit what is measured, and outputs that nobody has decided on.
@@ -391,7 +392,8 @@ class ConsistencyMonitor:
                 about=frozenset(each.variable for each in self.questions),
             )
         if undecided := self.told(self._untold()):
-            yield UNDECIDED_OUTPUTS.cause("", {"outputs": ", ".join(sorted(undecided))})
+            call = sentences_of(self._execution.automaton).call_variable
+            yield UNDECIDED_OUTPUTS.cause("", {"outputs": [call(name) for name in sorted(undecided)]})
 
     def told(self, untold: Collection[str]) -> list[str]:
         """Those for which somebody is called, while the silence of resources in `untold` is too young to be told."""

@@ -9,7 +9,7 @@ from itertools import product
 from math import inf, prod
 from typing import Protocol
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Kind, State, target
+from sequence_planner.automaton.automaton import Ability, Automaton, Kind, Operation, State, target
 from sequence_planner.automaton.dependencies import read_variables
 from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.lifting.wording import expansion, phrase, untrue, wording_of
@@ -33,7 +33,7 @@ from sequence_planner.language.syntax import (
 from sequence_planner.language.types import Value
 from sequence_planner.planning.recovery.proposals import all_equal
 from sequence_planner.synthesis.guards import SupervisorGuard
-from sequence_planner.texts.message import Item, Message, Sentence, as_it_was, message, waits_in_one
+from sequence_planner.texts.message import Item, Message, Sentence, as_it_was, message, quoted, waits_in_one
 
 # All that keeps an ability from starting now, each piece with what it takes to be over.
 
@@ -139,6 +139,26 @@ def goal_holds(execution: Executor, goal: Expression) -> BlockingCondition:
     said = sentences_of(execution.automaton).tell_so([undone], words.in_words(undone))
     text = message("blocked.goal-holds", condition=said)
     return BlockingCondition(HindranceKind.WRITTEN, text, undone, expansion(words.told_parts(undone), execution.state))
+
+
+def out_of_turn(execution: Executor, operation: Operation) -> Iterator[BlockingCondition]:
+    """Yield the sequences in which it is not an operation's turn."""
+    operations, state = execution.automaton.operations, execution.state
+    for name, turn in operation.turns.items():
+        undone = untrue(turn.condition, state)
+        if not undone:
+            continue
+        before = [each for each in turn.after if evaluate(operations[each].goal, state) is not True]
+        kind, others = ("behind", before) if before else ("beside", turn.beside)
+        titles = quoted(dict.fromkeys(operations[each].title for each in others))
+        text = message(f"waits.sequence-{kind}", sequence=name, operations=titles)
+        condition = conjunction(*undone)
+        yield BlockingCondition(HindranceKind.WRITTEN, text, condition, in_words(execution, condition))
+
+
+def in_words(execution: Executor, condition: Expression) -> str:
+    """A condition as the model says it."""
+    return wording_of(execution.automaton).in_words(condition)
 
 
 def awaited(execution: Executor, part: Expression, feeds: Mapping[str, str]) -> list[str]:
@@ -342,14 +362,15 @@ class TellsBelief(Protocol):
 
 @dataclass(frozen=True)
 class ConditionContext:
-    """Facts beside the execution: topics by measured variable, since when a variable has its value, beliefs, and guards
-    the supervisor has added, by ability.
+    """Facts beside the execution: topics by measured variable, since when a variable has its value, beliefs, guards the
+    supervisor has added, by ability, and the variables that time alone can change.
     """
 
     feeds: Mapping[str, str]
     since: Callable[[str], float | None]
     beliefs: TellsBelief
     guards: Callable[[], Mapping[str, SupervisorGuard]]
+    timed: frozenset[str] = frozenset()
 
 
 class Involving:
@@ -382,6 +403,17 @@ class Involving:
                     told.add(name)
                     yield self._involved(name, part, decisive)
 
+    def among(self, condition: Expression) -> list[InvolvedView]:
+        """The variables that alone keep a condition from holding; where unknown ones leave it open, these."""
+        decisive = responsible(self._execution.automaton, condition, self._execution.state)
+        return [self._involved(name, condition, decisive) for name in decisive]
+
+    def writers(self, name: str) -> list[ChangerView]:
+        """The abilities that can give a variable another value than it has."""
+        value = self._execution.state[name]
+        domain = self._execution.automaton.variables[name].type.domain
+        return self._abilities(name, tuple(each for each in domain if each != value))
+
     def _involved(self, name: str, condition: Expression, decisive: Sequence[str]) -> InvolvedView:
         automaton, state = self._execution.automaton, self._execution.state
         variable = automaton.variables[name]
@@ -396,7 +428,10 @@ class Involving:
             since=self._around.since(name),
             topic=self._around.feeds.get(name),
             unconfirmed_since=None if belief is None else belief.unconfirmed_since,
-            changers=[*self._abilities(name, helping), *self._people(name)],
+            changers=[
+                *([] if self._acknowledged(name) else self._abilities(name, helping)),
+                *self._others(name, helping),
+            ],
         )
 
     def _abilities(self, name: str, values: tuple[Value, ...]) -> list[ChangerView]:
@@ -410,8 +445,8 @@ class Involving:
         ]
         return sorted(found, key=lambda changer: not changer.running)[:MOST_CHANGERS]
 
-    def _people(self, name: str) -> list[ChangerView]:
-        """Return what a person could do about it."""
+    def _others(self, name: str, values: tuple[Value, ...]) -> list[ChangerView]:
+        """Return what a person could do about it, and whether time can."""
         automaton = self._execution.automaton
         variable = automaton.variables[name]
         resource = variable.resource or ""
@@ -424,10 +459,34 @@ class Involving:
             case Kind.MEASURED if self._execution.state[name] is None:
                 topic = self._around.feeds.get(name, name)
                 return [_by_person("message", topic, message("changes.message", topic=topic))]
+            case Kind.MEASURED if asked := self._acknowledged(name):
+                return self._tasks(resource, title, asked) if True in values else []
             case Kind.MEASURED:
-                return [_by_person("device", resource, message("changes.device", title=title))]
+                clock = [_by_person("clock", name, message("changes.clock"))] if name in self._around.timed else []
+                return [*clock, _by_person("device", resource, message("changes.device", title=title))]
             case Kind.ACTIVITY:
                 return []
+
+    def _acknowledged(self, name: str) -> list[Ability]:
+        """The abilities of which a variable is the acknowledgement."""
+        abilities = self._execution.automaton.abilities.values()
+        return [each for each in abilities if each.human is not None and each.human.acknowledgement == name]
+
+    def _tasks(self, resource: str, title: str, asked: Sequence[Ability]) -> list[ChangerView]:
+        """The task that somebody has now; without one, any of those there are for them."""
+        running = self._execution.running()
+        now = [
+            ChangerView(
+                how="task",
+                name=each.name,
+                title=(said := message("changes.task", task=each.human.text, title=title)),
+                title_message=said,
+                running=True,
+            )
+            for each in asked
+            if each.human is not None and each.name in running
+        ]
+        return now or [_by_person("task", resource, message("changes.tasks", title=title))]
 
 
 def _by_person(how: str, name: str, title: Message) -> ChangerView:

@@ -124,7 +124,9 @@ class Offers:
             revision=revision,
             offers=[offer for offer in kept if not offer.only_if_checked],
             if_checked=[offer for offer in kept if offer.only_if_checked],
-            reasons=None if advice.reasons is None else diagnosis_view(advice.reasons, self._unused, request.fixed),
+            reasons=None
+            if advice.reasons is None
+            else diagnosis_view(self._execution.automaton, advice.reasons, self._unused, request.fixed),
             complete=advice.complete,
             seconds=advice.seconds,
         )
@@ -164,7 +166,7 @@ class Offers:
         )
         aimed = await aim(self._advisor, request)
         if aimed.offer is None:
-            raise _no_plan(aimed, self._unused)
+            raise _no_plan(self._execution, aimed, self._unused)
         (view,) = self._keep((aimed.offer,), revision)
         return view
 
@@ -259,9 +261,13 @@ def violated_goals(execution: Executor) -> Goals:
     return execution.pursued.select(execution.active & execution.pursued.goals.keys() - execution.pursued.hopeful)
 
 
-def _no_plan(aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
+def _no_plan(execution: Executor, aimed: GoalPlan, out_of_service: Collection[str]) -> CommandRefused:
     """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
-    members = () if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).member_messages
+    members = (
+        ()
+        if aimed.why_not is None
+        else diagnosis_view(execution.automaton, aimed.why_not, out_of_service).member_messages
+    )
     if because := [member for member in members if member != message("member.goal", name=GOAL)]:
         return CommandRefused("no-plan", message("refused.no-plan.because", because=joined(because)))
     return CommandRefused("no-plan", message("refused.no-plan.proven" if aimed.proven else "refused.no-plan.not-found"))

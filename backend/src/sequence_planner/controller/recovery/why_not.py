@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.automaton import Operation
-from sequence_planner.automaton.lifting.wording import untrue, wording_of
 from sequence_planner.controller.commands.command import CommandRefused, answers
 from sequence_planner.controller.commands.queries import AskAbilityBlockers, AskGoalBlockers, AskOperationBlockers
 from sequence_planner.controller.planner_client import AIMED_WITHIN, AdvisorClient, aim
@@ -18,21 +17,24 @@ from sequence_planner.controller.recovery.explain import (
     HindranceKind,
     Involving,
     goal_holds,
+    in_words,
     lacking,
     of_ability,
     of_station,
+    out_of_turn,
     right_moment,
 )
-from sequence_planner.controller.views.details import WhyNotView
+from sequence_planner.controller.tracing.reasons import Reasons
+from sequence_planner.controller.views.details import ReasonTreeView, WhyNotView
 from sequence_planner.controller.views.jobs import why_idle
 from sequence_planner.controller.views.wording import diagnosis_view, plan_preview, read_predicate, title_text
 from sequence_planner.core.immutable import replace
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, ServiceKind
 from sequence_planner.language.evaluator import evaluate
-from sequence_planner.language.syntax import Expression, conjunction
+from sequence_planner.language.syntax import Expression
 from sequence_planner.planning.recovery.request import GoalPlanRequest
-from sequence_planner.texts.message import Message, all_titles, message, quoted
+from sequence_planner.texts.message import Message, all_titles, message
 
 
 class WhyNot:
@@ -43,6 +45,7 @@ class WhyNot:
         self._around = surroundings
         self._advisor = advisor
         self._involving = Involving(execution, surroundings)
+        self._reasons = Reasons(execution, self._involving)
 
     @answers(AskAbilityBlockers)
     def ability(self, query: AskAbilityBlockers) -> WhyNotView:
@@ -52,7 +55,8 @@ class WhyNot:
         if ability is None:
             raise _unknown("ability", name)
         if name in execution.running():
-            return self._view("ability", name, ability.title, message("blocked.runs"), [])
+            trees = self._reasons.of_ability(ability, None)
+            return self._view("ability", name, ability.title, message("blocked.runs"), [], trees)
         guard = self._around.guards().get(name)
         found = [*of_station(execution), *of_ability(execution, ability, self._around.feeds, guard)]
         if not found:
@@ -63,7 +67,7 @@ class WhyNot:
             summary = message("blocked.not-planned")
         else:
             summary = _summary(found)
-        return self._view("ability", name, ability.title, summary, found)
+        return self._view("ability", name, ability.title, summary, found, self._reasons.of_ability(ability, guard))
 
     def _unplanned(self, name: str) -> Iterable[BlockingCondition]:
         """Return why an ability that may start does not."""
@@ -86,26 +90,27 @@ class WhyNot:
         operation = execution.automaton.operations.get(name)
         if operation is None:
             raise _unknown("operation", name)
+        trees = self._reasons.of_operation(operation)
         if name in execution.active:
             unreached = self._lacking(operation.goal)
-            view = self._view("operation", name, operation.title, self._progress(operation), unreached)
+            view = self._view("operation", name, operation.title, self._progress(operation), unreached, trees)
             diagnosis = execution.plan.diagnosis
             if diagnosis is None:
                 return view
-            reasons = diagnosis_view(diagnosis, self._unused, execution.conduct.answers)
+            reasons = diagnosis_view(execution.automaton, diagnosis, self._unused, execution.conduct.answers)
             return view.model_copy(update={"reasons": reasons})
         found = list(self._inactive(operation))
         undone = {each.expression for each in found}
         written = operation.precondition if operation.written is None else operation.written
         found += [each for each in self._lacking(written) if each.expression not in undone]
-        found += self._out_of_turn(operation)
+        found += out_of_turn(execution, operation)
         if evaluate(operation.goal, execution.state) is True:
             summary = message("blocked.done")
         elif found:
             summary = message("blocked.inactive", why=_summary(found))
         else:
             summary = message("blocked.next-tick")
-        return self._view("operation", name, operation.title, summary, found)
+        return self._view("operation", name, operation.title, summary, found, trees)
 
     def _inactive(self, operation: Operation) -> Iterable[BlockingCondition]:
         """Return why it is not active, beside its precondition."""
@@ -118,22 +123,6 @@ class WhyNot:
             yield BlockingCondition(HindranceKind.SERVICE, message("waits.reset"))
         if evaluate(operation.goal, execution.state) is True:
             yield goal_holds(execution, operation.goal)
-
-    def _out_of_turn(self, operation: Operation) -> Iterable[BlockingCondition]:
-        """Yield the sequences in which it is not its turn."""
-        execution = self._execution
-        for name, turn in operation.turns.items():
-            undone = untrue(turn.condition, execution.state)
-            if not undone:
-                continue
-            operations, state = execution.automaton.operations, execution.state
-            before = [each for each in turn.after if evaluate(operations[each].goal, state) is not True]
-            kind, others = ("behind", before) if before else ("beside", turn.beside)
-            titles = quoted(dict.fromkeys(operations[each].title for each in others))
-            text = message(f"waits.sequence-{kind}", sequence=name, operations=titles)
-            condition = conjunction(*undone)
-            said = wording_of(execution.automaton).in_words(condition)
-            yield BlockingCondition(HindranceKind.WRITTEN, text, condition, said)
 
     def _progress(self, operation: Operation) -> Message:
         """Say how far an active operation is."""
@@ -161,10 +150,10 @@ class WhyNot:
         """Return what is in the way of a predicate. Raises `CommandRefused` for one that cannot be read."""
         execution, text = self._execution, query.predicate
         goal = read_predicate(execution.automaton, text)
-        blocking, title = list(self._lacking(goal)), wording_of(execution.automaton).in_words(goal)
+        blocking, title = list(self._lacking(goal)), in_words(execution, goal)
         if not blocking:
-            return self._view("goal", text, title, message("blocked.holds"), [])
-        view = self._view("goal", text, title, _summary(blocking), blocking)
+            return self._view("goal", text, title, message("blocked.holds"), [], self._reasons.of_predicate(goal))
+        view = self._view("goal", text, title, _summary(blocking), blocking, self._reasons.of_predicate(goal))
         request = GoalPlanRequest(
             state=execution.state,
             goals=(),
@@ -181,7 +170,11 @@ class WhyNot:
             return _more(view, message("blocked.reached", starts=len(plan.steps)), plan=plan)
         if aimed.proven:
             answers = execution.conduct.answers
-            found = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
+            found = (
+                None
+                if aimed.why_not is None
+                else diagnosis_view(execution.automaton, aimed.why_not, self._unused, answers)
+            )
             return _more(view, message("blocked.proven"), reasons=found)
         return _more(view, message("blocked.not-found"))
 
@@ -196,6 +189,7 @@ class WhyNot:
         title: str,
         summary: Message,
         found: Iterable[BlockingCondition],
+        trees: Iterable[ReasonTreeView],
     ) -> WhyNotView:
         return WhyNotView(
             of=of,
@@ -205,6 +199,7 @@ class WhyNot:
             summary=summary,
             summary_message=summary,
             conditions=[self._involving.condition(each) for each in found],
+            trees=list(trees),
             plan=None,
             reasons=None,
         )

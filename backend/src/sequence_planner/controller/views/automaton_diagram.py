@@ -1,17 +1,19 @@
-"""Draws the automaton of an ability: how it is written, and what of that holds in a state."""
+"""Draws automata of abilities, and operations: how they are written, and what of that holds in a state."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from sequence_planner.automaton.automaton import Ability, Automaton, Effect, State, WorkMaster, target
+from sequence_planner.automaton.automaton import Ability, Automaton, Effect, Operation, State, WorkMaster, target
 from sequence_planner.automaton.dependencies import reactions, read_variables
+from sequence_planner.automaton.lifting.sentences import sentences_of
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import start, writes
 from sequence_planner.controller.views.details import (
     AbilityActionView,
     AutomatonView,
     ConjunctView,
+    OperationDefinitionView,
     PredicateView,
     ReactionView,
     ReadValueView,
@@ -28,6 +30,7 @@ from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.language.syntax import Assignment, Constant, Expression, conjuncts, variables
 from sequence_planner.synthesis.guards import SupervisorGuard
+from sequence_planner.texts.message import message
 
 
 class Drawing:
@@ -73,6 +76,22 @@ class Drawing:
             reactions=[self._reaction(effect) for effect in reactions(self._automaton, name)],
         )
 
+    def of_operation(self, operation: Operation, revision: int) -> OperationDefinitionView:
+        """A ground operation, in a state that has this number."""
+        written = operation.precondition if operation.written is None else operation.written
+        place = self._place(f"operation.{operation.name}")
+        return OperationDefinitionView(
+            name=operation.name,
+            title=operation.title,
+            revision=revision,
+            precondition=self._predicate(written, place),
+            turns={
+                name: self._predicate(turn.condition, self._place(f"operation.{name}"))
+                for name, turn in operation.turns.items()
+            },
+            goal=self._predicate(operation.goal, place),
+        )
+
     def _written(self, ability: Ability, part: str, predicate: Expression) -> PredicateView:
         return self._predicate(predicate, self._place(f"{ability.name}.{part}"))
 
@@ -83,7 +102,8 @@ class Drawing:
             holds=_truth(evaluate(predicate, state)),
             parts=[
                 ConjunctView(
-                    text=print_expression(part),
+                    text=(written := print_expression(part)),
+                    sentence=message("sentence.so", condition=sentences_of(self._automaton).tell_so((part,), written)),
                     holds=_truth(evaluate(part, state)),
                     reads=[self._read(name) for name in dict.fromkeys(variables(part))],
                 )

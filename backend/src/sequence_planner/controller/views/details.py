@@ -111,6 +111,7 @@ class ConjunctView(View):
     """A part of a conjunction. Whether it `holds` is null as long as unknown values leave it open."""
 
     text: str
+    sentence: Message
     holds: bool | None
     reads: list[ReadValueView]
 
@@ -239,6 +240,19 @@ class AbilityDefinitionView(AutomatonView):
     trial: TrialView | None
 
 
+class OperationDefinitionView(View):
+    """An operation of the live station in the state of `revision`: `turns` are the sequences in which it waits for its
+    turn, by name. All parts of `precondition`, which is as it is written, and of these must hold before it is active.
+    """
+
+    name: str
+    title: str
+    revision: int
+    precondition: PredicateView
+    turns: dict[str, PredicateView]
+    goal: PredicateView
+
+
 # What is on the ROS network, as one document: nodes, topics, services, actions, and how the station stands to them.
 
 
@@ -339,7 +353,9 @@ class ChangerView(View):
     """Who could change a variable: an ability, which may be running, or a person.
 
     `how` is `start`, `finish` or `effect` of an ability; `correction` of an estimate, `device` where something has to
-    be done at the resource `name`, `message` where its topic `name` has to speak, and `force` of an output.
+    be done at the resource `name`, `message` where its topic `name` has to speak, `force` of an output, `task` where
+    somebody acknowledges a task, of the ability `name` or else of any of the resource `name`, and `clock` where its
+    pipeline goes by time.
     """
 
     how: str
@@ -383,8 +399,48 @@ class ConditionView(View):
     sentence: Message | None  # what it waits for, as a sentence
 
 
+class ReasonView(View):
+    """A part of a condition, as it is now; `holds` is null as long as unknown values leave it open.
+
+    `kind` says how that follows from its `parts`: all of them hold (`all`), one does (`any`), the only one does not
+    (`not`), the second does if the first does (`implies`), or the only one is what it is a name for (`same`): a flag of
+    an ability, or a `predicate` of the model. A `leaf` has none, and `reads` variables.
+
+    It `decides` if the whole is as it is because of it: that stays so whatever all other leaves were. `wanted` is what
+    it would have to be for the whole to be as it has to; `involved` are the variables that alone keep a leaf that
+    decides from that.
+    """
+
+    kind: Literal["all", "any", "not", "implies", "same", "leaf"]
+    text: str
+    sentence: Message
+    predicate: str | None
+    holds: bool | None
+    decides: bool
+    wanted: bool
+    reads: list[ReadValueView]
+    involved: list[InvolvedView]
+    parts: list[ReasonView]
+
+
+class ReasonTreeView(View):
+    """A condition in whole, with what of it holds and what does not.
+
+    `about` says of what: `enabled` and `start` of an ability, `supervisor` for what synthesis has added for the sake of
+    the `specifications`, or with `rest` because of states of rest; `finish` of one that runs; `precondition` of an
+    operation, `turn` in a `sequence`, `goal`; `undone` for a goal that must not hold first; `predicate`.
+    """
+
+    about: Literal["enabled", "start", "supervisor", "finish", "precondition", "turn", "goal", "undone", "predicate"]
+    specifications: list[SpecificationView]
+    rest: bool
+    sequence: str | None
+    tree: ReasonView
+
+
 class WhyNotView(View):
-    """All `conditions` have to be otherwise; without any, nothing is in the way.
+    """All `conditions` have to be otherwise; without any, nothing is in the way. `trees` have those of the model in
+    whole, and those that end what runs.
 
     For a goal, `plan` is how the station could reach it from here, or `reasons` say why it cannot at all; both are null
     where nothing was found in time. For an operation that has no plan, `reasons` are those of the plan.
@@ -397,6 +453,7 @@ class WhyNotView(View):
     summary: str
     summary_message: Message
     conditions: list[ConditionView]
+    trees: list[ReasonTreeView]
     plan: PlanPreviewView | None
     reasons: DiagnosisView | None
 

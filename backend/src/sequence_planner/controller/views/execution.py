@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.controller.views.station import (
     AlarmView,
+    CycleStopView,
     ForceView,
     LastOperatorPlanView,
     OperatorPlanView,
@@ -16,7 +17,7 @@ from sequence_planner.controller.views.station import (
 )
 from sequence_planner.controller.views.wording import end_message, end_text, ended_text, title_text
 from sequence_planner.execution.executor import Executor
-from sequence_planner.execution.state import ExecutionState
+from sequence_planner.execution.state import CycleStop, ExecutionState
 from sequence_planner.execution.vocabulary import Mode, PlanStatus, Production, ServiceKind
 from sequence_planner.texts.message import as_it_was
 
@@ -124,6 +125,13 @@ def force_views(conduct: ExecutionState) -> dict[str, ForceView]:
         name: ForceView(value=force.value, real=force.real, until=force.until.epoch, by=force.by, why=force.why)
         for name, force in conduct.forces.items()
     }
+
+
+def cycle_stop_view(stop: CycleStop | None) -> CycleStopView | None:
+    """Return who wished the station to pause when the product is done, and since when."""
+    if stop is None:
+        return None
+    return CycleStopView(by=stop.by, since=stop.asked.epoch, why=stop.why, reached=stop.reached)
 
 
 def service_views(automaton: Automaton, conduct: ExecutionState) -> list[ServiceView]:

@@ -81,6 +81,8 @@ def preparing_view(
         silent=[],
         failing=[],
         stepping=False,
+        cycle_stop=None,
+        breakpoints={},
         production=Production.PREPARING,
         unconfirmed=False,
         undecided={},

@@ -35,6 +35,7 @@ class PreviewStepView(View):
     resource: str
     human: bool
     restart: bool
+    moves: bool  # something moves by it, as the model says
 
 
 class PlanPreviewView(View):

@@ -224,6 +224,39 @@ class ServiceView(View):
     why_message: Message | None  # of what the station says itself
 
 
+class CycleStopView(View):
+    """A wish that the station pauses when the product that is in work is done: whose, since when, and why.
+
+    Once it is `reached` the station is paused because of it, until the mode changes.
+    """
+
+    by: str
+    since: float
+    why: str
+    reached: bool
+
+
+class BreakpointView(View):
+    """A condition for which the station pauses as soon as it becomes true, whose it is and since when.
+
+    `hits` counts how often it did, `last` is when; the station is `stopped` there.
+    """
+
+    condition: str
+    sentence: Message
+    by: str
+    since: float
+    hits: int
+    last: float | None
+    stopped: bool
+
+
+class MadeBreakpointView(BreakpointView):
+    """One that was set just now, with its `id`: its name in `breakpoints`."""
+
+    id: str
+
+
 class OperatorPlanView(View):
     """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
 
@@ -445,10 +478,11 @@ class StepStatus(StrEnum):
 
 
 class StationIdentity(View):
-    """What is running."""
+    """What is running; `titles` has the title by language, `""` where the model has one for all."""
 
     name: str
     title: str
+    titles: dict[str, str]
     description: str
     transport: str
     emulated: bool
@@ -515,10 +549,31 @@ class AbilityView(View):
     title: str
     human: bool
     restart: bool
+    moves: bool  # something moves by it, as the model says
     enabled: bool | None
     executing: bool | None
     finished: bool | None
     running_since: float | None
+
+
+class WorkSpan(View):
+    """A time in which a step that serves an operation ran; it has not `ended` while one does."""
+
+    began: float
+    ended: float | None
+
+
+class OperationProgress(View):
+    """How far an operation is: active since then, how often it was completed, and when it began and ended last.
+
+    The times of `work` lie in what it is active since, or in what it was active for last.
+    """
+
+    active_since: float | None = None
+    completed: int = 0
+    began: float | None = None
+    ended: float | None = None
+    work: tuple[WorkSpan, ...] = ()
 
 
 class OperationView(View):
@@ -527,7 +582,8 @@ class OperationView(View):
     With `for_jobs` a work master has it: while the station works by order it is active only for a job under way. `job`
     is the one that has it, whether it is its turn or not. It `began` and `ended` the last time it was completed, null
     where that was never. What the plan does for it goes from the step `first_step` to `last_step`, which reaches its
-    goal.
+    goal; of those between them `steps` serve it. The times of `work` are when these ran since it is active, or while it
+    was for the last time; between them it waits.
     """
 
     title: str
@@ -538,6 +594,8 @@ class OperationView(View):
     ended: float | None
     first_step: str | None
     last_step: str | None
+    steps: list[str]
+    work: list[WorkSpan]
     goal: str
     precondition: str
     sentence: Message | None  # what it waits for, or until when it is active: what of that is still missing
@@ -705,6 +763,8 @@ class StationView(View):
     silent: list[str]  # titles of the resources in service that are not heard
     failing: list[str]  # titles of those that are, and do not do what they should
     stepping: bool  # every start waits for a person's step
+    breakpoints: dict[str, BreakpointView]  # by their numbers, in the order in which they were set
+    cycle_stop: CycleStopView | None  # null where nobody wishes a pause when the product is done
     production: Production
     unconfirmed: bool  # whether there are estimates of which nobody has seen whether they are still true
     undecided: dict[str, UndecidedOutputView]  # outputs on which a person must decide before production is started

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Final
 
 from sequence_planner.automaton.automaton import Automaton
 from sequence_planner.automaton.dependencies import is_along
@@ -18,11 +19,17 @@ from sequence_planner.controller.views.proposals import (
 from sequence_planner.controller.views.station import DiagnosisView, SpecificationView
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode, Production
-from sequence_planner.language.parser import parse
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.resolver import NameScope, resolve_predicate, suggestion
 from sequence_planner.language.syntax import TRUE, Expression, ExpressionError
-from sequence_planner.planning.diagnosis import Diagnosis, correction_text, member_text
+from sequence_planner.planning.diagnosis import (
+    Diagnosis,
+    Member,
+    MemberKind,
+    WrittenNames,
+    correction_text,
+    member_text,
+)
 from sequence_planner.planning.problem import Plan
 from sequence_planner.planning.recovery.proposals import (
     OfferKind,
@@ -30,7 +37,7 @@ from sequence_planner.planning.recovery.proposals import (
     ValueChange,
     estimated_times,
 )
-from sequence_planner.texts.message import Argument, Message, Sentence, as_it_was, message
+from sequence_planner.texts.message import Argument, Item, Message, Sentence, as_it_was, message
 
 # Offers in the words of the people they are shown to.
 
@@ -207,20 +214,63 @@ def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
     )
 
 
+class _SpokenNames(WrittenNames):
+    """What people call the parts of `automaton`; programs have them as they are written."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self._automaton = automaton
+        self._said = sentences_of(automaton)
+
+    def variable(self, name: str) -> Item:
+        return self._said.call_variable(name)
+
+    def so(self, name: str, value: bool | int | str, written: str) -> Item:
+        return self._said.tell_values([(name, value)], written)
+
+    def call_member(self, kind: MemberKind, name: str) -> Item:
+        title = self._title(kind, name)
+        return name if title is None else self._said.call_part(name, title)
+
+    def _title(self, kind: MemberKind, name: str) -> str | None:
+        automaton = self._automaton
+        match kind:
+            case MemberKind.OFFLINE:
+                return automaton.resources.get(name)
+            case MemberKind.BARRED:
+                return automaton.abilities[name].title if name in automaton.abilities else None
+            case MemberKind.LOCAL | MemberKind.GOAL:
+                return automaton.operations[name].title if name in automaton.operations else None
+            case MemberKind.SPECIFICATION:
+                return automaton.specifications[name].title if name in automaton.specifications else None
+            case MemberKind.VALUE | MemberKind.AVOID:
+                return None
+
+
+# What is to be seen to comes first, then what is not known because of it, and last what the model says.
+_ORDER: Final = (MemberKind.OFFLINE, MemberKind.BARRED, MemberKind.GOAL, MemberKind.LOCAL, MemberKind.VALUE)
+
+
+def _first_told(member: Member) -> tuple[int, bool]:
+    order = _ORDER.index(member.part) if member.part in _ORDER else len(_ORDER)
+    return order, member.value is not None
+
+
 def diagnosis_view(
-    diagnosis: Diagnosis, out_of_service: Collection[str], answers: Collection[str] = ()
+    automaton: Automaton, diagnosis: Diagnosis, out_of_service: Collection[str], answers: Collection[str] = ()
 ) -> DiagnosisView:
     """Return why something cannot be done, and what would help; resources that do nothing can be `out_of_service`.
 
     Nothing is said otherwise of estimates for which somebody has given `answers`, and what can be done comes first.
     """
+    names = _SpokenNames(automaton)
     reason, helpful = diagnosis.reason, list[tuple[bool, Message]]()
     for correction in diagnosis.corrections:
         said = [change.name for change in correction.changes if change.value is not None]
         if not any(name in answers for name in said):
-            text = correction_text(correction, out_of_service)
+            text = correction_text(correction, out_of_service, names)
             helpful.append((bool(said), message("correction.checked", correction=text) if said else text))
-    members = [] if reason is None else [member_text(member, out_of_service) for member in reason.members]
+    found = () if reason is None else sorted(reason.members, key=_first_told)
+    members = [member_text(member, out_of_service, names) for member in found]
     corrections = [text for _, text in sorted(helpful, key=lambda each: each[0])]
     return DiagnosisView(
         members=[*members],
@@ -242,6 +292,7 @@ def _step(automaton: Automaton, tick: int, name: str, times: tuple[float, float]
         resource=ability.resource,
         human=ability.human is not None,
         restart=ability.restart,
+        moves=ability.moves,
     )
 
 
@@ -302,7 +353,7 @@ def plan_running(title: str) -> CommandRefused:
 def read_predicate(automaton: Automaton, text: str) -> Expression:
     """Return what `text` means, with all names in full. Raises `CommandRefused`, which names the place."""
     try:
-        return resolve_predicate(parse(text), NameScope(automaton.types, vocabulary=automaton.vocabulary))
+        return automaton.read_condition(text)
     except ExpressionError as error:
         start, end = error.span
         place = TextPlace(start=start, end=end, message=error.message)

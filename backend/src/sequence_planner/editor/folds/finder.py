@@ -21,7 +21,7 @@ from sequence_planner.editor.symbols.texts import ModelContent
 from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.content import plain
 from sequence_planner.station import Before, MeantStation, read_station
 
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*", re.MULTILINE)

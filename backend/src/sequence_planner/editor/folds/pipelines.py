@@ -15,7 +15,7 @@ from sequence_planner.language.records.field_paths import domain
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Stage
 from sequence_planner.model.stages.map import MapStage, TableStage
-from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.content import plain
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.pipelines.builder import build_what_is_sound
 from sequence_planner.station import MeantStation

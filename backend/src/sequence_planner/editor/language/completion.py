@@ -15,9 +15,10 @@ from sequence_planner.editor.language.quantifiers import QuantifierPart, Quantif
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.scope import Lexicon, VisibleNames, abilities
 from sequence_planner.language.lexer import INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS, Token, tokens
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import can_go_on, parse
 from sequence_planner.language.printer import print_value
-from sequence_planner.language.resolver import NameScope, type_of
+from sequence_planner.language.resolver import expression_type
 from sequence_planner.language.syntax import Component, ExpressionError, Name, Span
 from sequence_planner.language.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
@@ -299,7 +300,7 @@ class TextBefore:
             return None
         written = self.text[self.tokens[begin].start : self.tokens[at - 1].end]
         try:
-            return type_of(parse(written), self.scope)
+            return expression_type(parse(written), self.scope)
         except ExpressionError:
             return None
 
@@ -361,9 +362,9 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
     match field.kind:
         case FieldKind.TYPE:
             yield option(str(BOOLEAN), NameKind.ENUMERATION, "false, true")
-            yield from _enumerations(lexicon, lexicon.declarations.enumerations)
+            yield from _enumerations(lexicon, lexicon.declarations.enumerations, field.resource)
         case FieldKind.ENUMERATION:
-            yield from _enumerations(lexicon, lexicon.declarations.enumerations)
+            yield from _enumerations(lexicon, lexicon.declarations.enumerations, field.resource)
         case FieldKind.INITIAL:
             if field.type is not None:
                 few = not isinstance(field.type, IntegerRange) or len(field.type.domain) <= _MOST_NUMBERS
@@ -373,7 +374,7 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
             for value in () if field.type is None else field.type.domain:
                 yield option(print_value(value), NameKind.VALUE, field.type)
             chosen = {name: lexicon.declarations.enumerations[name] for name in field.choices}
-            yield from _enumerations(lexicon, chosen)
+            yield from _enumerations(lexicon, chosen, field.resource)
         case FieldKind.ABILITY:
             yield from _abilities(lexicon, field)
         case FieldKind.OPERATION:
@@ -386,10 +387,13 @@ def _choices(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
                         yield option(name.removeprefix(f"{field.resource}."), NameKind.MEASURED, BOOLEAN)
 
 
-def _enumerations(lexicon: Lexicon, enumerations: Mapping[str, EnumerationType]) -> Iterator[Option]:
+def _enumerations(
+    lexicon: Lexicon, enumerations: Mapping[str, EnumerationType], resource: str | None
+) -> Iterator[Option]:
     sets = lexicon.sets
     for name, type_ in enumerations.items():
-        yield option(name, NameKind.SET if name in sets else NameKind.ENUMERATION, type_)
+        short = name.removeprefix(f"{resource}.")
+        yield option(short, NameKind.SET if name in sets else NameKind.ENUMERATION, type_)
 
 
 def _abilities(lexicon: Lexicon, field: TextField) -> Iterator[Option]:
@@ -564,7 +568,7 @@ def _options(sight: VisibleNames, field: TextField, beginning: TextBefore, chain
         yield from words
         return
     if beginning.wants_set:
-        for each in _enumerations(sight.lexicon, sight.enumerations):
+        for each in _enumerations(sight.lexicon, sight.enumerations, field.resource):
             yield from ((rank, each) for rank in _fit(typed, each.label))
         yield from words
         return
@@ -618,7 +622,8 @@ def _binders(sight: VisibleNames, typed: str) -> Iterator[Option]:
     """A word for each set that a quantifier can be about: what is typed, or the first letter that is free."""
     letters = "".join(map(chr, range(ord("a"), ord("z") + 1)))
     taken = {*sight.parameters, *(value for value, _ in sight.values()), *(seen.short for seen in sight.families)}
-    for name, type_ in sight.enumerations.items():
+    for full, type_ in sight.enumerations.items():
+        name = full.removeprefix(f"{sight.resource}.")
         start = letters.find(name[0].lower())
         free = (each for each in letters[start:] + letters[:start] if each not in taken)
         word = typed or next(free, "each")

@@ -8,18 +8,9 @@ from typing import Any
 from sequence_planner.automaton.automaton import Kind
 from sequence_planner.automaton.declarations import FLAGS
 from sequence_planner.automaton.findings import Findings
-from sequence_planner.automaton.grounding import (
-    CANCEL,
-    EFFECT,
-    FINISH,
-    START,
-    Meaning,
-    Writing,
-    alarm_condition,
-    check_acknowledgement,
-    exclusive_abilities,
-    observable_condition,
-)
+from sequence_planner.automaton.grounding.abilities import CANCEL, EFFECT, FINISH, START, check_acknowledgement
+from sequence_planner.automaton.grounding.meaning import Meaning, Writing, alarm_condition, observable_condition
+from sequence_planner.automaton.grounding.specifications import exclusive_abilities
 from sequence_planner.automaton.shorthand import parts_of
 from sequence_planner.editor.language.field import (
     FieldKind,
@@ -36,9 +27,10 @@ from sequence_planner.editor.language.shorthand_fields import (
     field_of_relation,
     field_of_set,
 )
-from sequence_planner.language.resolver import NameScope
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.model.documents import (
     AbilityDocument,
+    EffectDocument,
     NamedCondition,
     Parameters,
     ResourceDocument,
@@ -83,7 +75,7 @@ def field_of_predicate(
         case () | ("when",):
             return TextField(FieldKind.CONDITION, condition, written if given is None else given, resource)
         case ("parameters", str(parameter)):
-            return field_of_parameter(parameter)
+            return field_of_parameter(parameter, resource)
     return None
 
 
@@ -109,29 +101,42 @@ class _AbilityFields:
                 return self._action(texts, index, until if finish is None else (*until, finish.when), FINISH)
             case ("cancel", "do", int(index)):
                 return self._action([] if document.cancel is None else document.cancel.do, index, (), CANCEL)
-            case ("effects", str(), "when"):
-                return TextField(FieldKind.CONDITION, observable_condition, **self._around)
-            case ("effects", str(name), "do", int(index)):
-                effect = document.effects.get(placed(name))
-                if effect is None:
-                    return self._action([], index, (), EFFECT)
-                return self._action(effect.do, index, () if effect.when is None else (effect.when,), EFFECT)
+            case ("effects", str(name), *rest):
+                return self._of_effect(document.effects.get(placed(name)), tuple(rest))
             case ("human", "acknowledgement"):
                 return TextField(FieldKind.ACKNOWLEDGEMENT, self._acknowledgement, **self._around)
             case ("parameters", str(name)):
-                return field_of_parameter(name)
+                return field_of_parameter(name, self._resource)
+        return None
+
+    def _of_effect(self, effect: EffectDocument | None, path: EntryPath) -> TextField | None:
+        each = {} if effect is None else effect.each
+        around = {**self._around, "parameters": {**self._around["parameters"], **each}, "each": each}
+        match path:
+            case ("when",):
+                return TextField(FieldKind.CONDITION, observable_condition, **around)
+            case ("do", int(index)):
+                guards = () if effect is None or effect.when is None else (effect.when,)
+                return self._action([] if effect is None else effect.do, index, guards, EFFECT, around)
+            case ("for", str(word)):
+                return field_of_parameter(word, self._resource)
         return None
 
     def _acknowledgement(self, meaning: Meaning, text: SourceText, scope: NameScope) -> None:
         check_acknowledgement(meaning, self._resource, text)
 
     def _action(
-        self, texts: list[SourceText], index: int, guards: tuple[Predicate, ...], writing: Writing
+        self,
+        texts: list[SourceText],
+        index: int,
+        guards: tuple[Predicate, ...],
+        writing: Writing,
+        around: dict[str, Any] | None = None,
     ) -> TextField:
         def read(meaning: Meaning, text: SourceText, scope: NameScope) -> object:
             return meaning.actions(with_text(texts, index, text), scope, all_of(meaning, guards, scope), writing)
 
-        return TextField(FieldKind.ACTION, read, writing=writing, **self._around)
+        return TextField(FieldKind.ACTION, read, writing=writing, **(around or self._around))
 
 
 def field_of_variable(
@@ -148,7 +153,13 @@ def field_of_variable(
     full = name if resource is None else f"{resource}.{name}"
     match path:
         case ("type",):
-            return TextField(FieldKind.TYPE, lambda found, text, scope: found.declarations.type_of(key, text, kind))
+            return TextField(
+                FieldKind.TYPE,
+                lambda found, text, scope: found.declarations.type_of(
+                    key, found.declarations.domain_in(text, resource), kind
+                ),
+                resource=resource,
+            )
         case ("initial",):
             type_ = meaning.declarations.noting(Findings()).type_of(key, document.type, kind)
             return TextField(
@@ -157,7 +168,7 @@ def field_of_variable(
                 type=type_,
             )
         case ("for", str(parameter)):
-            return field_of_parameter(parameter)
+            return field_of_parameter(parameter, resource)
     return None
 
 

@@ -31,6 +31,8 @@ class LanguageDraft:
         self._written: dict[str, str] = {}  # what the folder holds
         self._before = Before()
         self._lexicon: Lexicon | None = None
+        self.meant_last: MeantStation | None = None
+        """What it meant when it could be used last."""
 
     def take(self, changed: Mapping[str, str | None]) -> None:
         """Take note of files that are others now."""
@@ -65,7 +67,8 @@ class LanguageDraft:
     def meant(self) -> MeantStation:
         """Return what it means, before its pipelines are built. Raises `ModelError`."""
         with self._folder_of(self._files):
-            return read_station(Path(), self._before)
+            self.meant_last = read_station(Path(), self._before)
+            return self.meant_last
 
     def messages(self) -> MessageRegistry | None:
         """The message types that it defines; None where they cannot be read."""

@@ -13,8 +13,8 @@ from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declaratio
 from sequence_planner.automaton.findings import with_arguments, without_arguments
 from sequence_planner.automaton.shorthand import parts_of, written_in, written_predicates
 from sequence_planner.editor.language.schemas import NameKind
+from sequence_planner.language.names.scope import ENDS, STEPS
 from sequence_planner.language.printer import print_value
-from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type, Value
 from sequence_planner.model.documents import (
     AbilityDocument,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from sequence_planner.automaton.findings import Binding, instance_name, with_arguments
-from sequence_planner.automaton.grounding import Meaning, Writing
-from sequence_planner.language.resolver import NameScope
+from sequence_planner.automaton.grounding.meaning import Meaning, Writing
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.syntax import Expression, conjunction
 from sequence_planner.language.types import Place, Type
 from sequence_planner.model.documents import Parameters
@@ -36,7 +36,8 @@ class FieldKind(StrEnum):
 
 @dataclass(frozen=True)
 class TextField:
-    """A place for a text. `resource` and `ability` are those whose names are seen without their prefix.
+    """A place for a text. `resource` and `ability` are those whose names are seen without their prefix; `each` are the
+    parameters that are not the ability's, but of its effect alone.
 
     `choices` are what can be written where that is one of few names; `type` is that of a value.
     """
@@ -50,17 +51,20 @@ class TextField:
     writing: Writing | None = None
     choices: tuple[str, ...] = ()
     type: Type | None = None
+    each: Parameters = field(default_factory=dict)
 
     def prefixes(self, binding: Binding) -> tuple[str, ...]:
         """Return what is tried before a bare name, in order, for one choice of the parameters."""
         own = (f"{self.resource}.",) if self.resource else ()
-        return (f"{instance_name(self._ability, binding)}.", *own) if self.ability else own
+        known = {name: value for name, value in binding.items() if name not in self.each}
+        return (f"{instance_name(self._ability, known)}.", *own) if self.ability else own
 
     @property
     def prefix_patterns(self) -> tuple[str, ...]:
         """The same for all choices at once, with the parameters as they are written."""
         own = (f"{self.resource}.",) if self.resource else ()
-        return (f"{with_arguments(self._ability, map(str, self.parameters))}.", *own) if self.ability else own
+        known = [str(name) for name in self.parameters if name not in self.each]
+        return (f"{with_arguments(self._ability, known)}.", *own) if self.ability else own
 
     def scopes(self, meaning: Meaning) -> Iterator[NameScope]:
         """Yield what names mean here, for each choice of the parameters."""
@@ -87,12 +91,14 @@ def with_text(texts: Sequence[SourceText], index: int, text: SourceText) -> list
     return [*texts[:index], text, *texts[index + 1 :]]
 
 
-def field_of_parameter(name: str) -> TextField:
+def field_of_parameter(name: str, resource: str | None = None) -> TextField:
     """The enumeration of the parameter `name`."""
     key = placed(name)
-    return TextField(
-        FieldKind.ENUMERATION, lambda meaning, text, scope: meaning.declarations.check_parameters({key: text})
-    )
+
+    def reading(meaning: Meaning, text: SourceText, scope: NameScope) -> None:
+        meaning.declarations.check_parameters({key: meaning.declarations.domain_in(text, resource)})
+
+    return TextField(FieldKind.ENUMERATION, reading, resource=resource)
 
 
 def placed(name: str) -> SourceText:

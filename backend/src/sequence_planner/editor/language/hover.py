@@ -9,18 +9,14 @@ from itertools import islice, product
 from sequence_planner.automaton.declarations import OPERATION
 from sequence_planner.editor.language.completion import chain_at, word_at, words_of
 from sequence_planner.editor.language.families import SHORT, Family, definition_of
-from sequence_planner.editor.language.field import FieldKind, TextField
+from sequence_planner.editor.language.field import FieldKind, TextField, placed
 from sequence_planner.editor.language.quantifiers import quantifiers_before
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.scope import Lexicon, VisibleNames
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse, parse_assignment, parse_formula
 from sequence_planner.language.printer import print_expression, print_value
-from sequence_planner.language.resolver import (
-    NameScope,
-    resolve_assignments,
-    resolve_formula,
-    resolve_predicate,
-)
+from sequence_planner.language.resolver import resolve_assignments, resolve_formula, resolve_predicate
 from sequence_planner.language.shorthand.titles import in_language
 from sequence_planner.language.simplifier import simplify
 from sequence_planner.language.syntax import (
@@ -210,12 +206,13 @@ class _Hovering:
                     span.start, span.end, word, NameKind.ENUMERATION, word, type=type_, place=place,
                     part=f"enumeration:{word}",
                 )  # fmt: skip
+        declared = self._lexicon.declarations
+        full = str(declared.domain_in(placed(word), self._field.resource))
         for each in self._lexicon.sets:
-            if each == word and word in self._lexicon.declarations.enumerations:
-                type_ = self._lexicon.declarations.enumerations[word]
-                place = self._lexicon.within(each.place)
+            if each == full and full in declared.enumerations:
+                type_, place = declared.enumerations[full], self._lexicon.within(each.place)
                 return Hover(
-                    span.start, span.end, word, NameKind.SET, word, type=type_, place=place, part=f"set:{word}"
+                    span.start, span.end, word, NameKind.SET, full, type=type_, place=place, part=f"set:{full}"
                 )
         return None
 

@@ -112,6 +112,9 @@ class _Reader:
                 return QuantifierPart.SET, ()
             domain: str | tuple[str, ...] = self._text(0)
             self._at += 1
+            while self._kind(0) == "." and self._kind(1) == "name":  # a set of a resource
+                domain = f"{domain}.{self._text(1)}"
+                self._at += 2
             if domain == "{":
                 values = []
                 while self._kind(0) in ("name", ","):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 
 from sequence_planner.controller.views.part import Value, View
+from sequence_planner.texts.message import Message
 
 
 class NameKind(StrEnum):
@@ -29,11 +30,14 @@ class NameKind(StrEnum):
 
 
 class ProblemView(View):
-    """One thing wrong with a text; `start` and `end` count its characters."""
+    """One thing wrong with a text; `start` and `end` count its characters. `said` is the message for readers of other
+    languages, null where there is none.
+    """
 
     start: int
     end: int
     message: str
+    said: Message | None
 
 
 class OptionView(View):

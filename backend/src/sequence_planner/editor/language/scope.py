@@ -10,9 +10,7 @@ from pathlib import PurePosixPath
 
 from sequence_planner.automaton.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.findings import Findings, instance_name, with_arguments
-from sequence_planner.automaton.grounding import (
-    Meaning,
-)
+from sequence_planner.automaton.grounding.meaning import Meaning
 from sequence_planner.editor.language.document_fields import (
     field_of_operation,
     field_of_resource,
@@ -23,8 +21,8 @@ from sequence_planner.editor.language.families import SHORT, Family, Visible, fa
 from sequence_planner.editor.language.field import TextField, placed
 from sequence_planner.editor.language.schemas import NameKind
 from sequence_planner.editor.language.sequences import field_of_sequence, field_of_work_master
-from sequence_planner.language.resolver import NameScope
-from sequence_planner.language.suggestions import beginning_with
+from sequence_planner.language.names.scope import NameScope
+from sequence_planner.language.names.suggestions import beginning_with
 from sequence_planner.language.types import BOOLEAN, EnumerationType, Place, Type
 from sequence_planner.model.documents import (
     ResourceDocument,
@@ -63,10 +61,13 @@ class Lexicon:
         """Its names."""
         return Declarations(self.station, Findings())
 
-    @property
+    @cached_property
     def sets(self) -> Set[SourceText]:
-        """The names of sets, which are among the enumerations as well."""
-        return self.station.station.sets.keys()
+        """The names of sets, which are among the enumerations as well; of those of resources the full ones."""
+        found = dict.fromkeys(self.station.station.sets)
+        for resource, document in self.station.resources.items():
+            found |= {SourceText(f"{resource}.{name}", name.place, name.raw): None for name in document.sets}
+        return found.keys()
 
     @cached_property
     def operations(self) -> tuple[str, ...]:
@@ -173,8 +174,15 @@ class VisibleNames:
         self.bound: Mapping[str, EnumerationType] = {word: type_ for word, type_ in domains if type_ is not None}
         """The words of quantifiers, with what they stand for."""
 
+    @property
+    def resource(self) -> str | None:
+        """The resource whose names need no prefix."""
+        return self._field.resource
+
     def _domain(self, domain: str | tuple[str, ...]) -> EnumerationType | None:
-        return self.enumerations.get(domain) if isinstance(domain, str) else EnumerationType(domain)
+        if not isinstance(domain, str):
+            return EnumerationType(domain)
+        return self.enumerations.get(self.lexicon.declarations.domain_in(placed(domain), self.resource))
 
     @cached_property
     def scope(self) -> NameScope:

@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from sequence_planner.automaton.findings import with_arguments
-from sequence_planner.automaton.grounding import (
-    BROUGHT,
-    Meaning,
-    brought_by,
-    check_steps,
-    station_sequences,
-)
+from sequence_planner.automaton.grounding.meaning import Meaning
+from sequence_planner.automaton.grounding.operations import BROUGHT, brought_by, check_steps, station_sequences
 from sequence_planner.automaton.sequences.expansion import Steps
 from sequence_planner.editor.language.field import FieldKind, TextField, field_of_parameter, placed, with_text
-from sequence_planner.language.resolver import NameScope
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.model.documents import Parameters, WorkMasterDocument
 from sequence_planner.model.loader import Station
 from sequence_planner.model.sequences import KINDS, SequencePart
@@ -93,7 +88,7 @@ def field_of_work_master(
                 return None
             steps: Steps = {}
             if document is not None:
-                steps = station_sequences(meaning, station, operations).order_of(document).steps
+                steps = station_sequences(meaning, station, operations).order_of(document, name).steps
             return _of_work_master(document, steps, tuple(rest), operations)
     return None
 

@@ -23,6 +23,7 @@ from sequence_planner.language.printer import print_assignment, print_expression
 from sequence_planner.language.syntax import ExpressionError, Span
 from sequence_planner.language.types import Place
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import Message
 
 # What is wrong with a text: what grounding finds in it, at the places where it does.
 
@@ -94,7 +95,8 @@ def formatted(field: TextField, text: str) -> str:
 
 def problem_view(problem: TextProblem) -> ProblemView:
     """The view of `problem`."""
-    return ProblemView(start=problem.start, end=problem.end, message=problem.message)
+    said = problem.message if isinstance(problem.message, Message) else None
+    return ProblemView(start=problem.start, end=problem.end, message=problem.message, said=said)
 
 
 def completion_view(completion: Completion) -> CompletionView:

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from sequence_planner.automaton.findings import Findings
-from sequence_planner.automaton.grounding import Meaning
+from sequence_planner.automaton.grounding.meaning import Meaning
 from sequence_planner.automaton.shorthand import ShorthandReader, check_included
 from sequence_planner.editor.language.field import FieldKind, Reading, TextField, placed, with_text
-from sequence_planner.language.resolver import NameScope
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.types import EnumerationType, Type
 from sequence_planner.model.documents import (
     EnumerationDocument,

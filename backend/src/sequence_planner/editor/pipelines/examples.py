@@ -32,15 +32,15 @@ from sequence_planner.editor.pipelines.schemas import (
     Trial,
     ValueView,
 )
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.record import Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.model.documents import ExampleDocument, ExampleStepDocument
 from sequence_planner.model.files import Files
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding
 from sequence_planner.model.stages.base import Loadable
 from sequence_planner.model.validation import findings_of
-from sequence_planner.model.yaml.editor import content_at
+from sequence_planner.model.yaml.content import content_at
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
 from sequence_planner.pipelines.chain_runtime import message_of
 from sequence_planner.pipelines.examples import (
@@ -55,6 +55,7 @@ from sequence_planner.pipelines.examples import (
     plain,
 )
 from sequence_planner.pipelines.graph import Flow, IncomingPipeline, Joining, OutgoingPipeline
+from sequence_planner.texts.message import Message, message
 
 # What edits of a draft would bring about, before anybody makes them.
 
@@ -121,7 +122,7 @@ def pipeline_of(graph: DraftPipelines, id_: str) -> DraftPipelineView:
     """A pipeline. Raises `EditError` where there is none."""
     found = graph.pipelines.get(id_)
     if found is None:
-        raise EditError(f"the draft has no pipeline `{id_}`")
+        raise EditError(message("edit.no-pipeline", name=id_))
     return found
 
 
@@ -129,10 +130,8 @@ def obstacle(graph: DraftPipelines, view: DraftPipelineView) -> str | None:
     """Say why a pipeline cannot be run."""
     chain = graph.sketch.built.chains.get(view.name)
     if view.id != view.name or chain is None or not chain.is_sound or view.standing is Soundness.UNKNOWN:
-        said = [each.message for stage in view.stages for each in stage.findings] or [
-            each.message for each in view.findings
-        ]
-        return said[0] if said else "what stands before it cannot be used"
+        found = [each for stage in view.stages for each in stage.findings] or view.findings
+        return found[0].said or found[0].message if found else message("obstacle.before")
     for stage in chain.stages:
         if isinstance(stage, Loadable) and (trouble := stage.loading_trouble()) is not None:
             return trouble
@@ -147,8 +146,12 @@ def run_examples(number: int, graph: DraftPipelines, question: Examples) -> Runs
         names = [each.name for each in view.examples]
         raise EditError(f"`{view.id}` has no example “{question.name}”{suggestion(question.name, names)}")
     what = obstacle(graph, view)
-    runs = [] if what is not None else [run_example(graph, view, index) for index in chosen]
-    return RunsView(number=number, pipeline=view.id, obstacle=what, runs=runs)
+    return _runs(number, view, what, [] if what is not None else [run_example(graph, view, each) for each in chosen])
+
+
+def _runs(number: int, view: DraftPipelineView, what: str | None, runs: list[RunView]) -> RunsView:
+    said = what if isinstance(what, Message) else None
+    return RunsView(number=number, pipeline=view.id, obstacle=what, obstacle_message=said, runs=runs)
 
 
 def run_example(graph: DraftPipelines, view: DraftPipelineView, index: int) -> RunView:
@@ -200,8 +203,7 @@ def run_trial(number: int, graph: DraftPipelines, question: Trial) -> RunsView:
     """Results of these records."""
     view = pipeline_of(graph, question.pipeline)
     what = obstacle(graph, view)
-    runs = [] if what is not None else [_tried(graph, view, question)]
-    return RunsView(number=number, pipeline=view.id, obstacle=what, runs=runs)
+    return _runs(number, view, what, [] if what is not None else [_tried(graph, view, question)])
 
 
 def _tried(graph: DraftPipelines, view: DraftPipelineView, question: Trial) -> RunView:
@@ -298,7 +300,7 @@ def recorded(graph: DraftPipelines, question: Recording) -> RecordingView:
     if any(each.name == question.name for each in view.examples):
         raise EditError(f"`{view.id}` has an example “{question.name}” already: choose another name")
     if (why := obstacle(graph, view)) is not None:
-        raise EditError(f"the pipeline cannot be run as it is in the draft: {why}")
+        raise EditError(message("edit.pipeline-unusable", why=why))
     made = graph.sketch.built.pipelines
     node = made.outgoing.get(view.name) or made.node(view.name)
     given = _given(graph, node, question.first)

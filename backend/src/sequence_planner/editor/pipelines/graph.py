@@ -33,7 +33,7 @@ from sequence_planner.language.records.record import FieldType, ListType, Nested
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange
 from sequence_planner.model.source import Finding
 from sequence_planner.model.stages.base import Stage
-from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.content import plain
 from sequence_planner.model.yaml.reader import EntryPath, YamlDocument
 from sequence_planner.pipelines.builder import flow_name
 from sequence_planner.pipelines.chains import ChainBuilding

@@ -11,7 +11,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from sequence_planner.automaton.automaton import Automaton
-from sequence_planner.automaton.grounding import ground_variables
+from sequence_planner.automaton.grounding.station import ground_variables
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import AbilityDocument, ResourceDocument, StationDocument
 from sequence_planner.model.files import Files, write_files
@@ -200,6 +200,8 @@ class DraftReader:
                     unread.append(path)
             if path in self._read:
                 found[path] = self._read[path][1]
+        if STATION not in found:  # as it could never be read
+            found[STATION] = read_text(NOTHING, STATION)
         return found, tuple(unread), findings
 
     def _messages(self, files: Files) -> tuple[MessageRegistry, list[Finding]]:

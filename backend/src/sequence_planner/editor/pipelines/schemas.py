@@ -13,6 +13,7 @@ from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.controller.views.part import View
 from sequence_planner.editor.draft import AddEntry, Edit, MoveEntry, RemoveEntry, SetEntry
 from sequence_planner.editor.processes import Changed
+from sequence_planner.texts.message import Message
 
 # What is shown of the pipelines of a draft: their graph as far as it is sound, what could be put where, and runs.
 
@@ -317,11 +318,14 @@ class RunView(View):
 
 
 class RunsView(View):
-    """Runs of a pipeline of the draft; `obstacle` says why it cannot be run."""
+    """Runs of a pipeline of the draft; `obstacle` says why it cannot be run, and its message for readers of other
+    languages, null where there is none.
+    """
 
     number: int
     pipeline: str
     obstacle: str | None
+    obstacle_message: Message | None
     runs: list[RunView]
 
 

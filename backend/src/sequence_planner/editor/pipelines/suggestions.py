@@ -9,7 +9,7 @@ from functools import cached_property
 
 from pydantic import JsonValue, ValidationError
 
-from sequence_planner.automaton.grounding import ground_variables
+from sequence_planner.automaton.grounding.station import ground_variables
 from sequence_planner.editor.draft import AddEntry, SetEntry
 from sequence_planner.editor.pipelines.examples import pipeline_of
 from sequence_planner.editor.pipelines.graph import DraftPipelines

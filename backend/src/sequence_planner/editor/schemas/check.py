@@ -9,7 +9,7 @@ from enum import StrEnum
 from sequence_planner.analysis.checks.unmeetable import CANNOT_BE_MET
 from sequence_planner.analysis.report import AnalysisDocument, FindingDocument
 from sequence_planner.controller.views.part import View
-from sequence_planner.core.numerals import counted
+from sequence_planner.texts.message import Message, message
 
 MOST_FINDINGS = 500  # that are shown
 MORE = "more"  # the kind of the last of them where there are more
@@ -32,6 +32,15 @@ class SummaryView(View):
     abilities: int
     operations: int
     specifications: int
+    examples: int  # of pipelines
+
+
+class CheckedView(View):
+    """What was looked for, with its message for readers of other languages, and how many seconds that took."""
+
+    what: str
+    what_message: Message | None
+    seconds: float
 
 
 @dataclass(frozen=True)
@@ -41,19 +50,27 @@ class Hindrance:
     """
 
     slug: str
-    title: str
-    why: str
+    why: Message
+
+    @property
+    def title(self) -> Message:
+        """The title of the problem."""
+        return message(f"hindrance.{self.slug}")
 
 
 class CheckView(View):
-    """What is known of the draft after change `number`; `doing` is what is being looked for, or why nothing is.
+    """What is known of the draft after change `number`; `doing` is what is being looked for, or why nothing is, and
+    `doing_message` its message for readers of other languages, null where there is none.
 
-    `findings` of severity error make it unusable; `summary` and `analysis` are null where it is.
+    `findings` of severity error make it unusable; `summary` and `analysis` are null where it is. `looked` is what was
+    looked for before that, in its order.
     """
 
     number: int
     state: CheckState
     doing: str
+    doing_message: Message | None
+    looked: list[CheckedView]
     findings: list[FindingDocument]
     summary: SummaryView | None
     analysis: AnalysisDocument | None
@@ -63,24 +80,31 @@ class CheckView(View):
         unusable, and there is a supervisor.
         """
         if self.number == number and self.state is CheckState.FAILED:
-            why = f"The draft could not be checked: {self.doing}. Change the draft, then it is checked anew"
-            return Hindrance("not-checked", "The draft is not checked", why)
+            said = message("hindrance.not-checked.failed", why=self.doing_message or self.doing)
+            return Hindrance("not-checked", said)
         if self.number != number or self.state is not CheckState.DONE:
-            why = "The check of the draft has not ended yet. Try again when it has, as the page Check shows"
-            return Hindrance("not-checked", "The draft is not checked", why)
+            return Hindrance("not-checked", message("hindrance.not-checked.yet"))
         if errors := [each for each in self.findings if each.severity == "error"]:
-            which = "an error" if len(errors) == 1 else f"{len(errors)} errors, the first"
-            why = f"The check has found {which} at {_told(errors[0])}. Mend the draft, save it, and deploy that"
-            return Hindrance("check-found-errors", "The check has found errors", why)
+            place, what = _told(errors[0])
+            said = message("hindrance.check-found-errors.one", place=place, what=what)
+            if len(errors) > 1:
+                id_ = "hindrance.check-found-errors.several"
+                said = message(id_, count=len(errors), place=place, what=what)
+            return Hindrance("check-found-errors", said)
         if self.analysis is None or self.analysis.supervised is not True:
-            because = "".join(f": {_told(each)}" for each in self.findings if each.kind == CANNOT_BE_MET)
-            why = f"Nothing of the draft could be started{because}. Mend the draft, save it, and deploy that"
-            return Hindrance("no-supervisor", "The draft has no supervisor", why)
+            said = message("hindrance.no-supervisor.mend")
+            if (because := next((each for each in self.findings if each.kind == CANNOT_BE_MET), None)) is not None:
+                place, what = _told(because)
+                said = message("hindrance.no-supervisor.because", place=place, what=what)
+            return Hindrance("no-supervisor", said)
         return None
 
 
-def _told(finding: FindingDocument) -> str:
-    return f"{finding.file}:{finding.line}:{finding.column}: {finding.message.rstrip('.')}"
+def _told(finding: FindingDocument) -> tuple[str, str]:
+    """Where a finding is, and what it says, without a full stop."""
+    ends = finding.message.endswith(".")
+    said = finding.message.rstrip(".") if ends or finding.said is None else finding.said
+    return f"{finding.file}:{finding.line}:{finding.column}", said
 
 
 def listed(findings: Sequence[FindingDocument]) -> list[FindingDocument]:
@@ -89,13 +113,25 @@ def listed(findings: Sequence[FindingDocument]) -> list[FindingDocument]:
         return list(findings)
     worst = sorted(findings, key=lambda finding: finding.severity != "error")
     shown, left = worst[:MOST_FINDINGS], worst[MOST_FINDINGS:]
-    more = counted(len(left), "more finding is", "more findings are")
-    message = f"{more} not shown: mend those before this one first"
-    return [*shown, left[0].model_copy(update={"kind": MORE, "message": message, "trace": None})]
+    more = message("found.hidden", count=len(left))
+    return [*shown, left[0].model_copy(update={"kind": MORE, "message": str(more), "said": more, "trace": None})]
 
 
 def waiting(number: int) -> CheckView:
     """Before a check has begun."""
+    said = message("pending.begins")
     return CheckView(
-        number=number, state=CheckState.WAITING, doing="the check begins", findings=[], summary=None, analysis=None
+        number=number,
+        state=CheckState.WAITING,
+        doing=said,
+        doing_message=said,
+        looked=[],
+        findings=[],
+        summary=None,
+        analysis=None,
     )
+
+
+def doing(said: str | None) -> dict[str, object]:
+    """What changes of a `CheckView` where it does something else; None is nothing."""
+    return {"doing": said or "", "doing_message": said if isinstance(said, Message) else None}

@@ -7,18 +7,22 @@ from collections import OrderedDict
 from collections.abc import Iterable
 from enum import StrEnum
 
-from pydantic import JsonValue
+from pydantic import Field, JsonValue
 
 from sequence_planner.analysis.report import FindingDocument, error_document
-from sequence_planner.controller.views.part import View
-from sequence_planner.editor.draft import ChangeKind, Draft, DraftChange, Edit, digest
+from sequence_planner.automaton.automaton import GroupKind
+from sequence_planner.automaton.sequences.order import LinkKind
+from sequence_planner.controller.views.part import Value, View
+from sequence_planner.editor.draft import ChangeKind, Differences, Draft, DraftChange, Edit, digest
+from sequence_planner.editor.merging import rewritten
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView
 from sequence_planner.mimic.views import MimicView
 from sequence_planner.model.files import is_binary
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.yaml.editor import plain
+from sequence_planner.model.yaml.content import plain
 from sequence_planner.model.yaml.reader import read_text
+from sequence_planner.texts.message import Message
 
 # What is shown of the draft.
 
@@ -52,9 +56,20 @@ class FileView(View):
     wrong: FindingDocument | None
 
 
+class ChangedLinesView(View):
+    """Lines of a file, from the `line` on that counts from 1 in the file after the change: what they were, null where
+    they are new, and what they are, null where they are gone.
+    """
+
+    file: str
+    line: int
+    was: str | None
+    now: str | None
+
+
 class ChangeView(View):
     """A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
-    epoch.
+    epoch. `places` are the lines that it changed, cut where they are many; of a change long ago there are none.
     """
 
     number: int
@@ -63,6 +78,7 @@ class ChangeView(View):
     kind: ChangeKind
     of: int | None
     title: str
+    places: list[ChangedLinesView]
 
 
 class DraftView(View):
@@ -131,6 +147,86 @@ class DraftPictureView(View):
     file: str | None
 
 
+class OperationConditionView(View):
+    """A part of a condition: as an expression, and as a sentence."""
+
+    text: str
+    sentence: Message
+
+
+class DraftOperationView(View):
+    """An operation of the draft: the one that is written under `entry`, for these values of its parameters.
+
+    `lane` is the resource that does most to bring about its goal, null where it is the station. `begins` are the parts
+    of the precondition that is written, `turns` what sequences add to it, and `goal` those of its goal. `line` counts
+    from 1.
+    """
+
+    title: str
+    entry: str
+    arguments: list[str]
+    lane: str | None
+    begins: list[OperationConditionView]
+    turns: list[OperationConditionView]
+    goal: list[OperationConditionView]
+    repeat: bool
+    file: str
+    line: int
+
+
+class OperationReasonView(View):
+    """Why an operation comes after another: the `name` of a sequence or work master says so, or it begins with a
+    `condition` that the goal of the other makes true, or, by chance, can make true.
+    """
+
+    kind: LinkKind
+    name: str
+    condition: OperationConditionView | None
+
+
+class OperationLinkView(View):
+    """That an operation comes `after` another. With `again` it does for what was done in the round before."""
+
+    before: str
+    after: str
+    reasons: list[OperationReasonView]
+    again: bool
+
+
+class OperationGroupView(View):
+    """Operations that the sequence of this `name`, or with `for_jobs` the work master, puts beside one another: all of
+    them at once, one of them, or all one at a time.
+    """
+
+    kind: GroupKind
+    operations: list[str]
+    name: str
+    for_jobs: bool
+
+
+class DraftWorkMasterView(View):
+    """A work master, and its operations."""
+
+    title: str
+    operations: list[str]
+
+
+class DraftOperationsView(View):
+    """The operations of the draft after change `number`, by name in the order of the file, and their order.
+
+    Of a draft that is not `usable` they are as they were when it could be used last; none where that was never.
+    `lanes` are the titles of resources in the order of the model.
+    """
+
+    number: int
+    usable: bool
+    operations: dict[str, DraftOperationView]
+    links: list[OperationLinkView]
+    groups: list[OperationGroupView]
+    lanes: dict[str, str]
+    masters: dict[str, DraftWorkMasterView]
+
+
 class RevisionView(View):
     """A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
 
@@ -154,13 +250,67 @@ class RevisionsView(View):
     running: bool
 
 
+class RefusalView(View):
+    """Why something was not done, in words."""
+
+    title: str
+    title_message: Message
+    detail: str
+    detail_message: Message
+
+
+class PlannedDeploymentView(View):
+    """The revision that is deployed when the product in work is done: who wants that since when, and why.
+
+    `refused` says why it was not done; null as long as it is to come. With `reset` emulated devices and the station
+    begin as the model says.
+    """
+
+    revision: str
+    name: str
+    by: str
+    since: float
+    reason: str
+    reset: bool
+    refused: RefusalView | None
+
+
+class CommentView(View):
+    """What somebody has said of the draft, as it was after its change `draft`. Time is in seconds since the epoch."""
+
+    number: int
+    time: float
+    by: str
+    draft: int
+    text: str
+
+
+class CommentsView(View):
+    """The newest comments, in the order in which they were made."""
+
+    comments: list[CommentView]
+
+
 class WorkshopView(View):
-    """The draft as everybody sees it: its files, and what the check has found so far."""
+    """The draft as everybody sees it: its files, in how many places they are others than those of what runs, what the
+    check has found so far, what of it is to be deployed, and the number of the last `comment` that was made since the
+    server began.
+    """
 
     number: int
     files: dict[str, FileMark]
+    changes: int
     last: ChangeView | None
     check: CheckView
+    planned: PlannedDeploymentView | None = None
+    comment: int = 0
+
+
+class DraftChangesView(View):
+    """In how many places the draft after change `number` differs from what runs."""
+
+    number: int
+    changes: int
 
 
 # The draft as it is shown.
@@ -227,6 +377,17 @@ def marks(draft: Draft) -> dict[str, FileMark]:
     return {path: _mark(draft, path) for path in sorted(draft.files.keys() | draft.base.keys())}
 
 
+def places_changed(draft: Draft) -> int:
+    """Return in how many places the draft differs from what runs; a file that nobody reads through is one of them."""
+    total = 0
+    for path in draft.files.keys() | draft.base.keys():
+        before, after = draft.base.get(path), draft.files.get(path)
+        if before != after:
+            unread = is_binary(path) or len(before or "") + len(after or "") > MOST_READ_THROUGH
+            total += 1 if unread else len(rewritten(before, after))
+    return total
+
+
 def _mark(draft: Draft, path: str) -> FileMark:
     text, base = draft.files.get(path), draft.base.get(path)
     if text is None:
@@ -235,8 +396,24 @@ def _mark(draft: Draft, path: str) -> FileMark:
     return FileMark(digest=digest(text), state=state)
 
 
-def change_view(change: DraftChange) -> ChangeView:
-    """A change, as people read it."""
+MOST_READ_THROUGH = 400_000
+"""In files of more characters places are not counted: it would take too long."""
+
+MOST_PLACES = 20
+"""Of a change no more places are told."""
+
+LONGEST_TEXT = 400
+"""More characters of a place are not told: who wants all of it compares revisions."""
+
+
+def change_view(change: DraftChange, differences: Differences) -> ChangeView:
+    """A change, as people read it; of what it did as much as they can take in."""
+    places = [
+        ChangedLinesView(file=path, line=each.line, was=_short(each.was), now=_short(each.now))
+        for path, (before, after) in sorted(differences.items())
+        if not is_binary(path)
+        for each in rewritten(before, after)
+    ]
     return ChangeView(
         number=change.number,
         time=change.time,
@@ -244,7 +421,12 @@ def change_view(change: DraftChange) -> ChangeView:
         kind=change.kind,
         of=change.of,
         title=change.title,
+        places=places[:MOST_PLACES],
     )
+
+
+def _short(text: str | None) -> str | None:
+    return text if text is None or len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
 
 
 def revisions_view(revisions: Iterable[Revision], running: str, edited: str) -> RevisionsView:
@@ -301,3 +483,135 @@ def _content(path: str, text: str) -> tuple[JsonValue, FindingDocument | None]:
         return plain(read_text(text, path).content), None
     except ModelError as error:
         return None, error_document(error.findings[0])
+
+
+# A station that is led through the draft step by step.
+
+
+class StepView(View):
+    """One tick: variables that are set by somebody, effects that happen at once, and starts in their order."""
+
+    effects: list[str] = Field(default=[], max_length=1000)
+    starts: list[str] = Field(default=[], max_length=1000)
+    sets: dict[str, Value | None] = Field(default={}, max_length=1000)
+
+
+class StepChangeView(View):
+    """A variable that a step has changed; `so` says in words what it is then, null where that is unknown."""
+
+    name: str
+    before: Value | None
+    after: Value | None
+    so: Message | None
+
+
+class StepMomentView(View):
+    """The station after a `step`, which `title` tells, so many `seconds` after the beginning as devices usually need.
+
+    `ended` are abilities whose runs were over by it. A station outside its safe states is not `safe`; `violated` are
+    the titles of specifications that do not hold for certain. One that is `restless` goes on by itself for ever, as
+    abilities finish again and again: it is shown after many ticks of that.
+    """
+
+    step: StepView
+    title: Message
+    resource: str | None
+    seconds: float
+    changes: list[StepChangeView]
+    ended: list[str]
+    completed: list[str]
+    activated: list[str]
+    running: list[str]
+    active: list[str]
+    safe: bool
+    restless: bool
+    violated: list[str]
+
+
+class SettableView(View):
+    """The values that somebody can give a variable of the draft; one that is measured may be `unknown`, too."""
+
+    domain: list[Value]
+    unknown: bool
+
+
+class ChoiceKind(StrEnum):
+    """Who or what makes a step happen."""
+
+    DEVICE = "device"
+    PERSON = "person"
+    FAULT = "fault"
+    START = "start"
+
+
+class ChoiceView(View):
+    """A step that can be taken: by whom, what it is, and between how many `seconds` it usually takes; `planned` says
+    that the plan begins with it.
+    """
+
+    kind: ChoiceKind
+    step: StepView
+    title: Message
+    resource: str
+    seconds: tuple[float, float] | None
+    planned: bool
+
+
+class KeptBackView(View):
+    """An ability that may not start: what is still missing, or that only the supervisor keeps it back."""
+
+    ability: str
+    title: str
+    resource: str
+    supervisor: bool
+    why: Message
+
+
+class StepStartView(View):
+    """A start of the plan, after so many seconds from the last moment."""
+
+    ability: str
+    title: str
+    resource: str
+    tick: int
+    seconds: float
+
+
+class StepPlanView(View):
+    """The plan from the last moment: its starts with when they are expected, and its ticks as steps.
+
+    Without a plan `verdict` says what is known.
+    """
+
+    verdict: str
+    starts: list[StepStartView]
+    ticks: list[StepView]
+    seconds: float
+
+
+class RefusedStepView(View):
+    """The step that could not be taken, by its place among those that were asked for, and why."""
+
+    index: int
+    why: Message
+
+
+class StepsView(View):
+    """A station led from the values `before` on through the draft after its change `number`: a moment after the
+    beginning and after each step, and what can happen after the last.
+
+    `refused` is the first step that cannot be taken; what comes after it was not tried. `stopped` says why plans were
+    followed no further, where that was asked for. Somebody can disturb what is `settable`. With an `obstacle` the model
+    cannot be used, and nothing is told.
+    """
+
+    number: int
+    obstacle: Message | None
+    before: dict[str, Value | None]
+    moments: list[StepMomentView]
+    choices: list[ChoiceView]
+    kept_back: list[KeptBackView]
+    settable: dict[str, SettableView]
+    plan: StepPlanView | None
+    refused: RefusedStepView | None
+    stopped: str | None

@@ -15,6 +15,7 @@ from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.types import Value, contains
 from sequence_planner.planning.recovery.advisor import Advisor
 from sequence_planner.planning.recovery.request import AdviceRequest
+from sequence_planner.texts.message import Message
 
 # Whether a station in its present state can take another model, and how it gets to where it can.
 
@@ -78,12 +79,13 @@ def transfer(
         under_way=under_way,
         ways=ways,
         obstacle=None,
+        obstacle_message=None,
     )
 
 
-def untransferred(obstacle: str) -> TransferView:
+def untransferred(why: Message) -> TransferView:
     """Of a model that no station may run."""
-    return TransferView(legal=False, changes=[], violated=[], under_way=[], ways=[], obstacle=obstacle)
+    return TransferView(legal=False, changes=[], violated=[], under_way=[], ways=[], obstacle=why, obstacle_message=why)
 
 
 def _same(one: Ability | None, other: Ability | None) -> bool:
@@ -117,6 +119,7 @@ class WhatIfView(View):
 
     `safe` says whether it began in a safe state; from another one nothing is started. `active` are the operations under
     way at the end, and `unplanned` says why there was no plan then. `obstacle` says why nothing could be simulated.
+    Both have their messages for readers of other languages.
     """
 
     seconds: float
@@ -127,4 +130,6 @@ class WhatIfView(View):
     after: dict[str, ShownValue | None]
     active: list[str]
     unplanned: str
+    unplanned_message: Message | None
     obstacle: str | None
+    obstacle_message: Message | None

@@ -19,8 +19,8 @@ from sequence_planner.editor.symbols.index import (
     value_of,
     variable_of,
 )
+from sequence_planner.language.names.scope import ENDS, STEPS
 from sequence_planner.language.parser import parse, parse_assignment, parse_calculation, parse_formula
-from sequence_planner.language.resolver import ENDS, STEPS
 from sequence_planner.language.syntax import (
     NOWHERE,
     Assignment,
@@ -194,8 +194,15 @@ class Naming:
         """Note that an enumeration or a set is named, if it is: by a text, or at `span` of one."""
         if isinstance(name, SourceText) and text is None:
             text = name
-        if text is not None and str(name) in self.declared.homes:
-            self.gathered.add(self.declared.domain(str(name)), where, text, span)
+        full = self.declared.full(where.around.resource, str(name))
+        if text is None or full not in self.declared.homes:
+            return
+        whole = Span(0, len(text)) if span is None else span
+        owner, dot, own = str(name).rpartition(".")
+        if dot:
+            resource = Span(whole.start, whole.start + len(owner))
+            self.gathered.add(ModelPart("resource", None, owner), where, text, resource, whole=whole)
+        self.gathered.add(self.declared.domain(full), where, text, Span(whole.end - len(own), whole.end), whole=whole)
 
     def note_table(self, kind: str, where: Where, text: SourceText, resource: str) -> None:
         """Note that a whole text is the name of a map or a relation, of the resource or of the station, if it is."""
@@ -208,8 +215,9 @@ class Naming:
     def note_member(self, domain: object, where: Where, text: object) -> None:
         """Note that a whole text is a value of an enumeration or set, or a set of such values."""
         if isinstance(text, SourceText):
-            if self.has(str(domain), text):
-                self.note_value(str(domain), where, text)
+            of = self.declared.full(where.around.resource, str(domain))
+            if self.has(of, text):
+                self.note_value(of, where, text)
             else:
                 self.note_domain(text, where)
 
@@ -304,7 +312,7 @@ class Expressions:
 
 
 class _Reading:
-    """One text. The order in which names are looked at is that of `language.resolver`."""
+    """One text. The order in which names are looked at is that of `language.names.scope` and `language.resolver`."""
 
     def __init__(self, naming: Naming, text: SourceText, where: Where, word: str | None) -> None:
         self._word = word
@@ -336,7 +344,8 @@ class _Reading:
                     self._naming.link(enumeration, self.read(option, enumeration))
             case NamedMembership(left, domain):
                 is_value = isinstance(left, Name) and not self._is_parameter(left) and self._found(left) is None
-                self._naming.link(self.read(left, str(domain) if is_value else None), str(domain))
+                of = self._naming.declared.full(self._where.around.resource, str(domain))
+                self._naming.link(self.read(left, of if is_value else None), of)
                 self._naming.note_domain(str(domain), self._where, self._text, domain.span)
             case Quantified(_, _, binders, where, body):
                 around = self._where
@@ -355,7 +364,7 @@ class _Reading:
         ranges, words = dict(around.parameters), dict(around.words)
         for binder in binders:
             if isinstance(binder.domain, Name):
-                ranges[binder.word] = str(binder.domain)
+                ranges[binder.word] = declared.full(around.resource, str(binder.domain))
                 self._naming.note_domain(str(binder.domain), self._where, self._text, binder.domain.span)
             else:
                 values = set(map(str, binder.domain))
@@ -434,7 +443,7 @@ class _Reading:
         [word], [argument] = words, name.path[0].arguments
         if name.path[0].name in ENDS:
             self._naming.note_domain(word.text, self._where, self._text, word.span)
-            return word.text
+            return self._naming.declared.full(self._where.around.resource, word.text)
         if word.text in self._where.around.parameters:
             self._naming.note_arguments(words, {"": ""}, self._where, self._text, name.span)
         found = self._argument(argument, word, None)
@@ -598,8 +607,8 @@ def read_calculation(names: Names, written: object, where: Where, expected: str 
     except ExpressionError:
         names.naming.gathered.unread.append((where, written))
         return False
-    is_message = _is_path(tree) and not names.is_known(written)
     reading = _Calculation(names, written, where)
+    is_message = _is_path(tree) and not names.is_known(written) and not reading.asks_a_table(tree)
     if expected is None or is_message:
         reading.read(tree)
     else:
@@ -618,9 +627,16 @@ class _Calculation:
         self._where = where
         self._done: set[int] = set()
 
+    def asks_a_table(self, tree: Expression) -> bool:
+        """Return whether it is what a map or a relation says."""
+        return self._table(tree) is not None
+
     def become(self, tree: Expression, expected: str) -> None:
         """The whole, of which values of an enumeration are made."""
-        if _is_path(tree):
+        if self._table(tree) is not None:
+            self._names.naming.link(expected, self._type(tree))
+            self.read(tree)
+        elif _is_path(tree):
             self._names.naming.link(expected, self._name(tree))
         elif self._is_value(tree, expected):
             self._value(tree, expected)
@@ -629,6 +645,9 @@ class _Calculation:
 
     def read(self, part: Expression) -> None:
         """All names; beside an enumeration a word is one of its values."""
+        if isinstance(part, Selection) and (table := self._table(part)) is not None:
+            self._tabulated(part, table)
+            return
         if _is_path(part):
             if part.span.start not in self._done:
                 self._name(part)
@@ -656,6 +675,35 @@ class _Calculation:
                     why = f"`{self._written(beside)}` is compared with them, and has values of its own"
                     naming.tie_values(kind, why)
 
+    def _table(self, part: Expression) -> Named | None:
+        """The map or relation that a part of the tree asks, unless a field has its name."""
+        if not isinstance(part, Selection) or isinstance(part.at, str):
+            return None
+        written = self._written(part.whole)
+        if self._names.is_known(written):
+            return None
+        path = tuple(Component(each.strip()) for each in written.split("."))
+        path = (*path[:-1], Component(path[-1].name, tuple(map(str, range(len(part.at)))), not part.called))
+        named = self._names.naming.find(Name(path), TextContext(self._names.resource))
+        kind = "relation" if part.called else "map"
+        return named if named is not None and named.parts[max(named.parts)].kind == kind else None
+
+    def _tabulated(self, part: Selection, table: Named) -> None:
+        """Note a map or a relation with its arguments."""
+        naming, span = self._names.naming, part.whole.span
+        for index, each in table.parts.items():
+            is_last = index == max(table.parts)
+            at = Span(span.end - len(each.name), span.end) if is_last else Span(span.start, span.start + len(each.name))
+            naming.gathered.add(each, self._where, self._text, at, whole=span)
+        self._done.add(part.span.start)
+        _, parameters = table.arguments or (0, {})
+        for argument, enumeration in zip(children(part)[1:], parameters.values(), strict=False):
+            if self._type(argument) is None and self._is_value(argument, enumeration):
+                self._value(argument, enumeration)
+            else:
+                self.read(argument)
+                naming.link(enumeration, self._type(argument))
+
     def _is_value(self, part: Expression, enumeration: str) -> bool:
         is_text = isinstance(part, RecordConstant) and isinstance(part.value, str)
         return (is_text or _is_path(part)) and self._names.naming.has(enumeration, self._written(part).strip("'"))
@@ -668,6 +716,8 @@ class _Calculation:
         self._names.naming.gathered.add(value, self._where, self._text, span)
 
     def _type(self, part: Expression) -> str | None:
+        if (table := self._table(part)) is not None:
+            return table.enumeration
         return self._names.enumeration(self._written(part)) if _is_path(part) else None
 
     def _written(self, part: Expression) -> str:

@@ -13,6 +13,7 @@ from sequence_planner.editor.symbols.index import (
     Gathered,
     ModelPart,
     Occurrence,
+    Parameters,
     TextContext,
     Where,
     branches_in,
@@ -24,6 +25,7 @@ from sequence_planner.editor.symbols.index import (
 )
 from sequence_planner.editor.symbols.mimic import MimicCollector
 from sequence_planner.editor.symbols.pipelines import PipelineCollector, read_definitions
+from sequence_planner.editor.symbols.scenarios import ScenarioCollector
 from sequence_planner.editor.symbols.texts import (
     MIMIC,
     OPERATIONS,
@@ -39,6 +41,7 @@ from sequence_planner.editor.symbols.texts import (
 from sequence_planner.editor.symbols.types import TypeCollector
 from sequence_planner.language.parser import parse
 from sequence_planner.language.syntax import ExpressionError, Name, Span
+from sequence_planner.model.paths import has_scenarios
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.yaml.reader import EntryPath
 from sequence_planner.ros.types.messages import MessageRegistry
@@ -188,6 +191,10 @@ def gather(
         walk.work_masters(content.get(WORK_MASTERS))
     if file in (None, MIMIC):
         MimicCollector(naming, expressions).collect(content.get(MIMIC))
+    scenarios = ScenarioCollector(naming, expressions, walk.named_operation, walk.named_ability)
+    for each in content:
+        if has_scenarios(each) and file in (None, each):
+            scenarios.collect(each, content[each])
     if file is None or file in content.definitions:
         read_definitions(content, gathered)
     return declared, gathered
@@ -211,7 +218,7 @@ class _Walk:
             for index, each in enumerate(items(entry(values, "includes"))):
                 self._naming.note_domain(each, where.to("includes", index))
             self._value_titles(str(name), entry(values, "titles"), where.to("titles"))
-        self._sets(content, top)
+        self._sets(None, content, top)
         self._relations(None, content, top)
         self._maps(None, content, top)
         self._predicates(None, content, top)
@@ -219,10 +226,11 @@ class _Walk:
         self._alarms(None, content, top)
         self._read.condition(entry(content, "rest"), top.to("rest"))
 
-    def _sets(self, content: object, top: Where) -> None:
+    def _sets(self, resource: str | None, content: object, top: Where) -> None:
         for name, document in pairs(entry(content, "sets")):
-            at = top.to("sets", name).within(f"set {name}")
-            self._add(ModelPart("set", None, str(name)), at, name, declares=True)
+            part = ModelPart("set", resource, str(name))
+            at = top.to("sets", name).within(f"set {part.full}")
+            self._add(part, at, name, declares=True)
             of = entry(document, "of")
             self._naming.note_domain(of, at.to("of"))
             for key in ("values", "except"):
@@ -244,7 +252,8 @@ class _Walk:
                     for index, each in enumerate(items(members)):
                         self._naming.note_member(of, where.to(index), each)
             if entry(document, "symmetric") is True and len(between) > 1:
-                self._naming.link(str(between[0]), str(between[1]))
+                one, other = (self._naming.declared.full(resource, str(each)) for each in between[:2])
+                self._naming.link(one, other)
 
     def _maps(self, resource: str | None, content: object, top: Where) -> None:
         for name, document in pairs(entry(content, "maps")):
@@ -252,17 +261,18 @@ class _Walk:
             at = top.to("maps", name).within(f"map {part.full}")
             self._add(part, at, name, declares=True)
             source, target = entry(document, "from"), entry(document, "to")
+            ranges = self._naming.declared.full(resource, str(target))
             self._naming.note_domain(source, at.to("from"))
             self._naming.note_domain(target, at.to("to"))
             for key, value in pairs(entry(document, "values")):
                 self._naming.note_member(source, at.to("values", key), key)
-                self._naming.note_value(str(target), at.to("values", key), value)
-            self._naming.note_value(str(target), at.to("otherwise"), entry(document, "otherwise"))
+                self._naming.note_value(ranges, at.to("values", key), value)
+            self._naming.note_value(ranges, at.to("otherwise"), entry(document, "otherwise"))
 
     def _predicates(self, resource: str | None, content: object, top: Where) -> None:
         for name, document in pairs(entry(content, "predicates")):
             part = ModelPart("predicate", resource, str(name))
-            around = TextContext(resource, part.full, parameters(entry(document, "parameters")))
+            around = TextContext(resource, part.full, self._ranges(resource, entry(document, "parameters")))
             at = top.to("predicates", name).within(f"predicate {part.full}", around)
             self._add(part, at, name, declares=True)
             self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
@@ -280,6 +290,7 @@ class _Walk:
             self._variables(resource, entry(content, section), top.to(section))
         for name, ability in pairs(entry(content, "abilities")):
             self._ability(resource, name, ability, top.to("abilities", name))
+        self._sets(resource, content, top)
         self._relations(resource, content, top)
         self._maps(resource, content, top)
         self._predicates(resource, content, top)
@@ -312,7 +323,9 @@ class _Walk:
             enumeration = self._naming.declared.enumeration(resource, str(name))
             self._naming.note_value(enumeration, at.to("initial"), entry(document, "initial"))
             self._value_titles(enumeration, entry(document, "titles"), at.to("titles"))
-            around = at.within(at.owner, TextContext(resource, part.full, parameters(entry(document, "for"))))
+            around = at.within(
+                at.owner, TextContext(resource, part.full, self._ranges(resource, entry(document, "for")))
+            )
             for key in ("title", "phrase"):
                 self._words(entry(document, key), around.to(key))
             self._value_titles(enumeration, entry(document, "by_hand"), at.to("by_hand"))
@@ -321,7 +334,7 @@ class _Walk:
 
     def _ability(self, resource: str, name: SourceText, document: object, where: Where) -> None:
         part = ModelPart("ability", resource, str(name))
-        around = TextContext(resource, part.full, parameters(entry(document, "parameters")), True)
+        around = TextContext(resource, part.full, self._ranges(resource, entry(document, "parameters")), True)
         at = where.within(f"ability {part.full}", around)
         self._add(part, at, name, declares=True)
         self._parameters(part.full, entry(document, "parameters"), at.to("parameters"))
@@ -338,7 +351,10 @@ class _Walk:
             self._read.actions(entry(document, *path), at.to(*path))
         for effect, inner in pairs(entry(document, "effects")):
             below = at.to("effects", effect)
-            self._add(ModelPart("effect", part.full, str(effect)), below, effect, declares=True)
+            own = ModelPart("effect", part.full, str(effect))
+            self._add(own, below, effect, declares=True)
+            self._parameters(own.full, entry(inner, "for"), below.to("for"))
+            below = replace(below, around=_within_effect(around, own, self._ranges(resource, entry(inner, "for"))))
             self._read.condition(entry(inner, "when"), below.to("when"))
             self._read.actions(entry(inner, "do"), below.to("do"))
 
@@ -367,7 +383,7 @@ class _Walk:
             for key in ("forbidden", "never", "while"):
                 self._read.condition(entry(document, key), at.to(key))
             for index, text in enumerate(items(entry(document, "exclusive"))):
-                self._exclusive(text, at.to("exclusive", index))
+                self.named_ability(text, at.to("exclusive", index))
             for index, text in enumerate(items(entry(document, "order"))):
                 self._read.condition(text, at.to("order", index))
             for resource, inside in pairs(entry(document, "zone")):
@@ -396,9 +412,9 @@ class _Walk:
             for index, order in enumerate(items(entry(document, "orders"))):
                 self._sequence(part.id, order, at.to("orders", index))
             for step, inner in pairs(entry(document, "operations")):
-                self._operation(step, at.to("operations", step))
+                self.named_operation(step, at.to("operations", step))
                 for index, before in enumerate(items(entry(inner, "after"))):
-                    self._operation(before, at.to("operations", step, "after", index))
+                    self.named_operation(before, at.to("operations", step, "after", index))
 
     def _sequence(self, holder: str, document: object, at: Where) -> None:
         """The operations and sequences that a part of a sequence orders."""
@@ -407,11 +423,11 @@ class _Walk:
         for branch, path in branches_in(document):
             below = replace(at.to(*path), around=around)
             if isinstance(branch, SourceText):
-                self._operation(branch, below)
+                self.named_operation(branch, below)
             else:
                 self._sequence(holder, branch, below)
 
-    def _operation(self, text: object, where: Where) -> None:
+    def named_operation(self, text: object, where: Where) -> None:
         """An operation with its arguments, or a sequence."""
         if (name := self._name(text, where)) is None or not isinstance(text, SourceText) or len(name.path) != 1:
             return
@@ -423,7 +439,7 @@ class _Walk:
         of = self._naming.declared.operations.get(step.word.text, {})
         self._naming.note_arguments(step.arguments, of, where, text, name.span)
 
-    def _exclusive(self, text: object, where: Where) -> None:
+    def named_ability(self, text: object, where: Where) -> None:
         """An ability, with its arguments or without."""
         if (name := self._name(text, where)) is None or not isinstance(text, SourceText) or len(name.path) != 2:
             return
@@ -450,8 +466,13 @@ class _Walk:
             if isinstance(of, SourceText):
                 self._enumeration(of, where.to(name))
 
+    def _ranges(self, resource: str | None, written: object) -> Parameters:
+        return self._naming.declared.ranges(resource, written)
+
     def _enumeration(self, text: SourceText, where: Where) -> None:
-        if str(text).isidentifier() and text != "bool":
+        if self._naming.declared.full(where.around.resource, str(text)) in self._naming.declared.homes:
+            self._naming.note_domain(text, where)
+        elif str(text).isidentifier() and text != "bool":
             self._add(self._naming.declared.domain(str(text)), where, text)
 
     def _value_titles(self, enumeration: str | None, written: object, where: Where) -> None:
@@ -473,3 +494,9 @@ class _Walk:
             if match[1] in where.around.parameters:
                 part = ModelPart("parameter", where.around.holder, match[1])
                 self._add(part, where, text, Span(*match.span(1)))
+
+
+def _within_effect(around: TextContext, effect: ModelPart, each: Parameters) -> TextContext:
+    """The names around the texts of an effect: those of its ability, and its own words."""
+    words = {word: ModelPart("parameter", effect.full, word) for word in each}
+    return replace(around, parameters={**around.parameters, **each}, words=words)

@@ -59,17 +59,17 @@ KINDS: Mapping[str, str] = {
 }
 # Kinds whose names are those of ROS 2, and known in the whole station.
 ROS_KINDS = frozenset({"topic", "service", "action", "message"})
-_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm", "predicate", "relation", "map"})
+_OF_RESOURCE = frozenset({"variable", "ability", "flow", "alarm", "set", "predicate", "relation", "map"})
 _WITHIN = frozenset({"effect", "parameter"})
 
 
 class ModelPart(NamedTuple):
     """Something with a name. `owner` is what it belongs to, without which the name does not tell it:
 
-    the enumeration of a value; the resource of a variable, an ability or a flow; the ability of an effect; the package
-    of a type, where it has one; and for a parameter the full name of its ability, variable or predicate, or the id of
-    what else it belongs to, such as `operation:press`. The word of a quantifier belongs to that: the file, the entry,
-    and its number in the text.
+    the enumeration of a value; the resource of a variable, an ability, a flow or what it has for short; the ability of
+    an effect; the package of a type, where it has one; and for a parameter the full name of its ability, effect,
+    variable or predicate, or the id of what else it belongs to, such as `operation:press`. The word of a quantifier
+    belongs to that: the file, the entry, and its number in the text.
     """
 
     kind: str
@@ -128,8 +128,9 @@ def following(part: ModelPart, old: ModelPart, new: ModelPart) -> ModelPart:
                 return part._replace(owner=f"{new.name}{owner[len(old.name) :]}")
         case "enumeration" if part.kind == "value" and owner == old.name:
             return part._replace(owner=new.name)
-        case "ability" | "variable" | "predicate" if part.kind in _WITHIN and owner == old.full:
-            return part._replace(owner=new.full)
+        case "ability" | "variable" | "predicate" | "effect" if part.kind in _WITHIN:
+            if owner == old.full or (old.kind == "ability" and owner.startswith(f"{old.full}.")):
+                return part._replace(owner=f"{new.full}{owner[len(old.full) :]}")
         case "operation" | "specification" | "sequence" | "work_master" | "type" if (
             part.kind == "parameter" and owner == old.id
         ):
@@ -217,8 +218,20 @@ class Declared:
         return value_of(self.homes.get(domain, {}).get(name, domain), name)
 
     def domain(self, name: str) -> ModelPart:
-        """An enumeration or a set."""
-        return ModelPart("set" if name in self.sets else "enumeration", None, name)
+        """An enumeration or a set, by its full name."""
+        if name not in self.sets:
+            return ModelPart("enumeration", None, name)
+        owner, _, own = name.rpartition(".")
+        return ModelPart("set", owner or None, own)
+
+    def full(self, resource: str | None, name: str) -> str:
+        """The full name of an enumeration or a set that is named in a resource, or for the station as a whole."""
+        own = f"{resource}.{name}"
+        return own if own in self.sets else name
+
+    def ranges(self, resource: str | None, written: object) -> Parameters:
+        """The parameters of a part of a resource, each with the full name of its enumeration."""
+        return {name: self.full(resource, of) for name, of in parameters(written).items()}
 
     def _read_enumerations(self, station: object) -> None:
         written = {str(name): document for name, document in pairs(entry(station, "enumerations"))}
@@ -237,19 +250,24 @@ class Declared:
             self.parts += [ModelPart("value", name, str(value)) for value in own[name]]
             if entry(document, "ordered") is True:
                 self.ordered.append(name)
-        sets = {str(name): document for name, document in pairs(entry(station, "sets"))}
+        sets: dict[str, tuple[str | None, object]] = {}
+        for resource, whole in ((None, station), *self.resources.items()):
+            for name, document in pairs(entry(whole, "sets")):
+                part = ModelPart("set", resource, str(name))
+                sets[part.full] = resource, document
+                self.parts.append(part)
         self.sets = {name for name in sets if name not in self.homes}
-        self.parts += [ModelPart("set", None, name) for name in sets]
 
         def contents(name: str, around: tuple[str, ...]) -> dict[str, str]:
             if name not in self.sets or name in around:
                 return self.homes.get(name, {})
-            whole = contents(str(entry(sets[name], "of")), (*around, name))
-            kept = entry(sets[name], "values")
+            resource, document = sets[name]
+            whole = contents(self.full(resource, str(entry(document, "of"))), (*around, name))
+            kept = entry(document, "values")
             named = {
                 value
-                for each in map(str, items(entry(sets[name], "except") if kept is None else kept))
-                for value in ([each] if each in whole else contents(each, (*around, name)))
+                for each in map(str, items(entry(document, "except") if kept is None else kept))
+                for value in ([each] if each in whole else contents(self.full(resource, each), (*around, name)))
             }
             return {value: home for value, home in whole.items() if (value in named) is (kept is not None)}
 
@@ -259,23 +277,25 @@ class Declared:
         for name, document in pairs(entry(written, "relations")):
             between = items(entry(document, "between"))
             part = ModelPart("relation", resource, str(name))
-            self.relations[part.full] = {str(index): str(each) for index, each in enumerate(between)}
+            self.relations[part.full] = {str(at): self.full(resource, str(each)) for at, each in enumerate(between)}
             self.parts.append(part)
         for name, document in pairs(entry(written, "maps")):
             part = ModelPart("map", resource, str(name))
-            self.maps[part.full] = {"0": str(entry(document, "from"))}, str(entry(document, "to"))
+            source, target = (self.full(resource, str(entry(document, key))) for key in ("from", "to"))
+            self.maps[part.full] = {"0": source}, target
             self.parts.append(part)
         for name, document in pairs(entry(written, "predicates")):
             part = ModelPart("predicate", resource, str(name))
-            self.predicates[part.full] = parameters(entry(document, "parameters"))
+            self.predicates[part.full] = self.ranges(resource, entry(document, "parameters"))
             self._note(part, self.predicates[part.full], part.full)
 
     def _read_variables(self, resource: str | None, section: str, written: object) -> None:
         for name, document in pairs(written):
             part = variable_of(resource, str(name))
             type_ = text_at(document, "type")
-            of = parameters(entry(document, "for"))
-            self.variables.setdefault(part.full, DeclaredVariable(section, None if type_ is None else str(type_), of))
+            of = self.ranges(resource, entry(document, "for"))
+            type_name = None if type_ is None else self.full(resource, str(type_))
+            self.variables.setdefault(part.full, DeclaredVariable(section, type_name, of))
             self._note(part, of, part.full)
 
     def _read_resource(self, resource: str, found: object) -> None:
@@ -285,9 +305,11 @@ class Declared:
         self._read_short(resource, found)
         for name, document in pairs(entry(found, "abilities")):
             part = ModelPart("ability", resource, str(name))
-            self.abilities[part.full] = parameters(entry(document, "parameters"))
+            self.abilities[part.full] = self.ranges(resource, entry(document, "parameters"))
             self._note(part, self.abilities[part.full], part.full)
-            self.parts += [ModelPart("effect", part.full, str(each)) for each, _ in pairs(entry(document, "effects"))]
+            for effect, inner in pairs(entry(document, "effects")):
+                of = ModelPart("effect", part.full, str(effect))
+                self._note(of, self.ranges(resource, entry(inner, "for")), of.full)
         self.parts += [ModelPart("alarm", resource, str(each)) for each, _ in pairs(entry(found, "alarms"))]
         self.parts += [ModelPart("flow", resource, str(flow)) for flow, _ in pairs(entry(found, "flows"))]
         self.sent |= {str(each) for each, topic in pairs(entry(found, "topics")) if entry(topic, "direction") == "out"}
@@ -370,7 +392,7 @@ class TextContext:
     with their enumerations.
 
     `holder` is the owner of these parameters; `has_flags` holds within an ability. `words` are those of the parameters
-    that a quantifier binds.
+    that a quantifier binds, or an effect of the ability.
     """
 
     resource: str | None = None
@@ -380,7 +402,7 @@ class TextContext:
     words: Mapping[str, ModelPart] = field(default_factory=dict)
 
     def parameter(self, word: str) -> ModelPart:
-        """The parameter, or the word of a quantifier."""
+        """The parameter, or the word of a quantifier or an effect."""
         return self.words.get(word) or ModelPart("parameter", self.holder, word)
 
 

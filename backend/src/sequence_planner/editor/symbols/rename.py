@@ -27,7 +27,8 @@ from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.map import ANY
-from sequence_planner.model.yaml.editor import same, scalar
+from sequence_planner.model.yaml.content import same
+from sequence_planner.model.yaml.editor import scalar
 from sequence_planner.model.yaml.reader import EntryPath, read_text
 from sequence_planner.process.gc_tuning import collection_put_off
 from sequence_planner.ros.names import check_topic

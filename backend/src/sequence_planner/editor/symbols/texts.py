@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from sequence_planner.model.paths import resource_of, type_of
+from sequence_planner.model.paths import has_scenarios, resource_of, type_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
 from sequence_planner.model.stages.registry import KINDS
@@ -102,6 +102,7 @@ def _is_read(file: str) -> bool:
     return (
         file in (STATION, OPERATIONS, SPECIFICATIONS, WORK_MASTERS, MIMIC)
         or (resource_of(file) or type_of(file)) is not None
+        or has_scenarios(file)
     )
 
 

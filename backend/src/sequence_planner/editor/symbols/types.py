@@ -74,11 +74,8 @@ class TypeCollector:
 
     def _head(self, written: WrittenInstance, where: Where, own: ModelPart | None) -> None:
         """The type that something is of, and the arguments that it gives."""
-        named = written.head.type
-        if named is None:
-            return
-        full = str(named) if "." in named or not written.package else f"{written.package}.{named}"
-        if (type_ := self._content.types.get(full)) is None:
+        named, full = written.head.type, written.base
+        if named is None or full is None or (type_ := self._content.types.get(full)) is None:
             return
         part = type_part(full)
         self._gathered.add(part, where.to("type"), named, Span(len(named) - len(part.name), len(named)))

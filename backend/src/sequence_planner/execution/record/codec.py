@@ -20,6 +20,7 @@ from sequence_planner.execution.events import (
     CalledOff,
     Confirmed,
     Corrected,
+    CycleStopChanged,
     Event,
     Explained,
     Forced,
@@ -39,9 +40,10 @@ from sequence_planner.execution.events import (
     Unanswered,
 )
 from sequence_planner.execution.state import ExecutionState
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.parser import parse_formula
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope, resolve_formula
+from sequence_planner.language.resolver import resolve_formula
 from sequence_planner.language.syntax import Expression, ExpressionError
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import PlanRequest, Proof
@@ -277,6 +279,7 @@ KINDS: Final[Mapping[str, type]] = {
     "production-started": ProductionStarted,
     "mode-changed": ModeChanged,
     "called-off": CalledOff,
+    "cycle-stop-changed": CycleStopChanged,
     "stepping-changed": SteppingChanged,
     "step-taken": StepTaken,
     "service-changed": ServiceChanged,

@@ -17,6 +17,7 @@ from sequence_planner.execution.events import (
     CalledOff,
     Confirmed,
     Corrected,
+    CycleStopChanged,
     Event,
     Explained,
     Forced,
@@ -149,6 +150,8 @@ class Player:
                 execution.change_mode(mode, by, now)
             case CalledOff(by, now):
                 execution.call_off(by, now)
+            case CycleStopChanged(on, by, why, now):
+                execution.set_cycle_stop(on, by, why, now)
             case SteppingChanged(on):
                 execution.set_stepping(on)
             case StepTaken():
@@ -167,6 +170,12 @@ class Player:
                 execution.start_operator_plan(operator_plan, now)
             case OperatorPlanStopped(by, now):
                 execution.stop_operator_plan(by, now)
+            case _:
+                self._happen_to_jobs(happening)
+
+    def _happen_to_jobs(self, happening: Event) -> None:
+        execution = self.execution
+        match happening:
             case ByOrderChanged(on, by, why, now):
                 execution.set_by_order(on, by, why, now)
             case JobTaken(job, title, work_master, by, now):

@@ -9,10 +9,10 @@ import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from sequence_planner.core.numerals import counted
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.record import FieldType, ListType, NestedType, RealType, RecordType, TextType
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Type, contains
+from sequence_planner.texts.late import message
 
 # Fields of a record by their paths, such as `pose.position.x`, `joints[0]` or `transforms[0].header.frame_id`.
 #
@@ -57,6 +57,10 @@ class FieldPath:
 class NoFieldError(Exception):
     """A record has no field of that path; the text says which part is missing, with what may have been meant."""
 
+    def __init__(self, why: str) -> None:
+        super().__init__(why)
+        self.why = why
+
 
 def find_field(fields: RecordType, text: str) -> tuple[FieldPath, FieldType]:
     """The path written `text`, and its type. Raises `NoFieldError`."""
@@ -65,10 +69,11 @@ def find_field(fields: RecordType, text: str) -> tuple[FieldPath, FieldType]:
         if key in fields:
             steps = _steps(rest)
             if steps is None:
-                raise NoFieldError(f"`{text}` is no path: write it as in `pose.position.x` or `joints[0]`")
+                raise NoFieldError(message("wrong.no-path", text=text))
             return FieldPath(text, key, steps), _follow(fields[key], key, steps)
     key = re.split(r"[.\[]", text)[0]
-    raise NoFieldError(f"there is no field `{text}` here{suggestion(key if '.' not in text else text, fields)}")
+    hint = suggestion(key if "." not in text else text, fields)
+    raise NoFieldError(message("wrong.no-field", name=text, hint=hint))
 
 
 def _divisions(text: str) -> list[tuple[str, str]]:
@@ -93,15 +98,17 @@ def _follow(type_: FieldType, above: str, steps: tuple[str | int, ...]) -> Field
     for step in steps:
         if isinstance(step, int):
             if not isinstance(type_, ListType):
-                raise NoFieldError(f"`{above}` is {type_}, and no list")
+                raise NoFieldError(message("wrong.no-list", name=above, type=str(type_)))
             if type_.length is not None and step >= type_.length:
-                raise NoFieldError(f"`{above}` has only {counted(type_.length, 'item')}, the first of which is [0]")
+                raise NoFieldError(message("wrong.few-items", name=above, count=type_.length))
             type_, above = type_.element, f"{above}[{step}]"
         else:
             if not isinstance(type_, NestedType):
-                raise NoFieldError(f"`{above}` is {type_}, which has no fields")
+                raise NoFieldError(message("wrong.no-fields", name=above, type=str(type_)))
             if step not in type_.fields:
-                raise NoFieldError(f"`{above}` has no field `{step}`{suggestion(step, type_.fields)}")
+                raise NoFieldError(
+                    message("wrong.no-field-of", name=above, field=step, hint=suggestion(step, type_.fields))
+                )
             type_, above = type_.fields[step], f"{above}.{step}"
     return type_
 

@@ -22,6 +22,7 @@ from sequence_planner.language.syntax import (
     conjunction,
 )
 from sequence_planner.language.types import Value
+from sequence_planner.texts.late import message
 
 # What is written out is read by people and solvers: more than this was not meant.
 MOST_CASES = 4096
@@ -173,7 +174,7 @@ def require_few_choices(number: int, of: int, span: Span) -> None:
 def require_few(count: int, span: Span) -> None:
     """Raise `ExpressionError` for more cases than can be written out."""
     if count > MOST_CASES:
-        raise ExpressionError(f"this stands for more than {MOST_CASES} cases: split it up", span)
+        raise ExpressionError(message("wrong.cases", most=MOST_CASES), span)
 
 
 def counted(operator: str, number: int, conditions: Sequence[Expression], span: Span) -> Expression:

@@ -61,6 +61,10 @@ class Vocabulary:
         self.expanding: list[str] = []
         """The predicates that are being written out, the outermost first."""
 
+    def domain_named(self, word: str, prefixes: tuple[str, ...] = ()) -> str | None:
+        """The full name of the enumeration or set that is meant where names under one of `prefixes` need none."""
+        return next((prefix + word for prefix in (*prefixes, "") if prefix + word in self.domains), None)
+
     def order_of(self, *types: Type) -> EnumerationType | None:
         """The ordered enumeration that has the values of all of `types`, the smallest of several; or None."""
         values = {value for type_ in types if isinstance(type_, EnumerationType) for value in type_.values}

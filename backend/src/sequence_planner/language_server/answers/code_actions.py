@@ -13,7 +13,7 @@ from lsprotocol import types
 from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.editor.folds.finder import Fold, FoldFinder
 from sequence_planner.editor.language.types.places import text_place
-from sequence_planner.language_server.answers.findings import diagnostics_of, new_name, range_of, replacements
+from sequence_planner.language_server.answers.findings import diagnostics_of, new_name, range_of
 from sequence_planner.language_server.documents.cursor import read_at
 from sequence_planner.language_server.documents.texts import DocumentText, edits_between
 from sequence_planner.language_server.server import StationLanguageServer
@@ -77,10 +77,10 @@ class CodeActions:
 
     def _mended(self, file: StationFile, text: DocumentText, finding: FindingDocument) -> Iterator[types.CodeAction]:
         about = diagnostics_of([finding], text)
-        for each in replacements(finding):
-            edit = types.TextEdit(range_of(finding, text), each.text)
+        for each in finding.fixes:
+            edit = types.TextEdit(range_of(finding, text), each.now)
             yield types.CodeAction(
-                title=f"Write `{each.text}`",
+                title=f"Write `{each.now}`",
                 kind=types.CodeActionKind.QuickFix,
                 diagnostics=about,
                 is_preferred=each.is_sure,

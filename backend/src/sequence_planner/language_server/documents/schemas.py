@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from sequence_planner.model.json_schema import FILES, schema_of
-from sequence_planner.model.paths import type_of
+from sequence_planner.model.paths import has_scenarios, type_of
 from sequence_planner.model.yaml.reader import EntryPath
 
 Schema = Mapping[str, Any]
@@ -90,6 +90,8 @@ def schema_name(file: str) -> str | None:
         return None
     if at.parts[:1] == ("resources",):
         return "instance"
+    if has_scenarios(file):
+        return "tests"
     return "type" if type_of(file) is not None else at.stem if at.stem in FILES else None
 
 

@@ -23,6 +23,7 @@ from sequence_planner.mes.webhooks import deliveries
 from sequence_planner.mes.webhooks.deliveries import Due, Pace
 from sequence_planner.mes.webhooks.endpoints import Seal, UnreadableSecretError, key_file, signed
 from sequence_planner.mes.webhooks.targets import Target, TargetRefused, Targets
+from sequence_planner.texts.message import message
 
 if TYPE_CHECKING:
     import httpx
@@ -52,7 +53,7 @@ async def resolved(targets: Targets, target: Target) -> list[str]:
     try:
         found = await asyncio.get_running_loop().getaddrinfo(target.host, target.port, type=socket.SOCK_STREAM)
     except (OSError, UnicodeError):
-        raise TargetRefused(f"{target.host} cannot be resolved") from None
+        raise TargetRefused(message("target.unresolved", host=target.host)) from None
     addresses = list(dict.fromkeys(str(each[4][0]) for each in found))
     targets.judge(target, addresses)
     return addresses
@@ -71,7 +72,7 @@ class Sender:
             async with asyncio.timeout(self._patience.all):
                 await self._post(url, headers, body)
         except TargetRefused as refused:
-            raise Undelivered(str(refused)) from None
+            raise Undelivered(str(refused.why)) from None
         except TimeoutError:
             raise Undelivered(f"there was no answer within {self._patience.all:g} s") from None
 

@@ -13,6 +13,8 @@ from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network, ip_add
 from typing import Final, TypeAlias
 from urllib.parse import urlsplit
 
+from sequence_planner.texts.message import Message, message
+
 LONGEST_URL: Final = 2000  # characters
 Address: TypeAlias = IPv4Address | IPv6Address
 Network: TypeAlias = IPv4Network | IPv6Network
@@ -23,7 +25,11 @@ _VISIBLE: Final = frozenset(map(chr, range(0x21, 0x7F))) - frozenset('\\"<>^`{|}
 
 
 class TargetRefused(Exception):
-    """Nothing is sent there; the message says why."""
+    """Nothing is sent there; `why` says the reason."""
+
+    def __init__(self, why: Message) -> None:
+        super().__init__(why)
+        self.why = why
 
 
 @dataclass(frozen=True)
@@ -71,7 +77,7 @@ class Targets:
         if (target.host, target.port) not in self.hosts and not self.networks:
             raise TargetRefused(_not_listed(target))
         if target.scheme != "https" and not self.loopback:
-            raise TargetRefused("only https:// is sent to")
+            raise TargetRefused(message("target.https"))
         return target
 
     def judge(self, target: Target, addresses: Sequence[str]) -> None:
@@ -82,25 +88,21 @@ class Targets:
             meant, here = _meant(address), _is_loopback(address)
             exactly = (listed and _is_literal(target.host, address)) or _within(meant, self.networks, exactly=True)
             if here and not (self.loopback or exactly):
-                raise TargetRefused(f"{target.host} is this machine ({each}), which is not sent to")
+                raise TargetRefused(message("target.this-machine", host=target.host, address=each))
             if not listed and not _within(meant, self.networks):
-                raise TargetRefused(f"{_not_listed(target)}, or its network ({each}) with --webhook-network")
+                raise TargetRefused(
+                    message("target.network-not-listed", host=target.host, port=target.port, address=each)
+                )
             if here or exactly:
                 pass
             elif _is_special(meant):
-                raise TargetRefused(
-                    f"{target.host} has an address that is not public ({each}) and of a kind that is not sent to "
-                    "unless the list has exactly that address"
-                )
+                raise TargetRefused(message("target.special", host=target.host, address=each))
             elif not _is_public(meant) and not _within(meant, self.networks):
-                raise TargetRefused(
-                    f"{target.host} has an address that is not public ({each}), in a network that is not on the list; "
-                    "whoever runs the station puts that there with --webhook-network"
-                )
+                raise TargetRefused(message("target.not-public", host=target.host, address=each))
             if target.scheme != "https" and not here:
-                raise TargetRefused(f"{target.host} is not this machine ({each}): only https:// is sent to")
+                raise TargetRefused(message("target.not-this-machine", host=target.host, address=each))
         if not addresses:
-            raise TargetRefused(f"{target.host} has no address")
+            raise TargetRefused(message("target.no-address", host=target.host))
 
 
 def network(written: str) -> Network:
@@ -108,9 +110,9 @@ def network(written: str) -> Network:
     try:
         found = ip_network(written)
     except ValueError:
-        raise TargetRefused(f"{written!r} is no network; write it as in 10.1.2.0/24") from None
+        raise TargetRefused(message("target.no-network", written=repr(written))) from None
     if not found.prefixlen:
-        raise TargetRefused(f"{written} is every network there is; write those that are meant")
+        raise TargetRefused(message("target.every-network", written=written))
     return found
 
 
@@ -118,7 +120,7 @@ def host_and_port(written: str) -> tuple[str, int]:
     """Return what `HOST[:PORT]` on the list means; without a port that of HTTPS. Raises `TargetRefused`."""
     target = _read(f"https://{written}/")
     if target.path != "/":
-        raise TargetRefused(f"{written!r} is no host; write it as in mes.example:8443")
+        raise TargetRefused(message("target.no-host", written=repr(written)))
     return target.host, target.port
 
 
@@ -132,22 +134,17 @@ def _read(url: str) -> Target:
         if split.scheme not in _STANDARD_PORTS or not host or "%" in host or split.netloc.endswith(":") or port == 0:
             raise ValueError
     except ValueError:
-        raise TargetRefused(
-            f"this is no URL of the form https://host/path, of up to {LONGEST_URL} characters"
-        ) from None
+        raise TargetRefused(message("target.no-url", most=LONGEST_URL)) from None
     if "@" in split.netloc:
-        raise TargetRefused("a URL with a user or a password in it is not sent to; deliveries are signed")
+        raise TargetRefused(message("target.password"))
     if "#" in url:
-        raise TargetRefused("a URL with a fragment is not sent to: no server would see it")
+        raise TargetRefused(message("target.fragment"))
     query = f"?{split.query}" if split.query else ""
     return Target(split.scheme, host, port or _STANDARD_PORTS[split.scheme], (split.path or "/") + query)
 
 
-def _not_listed(target: Target) -> str:
-    return (
-        f"{target.host}:{target.port} is not on the list of hosts that webhooks may go to; whoever runs the "
-        "station puts it there with --webhook-host"
-    )
+def _not_listed(target: Target) -> Message:
+    return message("target.not-listed", host=target.host, port=target.port)
 
 
 def _meant(address: Address) -> Address:

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from sequence_planner.model.fields import DocumentPart, Given, Words
 from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.texts.message import Message, message
 
 Day = Literal["mon", "tue", "wed", "thu", "fri", "sat", "sun"]
 
@@ -18,15 +19,16 @@ DAYS: Final[tuple[Day, ...]] = get_args(Day)
 DAY: Final = 24 * 60  # minutes
 WEEK: Final = 7 * DAY
 _TIME: Final = r"^([01][0-9]|2[0-3]):[0-5][0-9]$"
-_WANTED: Final = 'write a time of day as hours and minutes in quotes, from "00:00" to "23:59"'
 
 
 def _time(value: object) -> object:
     if isinstance(value, SourceText) and re.fullmatch(_TIME, value):
         return value
-    midnight = ': midnight is "00:00"' if value == "24:00" else ""
-    found = f"`{value}` is no time" if isinstance(value, str | int | float) else "this is no time"
-    raise ValueError(f"{found}{midnight or f': {_WANTED}'}")
+    if value == "24:00":
+        raise ValueError(message("form.midnight"))
+    if isinstance(value, str | int | float):
+        raise ValueError(message("form.no-time", value=str(value)))
+    raise ValueError(message("form.time"))
 
 
 ClockTime = Annotated[SourceText, BeforeValidator(_time), WithJsonSchema({"type": "string", "pattern": _TIME})]
@@ -82,7 +84,14 @@ def unfit_times(shifts: Mapping[SourceText, ShiftDocument]) -> Iterator[Finding]
         if (day := _common_day(one, other)) is not None:
             yield Finding(
                 other.begin.place,
-                f"`{other_name}`, {_span(other)}, overlaps `{name}`, {_span(one)}, on {day}: one shift at a time",
+                message(
+                    "wrong.shifts-overlap",
+                    name=str(other_name),
+                    span=_span(other),
+                    other=str(name),
+                    other_span=_span(one),
+                    day=day,
+                ),
             )
 
 
@@ -92,19 +101,21 @@ def _unfit_breaks(name: SourceText, shift: ShiftDocument) -> Iterator[Finding]:
     for pause in shift.breaks:
         first, last = shift.minutes_of_break(pause)
         if first == last:
-            yield Finding(pause.to.place, f"this break ends when it begins, at {pause.to}: write when it is over")
+            yield Finding(pause.to.place, message("wrong.empty-break", time=str(pause.to)))
         elif first >= end or last > end:
-            message = f"the break {pause.begin} to {pause.to} does not lie within `{name}`, {_span(shift)}"
-            yield Finding(pause.begin.place, message)
+            said = message(
+                "wrong.break-outside", begin=str(pause.begin), end=str(pause.to), name=str(name), span=_span(shift)
+            )
+            yield Finding(pause.begin.place, said)
         else:
             found.append((first, last, pause))
     found.sort(key=lambda each: each[:2])
     for (_, last, before), (first, _, pause) in pairwise(found):
         if first < last:
-            message = f"this break begins at {pause.begin}, and another lasts until {before.to}: make one of them"
-            yield Finding(pause.begin.place, message)
+            said = message("wrong.breaks-overlap", begin=str(pause.begin), end=str(before.to))
+            yield Finding(pause.begin.place, said)
     if sum(last - first for first, last, _ in found) >= end - begin:
-        yield Finding(shift.begin.place, f"`{name}` is nothing but breaks: leave it out, or let the station work in it")
+        yield Finding(shift.begin.place, message("wrong.only-breaks", name=str(name)))
 
 
 def _common_day(one: ShiftDocument, other: ShiftDocument) -> Day | None:
@@ -121,5 +132,5 @@ def _common_day(one: ShiftDocument, other: ShiftDocument) -> Day | None:
     return None
 
 
-def _span(shift: ShiftDocument) -> str:
-    return f"{shift.begin} to {shift.to}"
+def _span(shift: ShiftDocument) -> Message:
+    return message("wrong.shift-span", begin=str(shift.begin), end=str(shift.to))

@@ -25,9 +25,9 @@ from typing import (
     runtime_checkable,
 )
 
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import FieldPath, NoFieldError, find_field
 from sequence_planner.language.records.record import FieldType, Record, RecordType
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.shorthand.vocabulary import NO_VOCABULARY, Vocabulary
 from sequence_planner.language.types import Place
 from sequence_planner.model.fields import DocumentPart
@@ -45,6 +45,7 @@ from sequence_planner.model.stages.marks import (
     texts_at,
 )
 from sequence_planner.model.stages.suggestions import MOST_SUGGESTED, Candidate, Spot
+from sequence_planner.texts.message import message
 
 T = TypeVar("T")
 
@@ -81,10 +82,9 @@ class Context:
         own = f"{self.resource}."
         found = table.get(own + str(name), table.get(str(name)))
         if found is None:
-            what = "relation" if table is self.vocabulary.relations else "map"
             near = suggestion(name, [*table, *(each.removeprefix(own) for each in table)])
-            where = f"`{what}s` of station.yaml or of the resource declares them"
-            self.found(name.place, f"there is no {what} `{name}`: {where}{near}")
+            id_ = "wrong.no-relation" if table is self.vocabulary.relations else "wrong.no-map"
+            self.found(name.place, message(id_, name=str(name), hint=near))
         return found
 
     def field(self, path: SourceText) -> tuple[FieldPath, FieldType] | None:
@@ -92,7 +92,7 @@ class Context:
         try:
             return find_field(self.fields, path)
         except NoFieldError as error:
-            self.found(path.place, str(error))
+            self.found(path.place, error.why)
             return None
 
 
@@ -120,8 +120,8 @@ class StageDeclaration(DocumentPart, ABC):
         if not is_right:
             of_message = self.named(self, True, NameUse.CONSUMED)
             first = (of_message or self.named(self, True, *NameUse))[0]
-            use = f"; use `{self.instead}` here" if self.instead else ""
-            context.found(first.place, f"`{self.kind}` is for {self.direction} topics{use}")
+            hint = message("hint.use", what=self.instead) if self.instead else ""
+            context.found(first.place, message(f"wrong.only-{self.direction}", stage=self.kind, hint=hint))
         return is_right
 
     @classmethod

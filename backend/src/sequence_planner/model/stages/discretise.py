@@ -25,6 +25,7 @@ from sequence_planner.model.stages.marks import (
 )
 from sequence_planner.model.stages.suggestions import MOST_POINTS, Candidate, Spot, has_numbers
 from sequence_planner.model.stages.support import ImmediateStage, briefly, values_of, wanted_type
+from sequence_planner.texts.message import message
 
 # Named parts of a space of numbers: points with a tolerance, and ranges of a single number.
 
@@ -193,11 +194,11 @@ class DiscretiseDocument(StageDeclaration):
     @model_validator(mode="after")
     def _points_or_ranges(self) -> DiscretiseDocument:
         if (self.values is None) == (self.ranges is None):
-            raise ValueError("write either `values`, the points with their coordinates, or `ranges` of a single number")
+            raise ValueError(message("form.discretise"))
         if self.values is not None and (self.tolerance is None or self.otherwise is None):
-            raise ValueError("`values` need a `tolerance`, and the value `otherwise` for what lies between them")
+            raise ValueError(message("form.discretise-values"))
         if self.ranges is not None and self.tolerance is not None:
-            raise ValueError("`ranges` have their bounds; `tolerance` belongs to `values`")
+            raise ValueError(message("form.discretise-ranges"))
         return self
 
     def check(self, context: Context) -> DiscretiseStage | None:
@@ -244,8 +245,8 @@ def points_of(values: SourceText | Coordinates | None, context: Context) -> Coor
     if (found := context.named(values, context.vocabulary.maps)) is None:
         return None
     if not isinstance(found.target, IntegerRange):
-        said = f"`{values}` is to {briefly(found.target)}, and a point is a number"
-        context.found(values.place, f"{said}: take a map to a range such as 0..360, or write the coordinates here")
+        said = message("wrong.map-to-points", name=str(values), type=briefly(found.target))
+        context.found(values.place, said)
         return None
     return {SourceText(name, values.place, name): [float(at)] for name, at in found.table.items()}
 
@@ -253,7 +254,9 @@ def points_of(values: SourceText | Coordinates | None, context: Context) -> Coor
 def _regions(document: DiscretiseDocument, values: Coordinates, field: FieldType, context: Context) -> Regions | None:
     if document.ranges is not None:
         if not is_numeric(field):
-            context.found(document.field.place, f"`{document.field}` is {field}, and ranges are of a single number")
+            context.found(
+                document.field.place, message("wrong.ranges-of-number", name=str(document.field), type=str(field))
+            )
             return None
         return _ranges(document.ranges, context)
     tolerance = document.tolerance or 0.0
@@ -266,17 +269,17 @@ def _fit(context: Context, name: SourceText, values: Coordinates, field: FieldTy
     """Check whether points have as many coordinates as the field has numbers, and no two are the same."""
     element = field.element if isinstance(field, ListType) else field
     if not is_numeric(element):
-        context.found(name.place, f"`{name}` must be an array of numbers, or a number, and is {field}")
+        context.found(name.place, message("wrong.no-numbers", name=str(name), type=str(field)))
         return False
     lengths = {len(point) for point in values.values()}
     length = field.length if isinstance(field, ListType) else 1
     if len(lengths) != 1 or length not in (None, *lengths):
-        context.found(name.place, f"all points need as many coordinates as `{name}` has: {field}")
+        context.found(name.place, message("wrong.coordinates", name=str(name), type=str(field)))
         return False
     first: dict[tuple[float, ...], SourceText] = {}
     twins = [(point, twin) for point, at in values.items() if (twin := first.setdefault(tuple(at), point)) is not point]
     for point, twin in twins:
-        context.found(point.place, f"`{point}` is at the same coordinates as `{twin}`")
+        context.found(point.place, message("wrong.same-coordinates", name=str(point), other=str(twin)))
     return not twins
 
 
@@ -287,22 +290,24 @@ def _are_apart(context: Context, values: Coordinates, tolerance: float) -> bool:
         if (apart := distance(tuple(here), tuple(there))) <= tolerance
     ]
     for one, other, apart in near:
-        message = f"`{other}` is only {apart:g} from `{one}`: the tolerance of {tolerance:g} does not tell them apart"
-        context.found(other.place, message)
+        near_by = message(
+            "wrong.too-near", name=str(other), distance=f"{apart:g}", other=str(one), tolerance=f"{tolerance:g}"
+        )
+        context.found(other.place, near_by)
     return not near
 
 
 def _ranges(ranges: Mapping[SourceText, Bounds], context: Context) -> Ranges | None:
     wrong = not ranges
     if not ranges:
-        context.found(context.place, "`ranges` has no range: write at least one")
+        context.found(context.place, message("wrong.no-ranges"))
     for name, (least, greatest) in ranges.items():
         if least is not None and greatest is not None and least > greatest:
-            context.found(name.place, f"the range of `{name}` ends before it begins: write the smaller number first")
+            context.found(name.place, message("wrong.backward-range", name=str(name)))
             wrong = True
     for (one, here), (other, there) in combinations(ranges.items(), 2):
         if not wrong and _overlap(here, there):
-            context.found(other.place, f"the range of `{other}` overlaps that of `{one}`")
+            context.found(other.place, message("wrong.overlapping-ranges", name=str(other), other=str(one)))
             wrong = True
     return None if wrong else Ranges({str(name): bounds for name, bounds in ranges.items()})
 
@@ -442,7 +447,7 @@ class UndiscretiseDocument(StageDeclaration):
         path, type_ = found
         missing = sorted(set(type_.values if isinstance(type_, EnumerationType) else ()) - set(map(str, values)))
         if missing:
-            context.found(self.variable.place, f"no coordinates for {', '.join(missing)}")
+            context.found(self.variable.place, message("wrong.no-coordinates", names=", ".join(missing)))
             return None
         element = field.element if isinstance(field, ListType) else field
         points = {str(name): _coordinates(context, name, at, element) for name, at in values.items()}
@@ -471,7 +476,7 @@ def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_:
         return tuple(at)
     strange = [number for number in at if not number.is_integer() or not type_.minimum <= number <= type_.maximum]
     for number in strange:
-        context.found(name.place, f"`{name}` has the coordinate {number:g}, and the field has integers in {type_}")
+        context.found(name.place, message("wrong.coordinate", name=str(name), number=f"{number:g}", range=str(type_)))
     return None if strange else tuple(map(int, at))
 
 
@@ -519,8 +524,7 @@ class UndiscretiseStage(ImmediateStage):
 
 def _are_names(context: Context, where: SourceText, names: Iterable[SourceText], type_: FieldType) -> bool:
     if not isinstance(type_, EnumerationType):
-        message = f"points have names, so the variable must be an enumeration and not {type_}"
-        context.found(where.place, message)
+        context.found(where.place, message("wrong.points-have-names", type=str(type_)))
         return False
     return values_of(context, type_, list(names), where.place) is not None
 

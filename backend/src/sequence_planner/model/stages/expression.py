@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from sequence_planner.language.records.expressions import Calculation, read_calculation, read_condition
+from sequence_planner.language.records.expressions import Calculation, Tables, read_calculation, read_condition
 from sequence_planner.language.records.field_paths import as_written, fills, is_numeric
 from sequence_planner.language.records.record import FieldType, Record, RecordType
 from sequence_planner.language.syntax import ExpressionError
@@ -157,10 +157,11 @@ class FilterCourse(StageInstance):
 
 
 def _read(
-    reader: Callable[[str, RecordType], Calculation], text: Scalar, place: Place, context: Context
+    reader: Callable[[str, RecordType, Tables], Calculation], text: Scalar, place: Place, context: Context
 ) -> Calculation | None:
     try:
-        return reader(text if isinstance(text, str) else as_written(text), context.fields)
+        tables = Tables(context.vocabulary, (f"{context.resource}.",))
+        return reader(text if isinstance(text, str) else as_written(text), context.fields, tables)
     except ExpressionError as error:
         context.found(text.at(error.span) if isinstance(text, SourceText) else place, error.message)
         return None

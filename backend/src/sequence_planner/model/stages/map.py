@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Discriminator, Field, Tag
 
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import (
     FieldPath,
     as_written,
@@ -19,7 +20,6 @@ from sequence_planner.language.records.field_paths import (
     written,
 )
 from sequence_planner.language.records.record import FieldType, ListType, Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, Value
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
@@ -57,6 +57,7 @@ from sequence_planner.model.stages.support import (
     values_of,
     wanted_type,
 )
+from sequence_planner.texts.message import Message, message
 
 # `map`: each value becomes another.
 
@@ -116,7 +117,7 @@ class MapDocument(StageDeclaration):
             return None
         missing = [value for value in domain(source_type) or () if value not in given]
         if missing and self.otherwise is None and not context.is_incoming:
-            context.found(source.place, f"nothing is given for {', '.join(map(as_written, missing))}")
+            context.found(source.place, message("wrong.nothing-given", values=", ".join(map(as_written, missing))))
             return None
         otherwise = None if self.otherwise is None else meant[-1]
         pairs = tuple(zip(given, meant, strict=False))
@@ -130,7 +131,7 @@ class MapDocument(StageDeclaration):
             return {each: meant for key, meant in table.items() for each in meant_by(key, of, context)}
         names = to if context.is_incoming else of
         if not isinstance(names, EnumerationType):
-            context.found(source.place, "without `values` the variable is an enumeration, whose names the message has")
+            context.found(source.place, message("wrong.map-without-values"))
             return {}
         same = (SourceText(name, source.place, name) for name in names.values if name != self.otherwise)
         return {name: name for name in same}
@@ -182,15 +183,22 @@ def table_of_map(
     if forwards:
         return {SourceText(key, name.place, key): meant for key, meant in forwards}
     if not backwards:
-        sides = f"from {briefly(found.source)} to {briefly(found.target)}"
-        types = f"`{source}` is {briefly(of)}" + (f" and `{target}` {briefly(to)}" if to is not None else "")
-        context.found(name.place, f"`{name}` is {sides}, and {types}: it fits neither way round")
+        said = message(
+            "wrong.map-fits-neither-way",
+            name=str(name),
+            source=briefly(found.source),
+            target=briefly(found.target),
+            types=", ".join(
+                f"`{field}`: {briefly(type_)}" for field, type_ in ((source, of), (target, to)) if type_ is not None
+            ),
+        )
+        context.found(name.place, said)
         return None
     first: dict[str, object] = {}
     for value, key in backwards:
         if (other := first.setdefault(value, key)) is not key:
-            message = f"`{name}` has `{value}` for both `{other}` and `{key}`, so it cannot be read backwards here"
-            context.found(name.place, f"{message}: give each a value of its own")
+            said = message("wrong.map-not-backwards", name=str(name), value=value, one=str(other), other=key)
+            context.found(name.place, said)
             return None
     return {SourceText(value, name.place, value): key for value, key in backwards}
 
@@ -210,7 +218,7 @@ def _are_twice(written: Sequence[SourceText], values: Sequence[object], context:
         if (other := first.setdefault(value, text)) is not text
     ]
     for text, other in twins:
-        context.found(text.place, f"`{text}` is the same as `{other}`, for which there is a value already")
+        context.found(text.place, message("wrong.same-value", name=str(text), other=str(other)))
     return bool(twins)
 
 
@@ -313,11 +321,11 @@ class TableDocument(StageDeclaration):
         right = [_has_cells(row, self, context) and _has_fields(row, self, context) for row in self.rows]
         if self.otherwise is not None and len(self.otherwise) != len(self.variables):
             place = place_of(self.otherwise, self.variables[0].place)
-            context.found(place, f"`otherwise` needs {_cells(self.variables)}")
+            context.found(place, _needs("otherwise", self.variables))
             right.append(False)
         twice = [name for index, name in enumerate(self.variables) if name in self.variables[:index]]
         for name in twice:
-            context.found(name.place, f"`{name}` is given twice here")
+            context.found(name.place, message("wrong.given-twice", name=str(name)))
         if sources is None or not all(right) or twice:
             return None
         given: list[Sequence[object]] = [row.gives for row in self.rows]
@@ -355,8 +363,8 @@ class TableDocument(StageDeclaration):
                     )
 
 
-def _cells(names: Sequence[SourceText]) -> str:
-    return f"{len(names)} value{'s' if len(names) > 1 else ''}: for {', '.join(names)}"
+def _needs(key: str, names: Sequence[SourceText]) -> Message:
+    return message("wrong.cells", key=key, count=len(names), names=", ".join(names))
 
 
 def _has_cells(row: TableRowDocument, document: TableDocument, context: Context) -> bool:
@@ -364,10 +372,10 @@ def _has_cells(row: TableRowDocument, document: TableDocument, context: Context)
     for key, cells, names in (("when", row.when, document.fields), ("gives", row.gives, document.variables)):
         if isinstance(cells, SourceText):
             if len(names) != 2:
-                context.found(place, f"the relation `{cells}` is between two fields, and the table has {len(names)}")
+                context.found(place, message("wrong.relation-of-two", name=str(cells), count=len(names)))
                 return False
         elif len(cells) != len(names):
-            context.found(place, f"`{key}` needs {_cells(names)}")
+            context.found(place, _needs(key, names))
             return False
     return True
 
@@ -380,12 +388,12 @@ def _has_fields(row: TableRowDocument, document: TableDocument, context: Context
             continue
         if cell.field not in document.fields:
             near = suggestion(cell.field, document.fields)
-            context.found(cell.field.place, f"`{cell.field}` is none of the `fields` of the table{near}")
+            context.found(cell.field.place, message("wrong.no-field-of-table", name=str(cell.field), hint=near))
             wrong += 1
         elif (found := context.field(cell.field)) is None or domain(found[1]) is None:
             if found is not None:
-                why = "only what is one of a few values can be given by its name"
-                context.found(cell.field.place, f"`{cell.field}` is {found[1]}, and {why}")
+                said = message("wrong.many-values", name=str(cell.field), type=str(found[1]))
+                context.found(cell.field.place, said)
             wrong += 1
     return wrong == 0
 
@@ -439,9 +447,8 @@ def _given(
     cells = [values[str(cell.field)] if isinstance(cell, TableCellDocument) else cell for cell in row.gives]
     for cell, value, type_ in zip(row.gives, cells, gives.values(), strict=True):
         if isinstance(cell, TableCellDocument) and written(type_, value) is None:
-            context.found(
-                cell.field.place, f"`{cell.field}` can be `{as_written(value)}` here, and that is none of {type_}"
-            )
+            said = message("wrong.can-be", name=str(cell.field), value=as_written(value), type=str(type_))
+            context.found(cell.field.place, said)
             return None
     return _values(cells, list(gives.values()), context)
 
@@ -463,9 +470,10 @@ def pairs_of_relation(name: SourceText, sources: Sequence[Passing], context: Con
     ]
     known = [pair for pair in pairs if None not in pair]
     if not known:
-        between = " and ".join(map(briefly, relation.types))
-        fields = " and ".join(f"`{source.path}` is {briefly(source.type)}" for source in sources)
-        context.found(name.place, f"`{name}` is between {between}, and {fields}: no pair fits")
+        between = [briefly(type_) for type_ in relation.types]
+        fields = [f"`{source.path}`: {briefly(source.type)}" for source in sources]
+        said = message("wrong.no-pair-fits", name=str(name), types=between, fields=", ".join(fields))
+        context.found(name.place, said)
     return known
 
 
@@ -555,6 +563,8 @@ def _is_given(value: object) -> bool:
 
 # `one_of`: several truth values, one of which is true.
 
+_TRUE_OR_FALSE = message("expected.truth-value.said")
+
 
 def _is_boolean(type_: FieldType) -> bool:
     return isinstance(type_, BooleanType)
@@ -571,7 +581,7 @@ class OneOfDocument(StageDeclaration):
     fields: Annotated[
         dict[
             VariableValue,
-            Annotated[SourceText, NameMark(NameUse.CONSUMED, NameUse.GIVEN, fits=_is_boolean, what="true or false")],
+            Annotated[SourceText, NameMark(NameUse.CONSUMED, NameUse.GIVEN, fits=_is_boolean, what=_TRUE_OR_FALSE)],
         ],
         Field(min_length=2),
         ExampleValue({"one": "first", "other": "second"}),
@@ -586,7 +596,7 @@ class OneOfDocument(StageDeclaration):
         first: dict[str, SourceText] = {}
         twice = [name for name in self.fields.values() if first.setdefault(str(name), name) is not name]
         for name in twice:
-            context.found(name.place, f"`{name}` stands for two values: give each a field of its own")
+            context.found(name.place, message("wrong.two-values", name=str(name)))
         sources = passing(context, self.marked(self))
         if sources is None or twice:
             return None
@@ -612,7 +622,7 @@ class OneOfDocument(StageDeclaration):
         (variable,) = sources
         if self.otherwise is not None:
             place = place_of([self.otherwise], self.variable.place)
-            context.found(place, "`otherwise` is for incoming topics: for a value that is not listed no field is true")
+            context.found(place, message("wrong.otherwise-incoming"))
             return None
         values = values_of(context, variable.type, list(self.fields), self.variable.place)
         wrong = [
@@ -621,7 +631,7 @@ class OneOfDocument(StageDeclaration):
             if not _is_boolean(type_ := wanted_type(context, name) or BOOLEAN)
         ]
         for name, type_ in wrong:
-            context.found(name.place, f"`{name}` must be true or false, and is {type_}")
+            context.found(name.place, message("wrong.must-be", name=str(name), what=_TRUE_OR_FALSE, type=str(type_)))
         if values is None or wrong:
             return None
         names = [str(name) for name in self.fields.values()]

@@ -35,6 +35,7 @@ from sequence_planner.model.stages.support import (
     values_of,
     wanted_type,
 )
+from sequence_planner.texts.message import message
 
 # `match`: texts that are recognised.
 
@@ -76,9 +77,9 @@ class MatchDocument(StageDeclaration):
     def _one_way(self) -> MatchDocument:
         ways = (self.contains, self.begins, self.ends, self.equals, self.values)
         if sum(way is not None for way in ways) != 1:
-            raise ValueError("`match` has exactly one of contains, begins, ends, equals, values")
+            raise ValueError(message("form.match"))
         if self.values is None and self.otherwise is not None:
-            raise ValueError("`otherwise` belongs to `values`: any other match is true or false")
+            raise ValueError(message("form.match-otherwise"))
         return self
 
     def check(self, context: Context) -> MatchStage | MatchNamesStage | None:
@@ -90,7 +91,7 @@ class MatchDocument(StageDeclaration):
             return None
         path, type_ = found
         if not is_textual(type_):
-            context.found(self.field.place, f"`{self.field}` is {type_}, and only texts are matched")
+            context.found(self.field.place, message("wrong.match-text", name=str(self.field), type=str(type_)))
             return None
         if self.values is not None:
             return _names(self, self.values, path, context)
@@ -113,7 +114,7 @@ def _names(
     meant = None if type_ is None else values_of(context, type_, names, document.variable.place)
     twice = _texts_with_two_meanings(values)
     for text, other in twice:
-        context.found(text.place, f"`{text}` means `{other}` already")
+        context.found(text.place, message("wrong.means-already", name=str(text), other=str(other)))
     if type_ is None or meant is None or twice:
         return None
     meanings = {str(text): name for name, texts in zip(meant, values.values(), strict=False) for text in texts}
@@ -232,7 +233,7 @@ class MemberDocument(StageDeclaration):
     @model_validator(mode="after")
     def _names_or_one(self) -> MemberDocument:
         if self.item is not None and self.if_none is not None:
-            raise ValueError("`if_none` stands where no `item` does: whether that is there is true or false")
+            raise ValueError(message("form.member"))
         return self
 
     @classmethod
@@ -249,7 +250,7 @@ class MemberDocument(StageDeclaration):
             return None
         path, type_ = found
         if not isinstance(type_, ListType):
-            context.found(self.field.place, f"`{self.field}` is {type_}, and no list")
+            context.found(self.field.place, message("wrong.no-list", name=str(self.field), type=str(type_)))
             return None
         if self.item is None:
             return self._of_names(path, type_, context)
@@ -259,10 +260,10 @@ class MemberDocument(StageDeclaration):
     def _of_names(self, path: FieldPath, type_: ListType, context: Context) -> MemberNamesStage | None:
         wanted = wanted_type(context, self.variable)
         if not isinstance(wanted, EnumerationType):
-            context.found(self.variable.place, "without `item` the variable is an enumeration: the list has its names")
+            context.found(self.variable.place, message("wrong.list-of-names"))
             return None
         if not is_textual(type_.element):
-            context.found(self.field.place, f"`{self.field}` is {type_}, and without `item` a list of texts is needed")
+            context.found(self.field.place, message("wrong.list-of-texts", name=str(self.field), type=str(type_)))
             return None
         empty = None if self.if_none is None else value_of(context, wanted, self.if_none, self.variable.place)
         if self.if_none is not None and empty is None:

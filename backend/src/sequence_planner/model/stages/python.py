@@ -25,14 +25,15 @@ from typing import Annotated, ClassVar
 from pydantic import Field
 
 from sequence_planner.core.late_log import LateLog
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import REAL, TEXT, FieldPath, fits, is_numeric, is_textual, shown
 from sequence_planner.language.records.record import FieldType, ListType, NestedType, Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, StageDeclaration, StageInstance
 from sequence_planner.model.stages.marks import NameMark, NameUse
 from sequence_planner.model.stages.suggestions import Candidate, Spot
+from sequence_planner.texts.message import message
 
 # One process that runs a function, as its keeper sees it. All calls may wait, at most for the time they are given.
 
@@ -505,12 +506,12 @@ def _file(document: PythonDocument, context: Context) -> Path | None:
     folder = (context.folder / FOLDER).resolve()
     path = (context.folder / document.file).resolve()
     if not path.is_relative_to(folder):
-        context.found(document.file.place, f"`{document.file}` is outside the station's folder `{FOLDER}`")
+        context.found(document.file.place, message("wrong.outside-folder", file=str(document.file), folder=FOLDER))
         return None
     if not path.is_file():
         others = [f"{FOLDER}/{other.relative_to(folder)}" for other in sorted(folder.rglob("*.py"))]
         near = suggestion(document.file, others)
-        context.found(document.file.place, f"the station has no file `{document.file}`{near}")
+        context.found(document.file.place, message("wrong.no-python-file", file=str(document.file), hint=near))
         return None
     return path
 
@@ -519,18 +520,23 @@ def _has_function(path: Path, document: PythonDocument, context: Context) -> boo
     try:
         module = ast.parse(path.read_bytes())
     except SyntaxError as error:
-        line = f" in line {error.lineno}" if error.lineno else ""
-        context.found(document.file.place, f"`{document.file}` is no Python: {error.msg}{line}")
+        file, why = str(document.file), error.msg
+        said = (
+            message("wrong.no-python.line", file=file, why=why, line=error.lineno)
+            if error.lineno
+            else message("wrong.no-python", file=file, why=why)
+        )
+        context.found(document.file.place, said)
         return False
     except (OSError, ValueError, RecursionError, MemoryError) as error:
-        context.found(document.file.place, f"`{document.file}` is no Python: {error}")
+        context.found(document.file.place, message("wrong.no-python", file=str(document.file), why=str(error)))
         return False
     defined = {part.name: part for part in module.body if isinstance(part, ast.FunctionDef)}
     function = defined.get(document.function)
     if function is None:
         near = suggestion(document.function, defined)
-        message = f"`{document.file}` defines no function `{document.function}`{near}"
-        context.found(document.function.place, message)
+        said = message("wrong.no-function", file=str(document.file), function=str(document.function), hint=near)
+        context.found(document.function.place, said)
         return False
     return _takes(function, document, context)
 
@@ -546,15 +552,16 @@ def _takes(function: ast.FunctionDef, document: PythonDocument, context: Context
     ]
     refused = [name for name in document.reads if name not in named and arguments.kwarg is None]
     for name in refused:
-        hint = (
-            suggestion(name, named) if name.isidentifier() else ": `rename` the field to a parameter's name before this"
+        hint = suggestion(name, named) if name.isidentifier() else message("hint.rename-field")
+        context.found(
+            name.place,
+            message("wrong.no-function-parameter", function=str(document.function), name=str(name), hint=hint),
         )
-        context.found(name.place, f"`{document.function}` has no parameter `{name}`{hint}")
     missing = [argument.arg for argument in without_default if argument.arg not in document.reads]
     missing += [argument.arg for argument in arguments.posonlyargs]
     if missing:
-        message = f"`{document.function}` needs {', '.join(missing)}, which the stage does not read"
-        context.found(document.function.place, message)
+        said = message("wrong.function-needs", function=str(document.function), names=", ".join(missing))
+        context.found(document.function.place, said)
     return not refused and not missing
 
 
@@ -564,7 +571,7 @@ def _argument(name: SourceText, text: SourceText, context: Context) -> Argument 
         return None
     path, given = found
     if not _readable(given, type_):
-        context.found(text.place, f"`{name}` is {given} in the record, and the function reads {type_}")
+        context.found(text.place, message("wrong.function-reads", name=str(name), given=str(given), wanted=str(type_)))
         return None
     return Argument(path, type_)
 
@@ -584,8 +591,8 @@ def _readable(given: FieldType, wanted: FieldType) -> bool:
 def _type(text: SourceText, context: Context) -> FieldType | None:
     type_ = _read_type(text)
     if type_ is None:
-        forms = "bool, real, text, a range such as 0..3, names such as {open, closed}, or a list such as real[6]"
-        context.found(text.place, f"unknown type `{text}`: write {forms}")
+        names = "{open, closed}"
+        context.found(text.place, message("wrong.unknown-field-type", type=str(text), names=names))
     return type_
 
 

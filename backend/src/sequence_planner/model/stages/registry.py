@@ -13,6 +13,7 @@ from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages import discretise, expression, map, match, python, rename, timing
 from sequence_planner.model.stages.base import Context, Stage, StageDeclaration
 from sequence_planner.model.stages.marks import NameUse
+from sequence_planner.texts.message import message
 
 FAMILIES = (rename, expression, discretise, map, match, timing, python)
 KINDS: dict[str, type[StageDeclaration]] = {}
@@ -29,7 +30,7 @@ class StageDocument(DocumentPart):
         """Exactly one key, whose place is that of the stage."""
         stage = handler(written)
         if len(stage.model_fields_set) != 1:
-            raise ValueError(f"a stage is exactly one of {', '.join(cls.model_fields)}")
+            raise ValueError(message("form.stage", kinds=", ".join(cls.model_fields)))
         if isinstance(written, dict) and isinstance(key := next(iter(written)), SourceText):
             stage._place = key.place
         return stage

@@ -6,15 +6,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import FieldPath, common_type, feeds, fills, fits, shown
 from sequence_planner.language.records.record import FieldType, Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import Type
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, StageDeclaration
 from sequence_planner.model.stages.marks import NameMark, NameUse
 from sequence_planner.model.stages.suggestions import Candidate, Spot, some_values
 from sequence_planner.model.stages.support import ImmediateStage, plain, wanted_type
+from sequence_planner.texts.message import message
 
 # `rename`: fields under other names.
 
@@ -39,7 +40,7 @@ class RenameDocument(StageDeclaration):
         seen: set[str] = set()
         for _, target in pairs:
             if target in seen:
-                context.found(target.place, f"`{target}` is given twice here")
+                context.found(target.place, message("wrong.given-twice", name=str(target)))
             seen.add(target)
         found = [(context.field(source), target) for source, target in pairs]
         renamings = [Renaming(field[0], str(target), field[1]) for field, target in found if field is not None]
@@ -133,7 +134,7 @@ class ConstantDocument(StageDeclaration):
     def is_for(self, context: Context) -> bool:
         """Say of each field of an incoming topic that the message has its own."""
         for name in self.fields if context.is_incoming else ():
-            context.found(name.place, "`constant` is for outgoing topics: an incoming message has its own values")
+            context.found(name.place, message("wrong.constant-outgoing"))
         return not context.is_incoming
 
     @classmethod
@@ -151,9 +152,13 @@ def _type(context: Context, name: SourceText, value: object) -> FieldType | None
     if type_ is None:
         type_ = None if isinstance(value, list | dict) else common_type([value])
         if type_ is None:
-            context.found(name.place, f"the message has no field `{name}`{suggestion(name, context.wanted)}")
+            context.found(
+                name.place, message("wrong.no-message-field", name=str(name), hint=suggestion(name, context.wanted))
+            )
     elif not fits(type_, value):
-        context.found(name.place, f"`{name}` is {type_}, and {shown(value)} is no value of that type")
+        context.found(
+            name.place, message("wrong.no-value-of-type", name=str(name), type=str(type_), value=str(shown(value)))
+        )
         return None
     return type_
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import islice, product
 from typing import ClassVar
 
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import (
     FieldPath,
     NoFieldError,
@@ -22,11 +23,11 @@ from sequence_planner.language.records.field_paths import (
     written,
 )
 from sequence_planner.language.records.record import FieldType, ListType, RealType, Record, TextType
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import BooleanType, EnumerationType, IntegerRange, Place
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stages.base import Context, NotInvertibleError, Stage, StageDeclaration, StageInstance
 from sequence_planner.model.stages.marks import Marked, NameMark, NameUse
+from sequence_planner.texts.message import message
 
 # Stages that remember nothing: what goes on is decided by the record alone, and at once.
 
@@ -271,9 +272,9 @@ def value_of(context: Context, type_: FieldType, value: object, place: Place) ->
     meant = written(type_, value)
     if meant is None:
         near = suggestion(str(value), type_.values) if isinstance(type_, EnumerationType) else ""
-        text = as_written(value)
-        what = f"none of {type_}" if isinstance(type_, EnumerationType | BooleanType) else f"no value of type {type_}"
-        context.found(place_of([value], place), f"`{text}` is {what}{near}")
+        id_ = "wrong.none-of" if isinstance(type_, EnumerationType | BooleanType) else "wrong.no-value"
+        said = message(id_, value=as_written(value), type=str(type_), hint=near)
+        context.found(place_of([value], place), said)
     return meant
 
 
@@ -289,7 +290,7 @@ def type_for(context: Context, name: SourceText, values: Iterable[object]) -> Fi
     type_ = wanted_type(context, name) or common_type(known)
     if type_ is None:
         kinds = ", ".join(shown(value) for value in known)
-        context.found(name.place, f"the values of `{name}` are of different kinds: {kinds}")
+        context.found(name.place, message("wrong.different-kinds", name=str(name), values=kinds))
     return type_
 
 
@@ -302,7 +303,7 @@ def passing(context: Context, written: Iterable[Marked]) -> tuple[Passing, ...] 
             continue
         found = context.field(text)
         if found is not None and mark.fits is not None and not mark.fits(found[1]):
-            context.found(text.place, f"`{text}` must be {mark.what}, and is {found[1]}")
+            context.found(text.place, message("wrong.must-be", name=str(text), what=mark.what, type=str(found[1])))
             found = None
         is_sound = is_sound and found is not None
         if found is not None:

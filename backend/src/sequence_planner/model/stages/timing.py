@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.records.field_paths import (
     FieldPath,
     as_written,
@@ -18,7 +19,6 @@ from sequence_planner.language.records.field_paths import (
     written,
 )
 from sequence_planner.language.records.record import FieldType, ListType, RealType, Record
-from sequence_planner.language.resolver import suggestion
 from sequence_planner.language.types import EnumerationType, IntegerRange, Place
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
@@ -44,6 +44,7 @@ from sequence_planner.model.stages.support import (
     values_of,
     wanted_type,
 )
+from sequence_planner.texts.message import message
 
 Period = Annotated[float, Field(gt=0, le=86_400)]
 KeptFields = Annotated[list[KeptField], Field(min_length=1)]
@@ -77,18 +78,22 @@ class RememberDocument(StageDeclaration):
         of = narrowest(context, path, given)
         type_ = wanted_type(context, self.variable) or of
         if not are_alike(of, type_):
-            remedy = "make one of the other by a stage before this"
-            context.found(self.of.place, f"`{path}` is {of} here, and `{self.variable}` is {type_}: {remedy}")
+            said = message(
+                "wrong.unlike", name=str(path), type=str(of), other=str(self.variable), other_type=str(type_)
+            )
+            context.found(self.of.place, said)
             return None
         ignored = {value: written(of, value) for value in self.ignored}
         for value, meant in ignored.items():
             if meant is None:
                 near = suggestion(value, of.values) if isinstance(of, EnumerationType) else ""
-                context.found(value.place, f"`{value}` is no value of `{self.of}`{near}")
+                context.found(
+                    value.place, message("wrong.no-value-of-field", value=str(value), name=str(self.of), hint=near)
+                )
         kept = set(domain(of) or ()) - set(ignored.values())
         if (holds := domain(type_)) is not None and (extra := kept - set(holds)):
             names = ", ".join(sorted(map(as_written, extra)))
-            context.found(self.variable.place, f"`{self.variable}` cannot be {names}: put it into `except`")
+            context.found(self.variable.place, message("wrong.put-into-except", name=str(self.variable), values=names))
             return None
         if None in ignored.values():
             return None
@@ -310,9 +315,9 @@ class BoundsDocument(DocumentPart):
     @model_validator(mode="after")
     def _one_kind(self) -> BoundsDocument:
         if (self.between is None) == (self.among is None):
-            raise ValueError("write either `between: [least, greatest]` or `in: [values]`")
+            raise ValueError(message("form.bounds"))
         if self.between is not None and self.between[0] > self.between[1]:
-            raise ValueError("`between` has the least number first")
+            raise ValueError(message("form.between"))
         return self
 
 
@@ -375,7 +380,7 @@ def _bounds(context: Context, name: SourceText, document: BoundsDocument, type_:
         among = values_of(context, type_, document.among or [], name.place)
         return None if among is None else Bounds(among=tuple(among))
     if not is_numeric(type_):
-        context.found(name.place, f"`{name}` is {type_}, which is not between two numbers: write `in: [values]`")
+        context.found(name.place, message("wrong.not-between", name=str(name), type=str(type_)))
         return None
     return Bounds(document.between) if _reachable(context, name.place, document.between, type_) else None
 
@@ -385,7 +390,7 @@ def _reachable(context: Context, place: Place, between: tuple[float, float], typ
         return True
     beyond = [bound for bound in between if not type_.minimum <= bound <= type_.maximum]
     for bound in beyond:
-        context.found(place, f"the field ranges over {type_}, and cannot be {bound:g}")
+        context.found(place, message("wrong.field-range", range=str(type_), value=f"{bound:g}"))
     return not beyond
 
 

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from sequence_planner.model.fields import DocumentPart, Given
 from sequence_planner.model.source import SourceText
+from sequence_planner.texts.message import message
 
 ParameterKind = Literal["text", "number", "enumeration", "value", "resource"]
 Argument = SourceText | Annotated[int | float, Field(allow_inf_nan=False)]
@@ -26,7 +27,7 @@ class ParameterDocument(DocumentPart):
     @model_validator(mode="after")
     def _is_of_something(self) -> ParameterDocument:
         if (self.kind == "value") != (self.of is not None):
-            raise ValueError("`of` belongs to `kind: value`, and says which enumeration the value is of")
+            raise ValueError(message("form.of"))
         return self
 
 

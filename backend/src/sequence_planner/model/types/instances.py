@@ -6,15 +6,24 @@ from collections.abc import Collection, Mapping
 
 from pydantic import ValidationError
 
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.types import Place
 from sequence_planner.model.documents import ResourceDocument, StationDocument
 from sequence_planner.model.fields import fault_of_name
 from sequence_planner.model.source import Finding, SourceText, with_given_at
 from sequence_planner.model.types.documents import ParameterDocument
 from sequence_planner.model.types.expansion import GivenArgument
-from sequence_planner.model.types.layers import Layer, WrittenInstance, content_of, document_of, layers_of
+from sequence_planner.model.types.layers import (
+    Layer,
+    UnusedType,
+    WrittenInstance,
+    content_of,
+    document_of,
+    layers_of,
+)
+from sequence_planner.model.types.unused import unused_types
 from sequence_planner.model.validation import findings_of, shown
+from sequence_planner.texts.message import message
 
 _WANTED = {"number": "a number", "text": "a text", "value": "a value", "resource": "a resource"}
 
@@ -89,15 +98,13 @@ class Instances:
         self.findings += known[1]
         return known[0]
 
-    @property
-    def unused(self) -> list[str]:
-        """The types of the station itself that no instance has, and with which nothing is wrong so far."""
+    def read_unused(self) -> dict[str, UnusedType]:
+        """The types that no instance has, as far as all is right with them; what is wrong with others is noted."""
         used = {layer.name for layers in self.layers.values() for layer in layers}
-        return [
-            name
-            for name, type_ in self._types.items()
-            if name in self._sound - used and type_ is not None and not type_.package
-        ]
+        unused = [name for name in self._types if name in self._sound - used]
+        found, wrong = unused_types(unused, self._types) if unused else ({}, [])
+        self.findings += wrong
+        return found
 
     def _note(self, where: SourceText | Place, message: str) -> None:
         self.findings.append(Finding(where.place if isinstance(where, SourceText) else where, message))
@@ -211,5 +218,8 @@ def _told_at_argument(where: str, alike: list[Finding], places: Collection[Place
     if given is None or len(alike) == 1:
         return alike
     first, count = min(each.place._replace(instance="") for each in alike), len(alike) - 1
-    others = "another place use" if count == 1 else f"{count} other places use"
-    return [Finding(given, f"{alike[0].message}: {first} and {others} it")]
+    known = {"what": alike[0].message, "place": str(first)}
+    if count == 1:
+        return [Finding(given, message("wrong.at-argument", **known))]
+    said = message("wrong.at-argument.several", count=count, **known)
+    return [Finding(given, said)]

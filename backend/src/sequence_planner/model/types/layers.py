@@ -10,15 +10,16 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from sequence_planner.language.resolver import suggestion
+from sequence_planner.language.names.suggestions import suggestion
 from sequence_planner.language.shorthand.titles import VALUE_IN_PHRASE
 from sequence_planner.model.documents import ResourceDocument
 from sequence_planner.model.paths import EditError, missing, parse_path, resource_of, type_of
 from sequence_planner.model.source import Finding, SourceText
-from sequence_planner.model.types.documents import InstanceHead, ParameterDocument, TypeHead
+from sequence_planner.model.types.documents import InstanceHead, ParameterDocument, ParameterKind, TypeHead
 from sequence_planner.model.types.expansion import Expansion, GivenArgument, given_argument, resource_shape
 from sequence_planner.model.validation import findings_of, shown
 from sequence_planner.model.yaml.reader import MadePlaces, YamlDocument, read_yaml
+from sequence_planner.texts.message import message
 
 SECTIONS = ("measured", "output", "estimated")
 OF_INSTANCES = frozenset(InstanceHead.model_fields)  # keys that no other resource has
@@ -31,6 +32,12 @@ class WrittenInstance:
     document: YamlDocument
     head: InstanceHead
     package: str = ""
+
+    @property
+    def base(self) -> str | None:
+        """The full name of the type that it is of, if it is of one."""
+        named = self.head.type
+        return None if named is None else str(named) if "." in named or not self.package else f"{self.package}.{named}"
 
     @cached_property
     def own(self) -> dict[SourceText, object]:
@@ -51,10 +58,12 @@ class WrittenInstance:
             for name, variable in _entries(self.own.get(section)):  # type: ignore[call-overload]
                 found[str(name)] = "variable"
                 found |= dict.fromkeys((str(each) for each, _ in _entries(_at(variable, "for"))), "parameter")
-        for section, what in (("abilities", "ability"), ("predicates", "predicate")):
+        for section, what in (("abilities", "ability"), ("predicates", "predicate"), ("sets", "set")):
             for name, part in _entries(_at(self.own, section)):
                 found[str(name)] = what
                 found |= dict.fromkeys((str(each) for each, _ in _entries(_at(part, "parameters"))), "parameter")
+                for _, effect in _entries(_at(part, "effects")):
+                    found |= dict.fromkeys((str(each) for each, _ in _entries(_at(effect, "for"))), "parameter")
         return found
 
     @cached_property
@@ -84,11 +93,11 @@ def read_type(document: YamlDocument, package: str) -> tuple[object, list[Findin
 def _read(document: YamlDocument, kind: type[InstanceHead], package: str) -> tuple[object, list[Finding]]:
     content = document.content
     if not isinstance(content, dict):
-        message = f"expected names with their definitions, found {shown(content)}"
-        return None, [Finding(document.place(()), message)]
+        said = message("wrong.expected", wanted=message("expected.names"), found=shown(content), hint="")
+        return None, [Finding(document.place(()), said)]
     known = [*kind.model_fields, *ResourceDocument.model_fields]
     wrong = [
-        Finding(document.place((key,)), f"`{key}` is not known here{suggestion(key, known)}")
+        Finding(document.place((key,)), message("wrong.unknown-key", name=str(key), hint=suggestion(key, known)))
         for key in content
         if key not in known
     ]
@@ -97,8 +106,8 @@ def _read(document: YamlDocument, kind: type[InstanceHead], package: str) -> tup
     except ValidationError as error:
         return None, [*findings_of(error, document, (), kind), *wrong]
     if head.type is None and kind is InstanceHead:
-        message = "`type` is missing here: `arguments` and `remove` are those of an instance of a type"
-        wrong.append(Finding(document.place(()), message))
+        said = message("wrong.no-type")
+        wrong.append(Finding(document.place(()), said))
     return None if wrong else WrittenInstance(document, head, package), wrong
 
 
@@ -110,6 +119,17 @@ class Layer(NamedTuple):
     arguments: Mapping[str, GivenArgument]
 
 
+@dataclass(frozen=True)
+class UnusedType:
+    """A type that no instance has: the resource that it makes where each parameter is given its own name, or 1 for a
+    number; and of which kind its parameters are. It may belong to a `package`.
+    """
+
+    document: ResourceDocument
+    kinds: Mapping[str, ParameterKind]
+    package: str
+
+
 def layers_of(
     instance: str, written: WrittenInstance, types: Mapping[str, WrittenInstance | None]
 ) -> tuple[list[Layer], Finding | None, bool]:
@@ -118,17 +138,15 @@ def layers_of(
     Arguments are as they are given: of those that are missing and have no default there are none.
     """
     layers = [Layer("", written, {})]
-    while (named := layers[-1].written.head.type) is not None:
-        package = layers[-1].written.package
-        full = str(named) if "." in named or not package else f"{package}.{named}"
+    while (named := layers[-1].written.head.type) is not None and (full := layers[-1].written.base) is not None:
         chain = [each.name for each in layers[1:]]
         if full in chain:
             circle = " → ".join([*chain[chain.index(full) :], full])
-            return layers, Finding(named.place, f"`{full}` is a type of itself: {circle}"), False
+            return layers, Finding(named.place, message("wrong.type-of-itself", name=full, names=circle)), False
         type_ = types.get(full)
         if type_ is None:
-            what = "a type is a file types/<name>.yaml, or package.name"
-            said = Finding(named.place, f"unknown type `{named}`: {what}{suggestion(named, types)}")
+            unknown = message("wrong.no-resource-type", name=str(named), hint=suggestion(named, types))
+            said = Finding(named.place, unknown)
             is_told = full in types or f"{full.partition('.')[0]}.*" in types  # or its whole package is unusable
             return layers, None if is_told else said, False
         layers.append(Layer(full, type_, _arguments(instance, type_, layers[-1], len(layers) > 1)))
@@ -175,13 +193,18 @@ def content_of(
             expansion = Expansion(instance, layer.arguments, document, places)
             own = expansion.expanded(own, resource_shape())
             for name in expansion.duplicates:
-                found.append(Finding(name.place, f"duplicate name `{name}`: other arguments make another one"))
+                found.append(Finding(name.place, message("wrong.duplicate-by-arguments", name=str(name))))
             for name in expansion.unknown:
                 if str(name) not in layer.written.meanings and not (
                     name == VALUE_IN_PHRASE and layer.written.has_phrases
                 ):
                     near = suggestion(name, layer.written.parameters)
-                    found.append(Finding(name.place._replace(instance=instance), f"unknown parameter `{name}`{near}"))
+                    found.append(
+                        Finding(
+                            name.place._replace(instance=instance),
+                            message("wrong.unknown-parameter", name=str(name), hint=near),
+                        )
+                    )
         content = _merged(content, own)
     made: dict[SourceText, object] = content
     return made

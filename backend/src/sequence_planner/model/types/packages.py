@@ -27,6 +27,7 @@ from sequence_planner.model.files import is_package_name, package_files
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.reader import YamlDocument, read_text
+from sequence_planner.texts.message import message
 
 # What a package declares for a station.
 SECTIONS = ("enumerations", "sets", "relations", "maps", "predicates")
@@ -200,10 +201,10 @@ def read_manifest(text: str, called: str) -> PackageDocument:
     package = _validated(document, document.content, PackageDocument)
     findings = []
     if not re.fullmatch(VERSION, package.version):
-        findings.append(Finding(package.version.place, f"`{package.version}` is no version: write such as 1.2.0"))
+        findings.append(Finding(package.version.place, message("wrong.no-version", version=str(package.version))))
     for wanted in package.needs.values():
         if not _NEEDS.fullmatch(wanted):
-            findings.append(Finding(wanted.place, f'`{wanted}` is no range of versions: write such as ">=1.0, <2"'))
+            findings.append(Finding(wanted.place, message("wrong.no-versions", range=str(wanted))))
     if findings:
         raise ModelError(findings)
     return package
@@ -217,7 +218,7 @@ def read_lock(folder: Path) -> dict[str, LockedPackage]:
     except FileNotFoundError:
         return {}
     except (OSError, UnicodeDecodeError) as error:
-        raise ModelError([Finding(Place(str(path), 1, 1), f"cannot be read: {error}")]) from error
+        raise ModelError([Finding(Place(str(path), 1, 1), message("wrong.unreadable", why=str(error)))]) from error
     document = read_text(text, str(path))
     content = document.content if isinstance(document.content, dict) else {}
     return {str(name): _validated(document, each, LockedPackage, (str(name),)) for name, each in content.items()}

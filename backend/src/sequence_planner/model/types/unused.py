@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from pydantic import ValidationError
 
 from sequence_planner.language.parser import parse, parse_assignment
 from sequence_planner.language.syntax import ExpressionError
-from sequence_planner.model.documents import AbilityDocument, PredicateDocument, ResourceDocument
+from sequence_planner.model.documents import AbilityDocument, Parameters, PredicateDocument, ResourceDocument
 from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.model.types.documents import ParameterKind
-from sequence_planner.model.types.layers import WrittenInstance, content_of, document_of, layers_of, read_instance
+from sequence_planner.model.types.layers import (
+    UnusedType,
+    WrittenInstance,
+    content_of,
+    document_of,
+    layers_of,
+    read_instance,
+)
 from sequence_planner.model.validation import findings_of
 from sequence_planner.model.yaml.reader import read_text
 
@@ -29,13 +36,26 @@ class _StandIns(NamedTuple):
 _STAND_INS = (_StandIns(1, "", ""), _StandIns(1000, "/", "_"))
 
 
-def wrong_in_unused(name: str, types: Mapping[str, WrittenInstance | None]) -> list[Finding]:
-    """Return what is wrong in a type whatever its arguments are: its form, and the grammar of its texts."""
-    type_ = types[name]
-    assert type_ is not None
-    made = [_made_with(name, type_, types, arguments) for arguments in _STAND_INS]
-    readable = [_unreadable(each) for each in made if isinstance(each, ResourceDocument)]
-    return _in_all(readable or [each for each in made if isinstance(each, list)])
+def unused_types(
+    names: Collection[str], types: Mapping[str, WrittenInstance | None]
+) -> tuple[dict[str, UnusedType], list[Finding]]:
+    """These types as far as all is right with them, but for those of which another one is; and what is wrong with their
+    form and the grammar of their texts, whatever the arguments are.
+    """
+    found: dict[str, UnusedType] = {}
+    wrong: dict[Finding, None] = {}
+    bases = {each.base for each in types.values() if each is not None}
+    for name in names:
+        type_ = types[name]
+        assert type_ is not None
+        made = [_made_with(name, type_, types, arguments) for arguments in _STAND_INS]
+        readable = [_unreadable(each) for each in made if isinstance(each, ResourceDocument)]
+        known = _in_all(readable or [each for each in made if isinstance(each, list)])
+        wrong |= dict.fromkeys(known)
+        if not known and name not in bases and isinstance(made[0], ResourceDocument):
+            kinds = {str(each): parameter.kind for each, parameter in type_.parameters.items()}
+            found[name] = UnusedType(made[0], kinds, type_.package)
+    return found, list(wrong)
 
 
 def _in_all(found: Sequence[list[Finding]]) -> list[Finding]:
@@ -63,12 +83,11 @@ def _made_with(
 def _unreadable(resource: ResourceDocument) -> list[Finding]:
     """What is wrong with the grammar of its conditions and actions."""
     found: list[Finding] = []
-    for text, read in _texts(resource):
-        if isinstance(text, SourceText):
-            try:
-                read(text)
-            except ExpressionError as error:
-                found.append(Finding(text.at(error.span), error.message))
+    for each in texts_of(resource):
+        try:
+            (parse_assignment if each.is_action else parse)(each.text)
+        except ExpressionError as error:
+            found.append(Finding(each.text.at(error.span), error.message))
     return found
 
 
@@ -78,25 +97,45 @@ def _argument(parameter: str, kind: ParameterKind, arguments: _StandIns) -> str:
     return f"'{arguments.text if kind == 'text' else arguments.name}{parameter}'"
 
 
-def _texts(resource: ResourceDocument) -> Iterator[tuple[object, Callable[[str], object]]]:
-    """All conditions and actions, each with what reads it."""
+class ReadText(NamedTuple):
+    """A condition or an action of a resource, with the parameters around it; in an ability the flags of that are known
+    by their bare names.
+    """
+
+    text: SourceText
+    parameters: Parameters
+    is_action: bool = False
+    in_ability: bool = False
+
+
+def texts_of(resource: ResourceDocument) -> Iterator[ReadText]:
+    """All conditions and actions of a resource."""
     for ability in resource.abilities.values():
-        yield from ((text, parse) for text in _conditions(ability))
-        yield from ((text, parse_assignment) for text in _actions(ability))
+        yield from _of_ability(ability)
     for predicate in resource.predicates.values():
-        yield predicate.when if isinstance(predicate, PredicateDocument) else predicate, parse
+        parameters = predicate.parameters if isinstance(predicate, PredicateDocument) else {}
+        condition = predicate.when if isinstance(predicate, PredicateDocument) else predicate
+        if isinstance(condition, SourceText):
+            yield ReadText(condition, parameters)
     for alarm in resource.alarms.values():
-        yield alarm.when, parse
+        if isinstance(alarm.when, SourceText):
+            yield ReadText(alarm.when, {})
 
 
-def _conditions(ability: AbilityDocument) -> Iterator[object]:
-    yield from (ability.enabled, ability.start.when, ability.until, ability.executing, ability.finished)
+def _of_ability(ability: AbilityDocument) -> Iterator[ReadText]:
+    conditions: list[object] = [ability.enabled, ability.start.when, ability.until, ability.executing, ability.finished]
     if ability.finish is not None:
-        yield ability.finish.when
-    yield from (effect.when for effect in ability.effects.values())
+        conditions.append(ability.finish.when)
+    yield from _read(conditions, ability.parameters)
+    for part in (ability.start, ability.finish, ability.cancel):
+        yield from _read([] if part is None else part.do, ability.parameters, is_action=True)
+    for effect in ability.effects.values():
+        parameters = {**ability.parameters, **effect.each}
+        yield from _read([effect.when], parameters)
+        yield from _read(effect.do, parameters, is_action=True)
 
 
-def _actions(ability: AbilityDocument) -> Iterator[SourceText]:
-    yield from ability.start.do
-    for part in (ability.finish, ability.cancel, *ability.effects.values()):
-        yield from () if part is None else part.do
+def _read(texts: Iterable[object], parameters: Parameters, *, is_action: bool = False) -> Iterator[ReadText]:
+    for text in texts:
+        if isinstance(text, SourceText):
+            yield ReadText(text, parameters, is_action, in_ability=True)

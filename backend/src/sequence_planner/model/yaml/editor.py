@@ -1,217 +1,30 @@
-"""YAML editing that preserves all other bytes: layout of entries, formatting of values, edit operations."""
+"""YAML editing that preserves all other bytes: formatting of values, edit operations."""
 
 from __future__ import annotations
 
 import io
-import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
 
 from ruamel.yaml import YAML
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString, SingleQuotedScalarString
 
 from sequence_planner.model.paths import EditError, missing, shown_path
 from sequence_planner.model.source import ModelError
-from sequence_planner.model.yaml.reader import EntryPath, Node, compose, read_text
-
-# Where the entries of a YAML text begin and end, comments and blank lines included: what an edit may touch.
-
-_ALIAS = re.compile(r"\*[^\s,\]}]+")
-_PROPERTIES = re.compile(r"(?:[&!]\S*(?:[ \t]+|$))+", re.MULTILINE)
-
-
-@dataclass(frozen=True)
-class YamlEntry:
-    """One entry of a mapping or list. It is written from `start`, its value from `value_start` to `end`.
-
-    `head` is just behind the `:` of its name or its `-`.
-    """
-
-    key: Node | None
-    node: Node
-    start: int
-    head: int
-    value_start: int
-    end: int
-    is_alias: bool
-
-
-@dataclass(frozen=True)
-class Layout:
-    """A text and its nodes."""
-
-    text: str
-    root: Node
-
-    @classmethod
-    def of(cls, text: str) -> Layout | None:
-        """Nothing for a text in which nothing stands."""
-        root = compose(text)
-        return None if root is None else cls(text, root)
-
-    def entries(self, parent: Node) -> list[YamlEntry]:
-        """The entries of a mapping or list, in order."""
-        found: list[YamlEntry] = []
-        at = self.skip_properties(parent)
-        for item in parent.value:
-            is_pair = parent.kind == "mapping"
-            found.append(self._pair(*item) if is_pair else self._item(parent, item, at, is_first=not found))
-            at = found[-1].end
-        return found
-
-    def find(self, path: EntryPath) -> list[tuple[Node, int]]:
-        """The way to the entry at `path`, which exists: each mapping or list passed, and the position of the next."""
-        way: list[tuple[Node, int]] = []
-        node = self.root
-        for step in path:
-            if node.kind == "sequence":
-                way.append((node, int(step)))
-                node = node.value[int(step)]
-            else:
-                names = [key.value for key, _ in node.value]
-                way.append((node, names.index(step)))
-                node = node.value[names.index(step)][1]
-        return way
-
-    def entry(self, way: list[tuple[Node, int]]) -> YamlEntry:
-        """The entry that a way leads to."""
-        parent, position = way[-1]
-        return self.entries(parent)[position]
-
-    def refuse_shared(self, way: list[tuple[Node, int]], last: YamlEntry | None) -> None:
-        """Refuse to change what an anchor shares with its aliases: what the way leads through, and all of `last`."""
-        aliases = list(self._aliases(self.root))
-        shared = {id(alias.node): alias for alias in aliases}
-        for parent, position in way if last is None else way[:-1]:
-            entry = self.entries(parent)[position]
-            if id(entry.node) in shared:
-                self._refuse(shared[id(entry.node)])
-        if last is not None and not last.is_alias:
-            inner = {id(node) for node in self._nodes(last)}
-            for alias in aliases:
-                if id(alias.node) in inner and not last.start <= alias.start < last.end:
-                    self._refuse(alias)
-
-    def _refuse(self, alias: YamlEntry) -> None:
-        anchor, use = (self.line(index) for index in (alias.node.start.index, alias.value_start))
-        raise EditError(
-            f"what the anchor in line {anchor} names is used by the alias in line {use} too: write it out there, then"
-            " each can be changed alone"
-        )
-
-    def comments_above(self, parent: Node, position: int) -> int:
-        """Return where the line of a block's entry begins, or those of the comments directly above it at its column.
-
-        A comment that begins the file is about the file, and not about its first entry.
-        """
-        entries = self.entries(parent)
-        start = entries[position].start
-        floor = self.line_end(entries[position - 1].end) if position else self._head_end(parent)
-        top = self.line_start(start)
-        margin = " " * (start - top) + "#"
-        if self.text[top:start].strip():
-            return start
-        begin = top
-        while begin > floor + 1 and self.text.startswith(margin, self.line_start(begin - 1)):
-            begin = self.line_start(begin - 1)
-        return top if begin == 0 else begin
-
-    def blank_above(self, index: int) -> int:
-        """Count the blank lines that there are directly above the line that begins at `index`."""
-        above = self.text[:index]
-        return max(len(above) - len(above.rstrip("\n")) - 1, 0) if above.strip("\n") else len(above)
-
-    def blank_below(self, index: int) -> int:
-        """Count the blank lines that there are directly below the line that ends at `index`."""
-        below = self.text[index + 1 :]
-        return len(below) - len(below.lstrip("\n"))
-
-    def _head_end(self, parent: Node) -> int:
-        """Return where the line ends in which the name of a mapping or list stands, or -1 for the root."""
-        if parent is self.root:
-            return -1
-        start = self.line_start(parent.start.index)
-        above = re.compile(r"(?:[ ]*(?:#[^\n]*)?\n)*\Z").search(self.text, 0, start)
-        return (above.start() if above else start) - 1
-
-    def line(self, index: int) -> int:
-        """The line of a character, from 1."""
-        return self.text.count("\n", 0, index) + 1
-
-    def line_start(self, index: int) -> int:
-        """Return where the line of a character begins."""
-        return self.text.rfind("\n", 0, index) + 1
-
-    def line_end(self, index: int) -> int:
-        """Return where the line of a character ends, before its line break."""
-        found = self.text.find("\n", index)
-        return len(self.text) if found < 0 else found
-
-    def skip_properties(self, node: Node) -> int:
-        """Return where a node begins behind its anchor and tag."""
-        at = node.start.index
-        if node.start.index < node.end.index and (found := _PROPERTIES.match(self.text, at)):
-            at = found.end()
-        return at
-
-    def end_of(self, node: Node) -> int:
-        """Just behind the last character of a node, without what only follows it."""
-        if node.style in ("|", ">"):
-            raw = self.text[node.start.index : node.end.index]
-            keeps_blank_lines = "+" in raw.partition("\n")[0].partition("#")[0]
-            return node.start.index + len(raw.removesuffix("\n") if keeps_blank_lines else raw.rstrip())
-        if node.kind == "scalar" or node.style or not node.value:
-            return node.end.index
-        return self.entries(node)[-1].end
-
-    def _pair(self, key: Node, value: Node) -> YamlEntry:
-        start, behind = key.start.index, self._skip(self.end_of(key))
-        if self.text[:start].rstrip(" ").endswith("?"):
-            raise EditError(f"line {self.line(start)}: a name behind a `?` cannot be edited; write it as `name: value`")
-        has_colon = self.text[behind : behind + 1] == ":"
-        value_at = behind + 1 if has_colon else self.end_of(key)
-        return self._entry(key, value, start, value_at, self._skip(value_at) if has_colon else value_at)
-
-    def _item(self, parent: Node, value: Node, after: int, is_first: bool) -> YamlEntry:
-        if parent.style:
-            start = self._skip(after + is_first, "," if not is_first else "")
-            return self._entry(None, value, start, start, start)
-        start = self._skip(after)
-        return self._entry(None, value, start, start + 1, self._skip(start + 1))
-
-    def _entry(self, key: Node | None, value: Node, start: int, empty_at: int, value_at: int) -> YamlEntry:
-        if value.start.index < start:
-            alias = _ALIAS.match(self.text, value_at)
-            assert alias is not None, "a node that stands above is there by an alias"
-            return YamlEntry(key, value, start, empty_at, alias.start(), alias.end(), True)
-        if value.start.index == value.end.index:
-            return YamlEntry(key, value, start, empty_at, empty_at, empty_at, False)
-        return YamlEntry(key, value, start, empty_at, value_at, self.end_of(value), False)
-
-    def _skip(self, at: int, also: str = "") -> int:
-        """Behind white space and comments."""
-        found = re.compile(rf"(?:[\s{also}]|#[^\n]*)*").match(self.text, at)
-        return found.end() if found else at
-
-    def _aliases(self, node: Node) -> Iterator[YamlEntry]:
-        if node.kind != "scalar":
-            for entry in self.entries(node):
-                if entry.is_alias:
-                    yield entry
-                else:
-                    yield from self._aliases(entry.node)
-
-    def _nodes(self, entry: YamlEntry) -> Iterator[Node]:
-        yield entry.node
-        if entry.key is not None:
-            yield entry.key
-        if entry.node.kind != "scalar":
-            for inner in self.entries(entry.node):
-                if not inner.is_alias:
-                    yield from self._nodes(inner)
-
+from sequence_planner.model.yaml.content import (
+    Content,
+    add_entry,
+    content_at,
+    move_entry,
+    plain,
+    put_value,
+    rename_entry,
+    same,
+    take_entry,
+)
+from sequence_planner.model.yaml.layout import Layout, YamlEntry
+from sequence_planner.model.yaml.reader import EntryPath, Node, read_text
+from sequence_planner.texts.message import message
 
 # How values are written in YAML documents: two spaces, indented lists, short lists in one line, long texts folded.
 
@@ -529,7 +342,7 @@ def _splice_in(text: str, path: EntryPath, position: int, flat: str, block: Call
 def _refuse_bare_pair(layout: Layout, parent: Node) -> None:
     if layout.text[layout.skip_properties(parent)] not in "[{":
         line = layout.line(parent.start.index)
-        raise EditError(f"line {line}: put the pair in braces, as in `[{{name: value}}]`, and it can be edited")
+        raise EditError(message("edit.bare-pair", line=line, form="[{name: value}]"))
 
 
 def _found(text: str, path: EntryPath) -> tuple[Layout, list[tuple[Node, int]]]:
@@ -547,11 +360,6 @@ def _splice(text: str, begin: int, end: int, written: str) -> str:
 # An entry is named by its path of names and indices, as in `("abilities", "run_nut", "enabled")`. Each edit is read
 # again before it is returned: its content must be the old one with exactly that change.
 
-_NOT_HERE = "this cannot be edited here without rewriting what is around it: edit it by hand; nothing was changed"
-
-# Texts, numbers, truth values, lists and dicts of them, or nothing.
-Content = Any
-
 
 def replace(text: str, path: EntryPath, value: object) -> str:
     """Give the entry at `path` another value. Of lists and dicts only what differs is touched. Raises `EditError`."""
@@ -563,8 +371,8 @@ def replace(text: str, path: EntryPath, value: object) -> str:
     if isinstance(old, list) and isinstance(value, list | tuple) and old and value:
         return _replace_list(text, path, old, list(value))
     if not path:
-        raise EditError("the whole document cannot be replaced: name an entry")
-    return _verified(text, replaced(text, path, value), lambda content: _put(content, path, value))
+        raise EditError(message("edit.whole-replaced"))
+    return _verified(text, replaced(text, path, value), lambda content: put_value(content, path, value))
 
 
 def insert(
@@ -577,24 +385,36 @@ def insert(
     parent = path[:-1]
     content = content_at(_content(text), parent)
     if not isinstance(content, dict | list):
-        raise EditError(f"`{shown_path(parent)}` holds no entries, so none can be added: replace it")
+        raise EditError(message("edit.no-entries", path=shown_path(parent)))
     if isinstance(content, dict) and path[-1] in content:
-        raise EditError(f"`{shown_path(path)}` is there already: replace it")
+        raise EditError(message("edit.there-already-replace", path=shown_path(path)))
     position = _position(content, parent, before, after)
     name = str(path[-1]) if isinstance(content, dict) else None
     return _verified(
         text,
         inserted(text, parent, position, name, value),
-        lambda old: _add(old, parent, position, name, value),
+        lambda old: add_entry(old, parent, position, name, value),
     )
 
 
 def remove(text: str, path: EntryPath) -> str:
     """Take an entry out, with the comments directly above it. Raises `EditError`."""
     if not path:
-        raise EditError("the whole document cannot be removed")
+        raise EditError(message("edit.whole-removed"))
     content_at(_content(text), path)
-    return _verified(text, removed(text, path), lambda content: _take(content, path))
+    return _verified(text, removed(text, path), lambda content: take_entry(content, path))
+
+
+def comment(text: str, path: EntryPath, comments: Sequence[str]) -> str:
+    """Put lines of comment above the entry at `path`; the text as it was where that would change what it says."""
+    layout = Layout.of(text)
+    if layout is None or not comments:
+        return text
+    at = layout.line_start(layout.entry(layout.find(path)).start)
+    line = text[at : layout.line_end(at)]
+    margin = line[: len(line) - len(line.lstrip(" "))]
+    commented = text[:at] + "".join(f"{margin}# {each}\n" for each in comments) + text[at:]
+    return commented if same(_content(text), _content(commented)) else text
 
 
 def rename(text: str, path: EntryPath, name: str) -> str:
@@ -602,10 +422,10 @@ def rename(text: str, path: EntryPath, name: str) -> str:
     content = _content(text)
     content_at(content, path)
     if not path or not isinstance(path[-1], str):
-        raise EditError("only an entry with a name can be renamed")
+        raise EditError(message("edit.only-named"))
     if name in content_at(content, path[:-1]):
-        raise EditError(f"`{shown_path((*path[:-1], name))}` is there already")
-    return _verified(text, renamed(text, path, name), lambda old: _call(old, path, name))
+        raise EditError(message("edit.there-already", path=shown_path((*path[:-1], name))))
+    return _verified(text, renamed(text, path, name), lambda old: rename_entry(old, path, name))
 
 
 def move(text: str, path: EntryPath, *, before: str | int | None = None, after: str | int | None = None) -> str:
@@ -621,7 +441,7 @@ def move(text: str, path: EntryPath, *, before: str | int | None = None, after: 
     position -= here < position
     if position == here:
         return text
-    return _verified(text, moved(text, path, position), lambda content: _shift(content, parent, here, position))
+    return _verified(text, moved(text, path, position), lambda content: move_entry(content, parent, here, position))
 
 
 def value_at(text: str, path: EntryPath) -> Content:
@@ -666,30 +486,12 @@ def _position(
     return len(siblings)
 
 
-def same(one: object, other: object) -> bool:
-    """Return whether two contents are equal, in their types and the order of their entries too.
-
-    `2.0` is `2`: a browser knows one kind of number, and tells what it has read as the shorter one.
-    """
-    if isinstance(one, Mapping) and isinstance(other, Mapping):
-        return list(map(str, one)) == list(map(str, other)) and all(same(one[key], other[key]) for key in one)
-    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(map(same, one, other))
-    if isinstance(one, str) and isinstance(other, str):
-        return str(one) == str(other)
-    numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in (one, other))
-    return (numbers or type(one) is type(other)) and (one == other or (_is_nan(one) and _is_nan(other)))
-
-
-def _is_nan(value: object) -> bool:
-    return isinstance(value, float) and math.isnan(value)
-
-
 def _content(text: str) -> Content:
     try:
         return read_text(text, "line").content
     except ModelError as error:
-        raise EditError(f"it cannot be edited before it can be read: {error.findings[0]}") from error
+        first = error.findings[0]
+        raise EditError(message("edit.unreadable", place=str(first.place), what=first.message)) from error
 
 
 def _verified(text: str, new: str, change: Callable[[Content], Content]) -> str:
@@ -698,69 +500,7 @@ def _verified(text: str, new: str, change: Callable[[Content], Content]) -> str:
     try:
         found = read_text(new, "line").content
     except ModelError as error:
-        raise EditError(f"{_NOT_HERE} (it could not be read afterwards: {error.findings[0].message})") from error
+        raise EditError(message("edit.not-here.unreadable", why=error.findings[0].message)) from error
     if not same(expected, found):
-        raise EditError(f"{_NOT_HERE} (something else would change with it)")
+        raise EditError(message("edit.not-here.else"))
     return new
-
-
-def plain(content: Content) -> Content:
-    """The same with texts and names that know nothing of their places."""
-    if isinstance(content, dict):
-        return {str(key): plain(value) for key, value in content.items()}
-    if isinstance(content, list):
-        return [plain(value) for value in content]
-    return str(content) if isinstance(content, str) else content
-
-
-def content_at(content: Content, path: EntryPath) -> Content:
-    """The content at `path`; raises with the way there where it does not exist."""
-    for depth, step in enumerate(path):
-        is_there = (isinstance(content, dict) and isinstance(step, str) and step in content) or (
-            isinstance(content, list) and isinstance(step, int) and 0 <= step < len(content)
-        )
-        if not is_there:
-            raise EditError(missing(path, depth, content))
-        content = content[step]
-    return content
-
-
-def _put(content: Content, path: EntryPath, value: object) -> Content:
-    content_at(content, path[:-1])[path[-1]] = value
-    return content
-
-
-def _take(content: Content, path: EntryPath) -> Content:
-    del content_at(content, path[:-1])[path[-1]]
-    return content
-
-
-def _add(content: Content, parent: EntryPath, position: int, name: str | None, value: object) -> Content:
-    inside = content_at(content, parent)
-    if name is None:
-        inside.insert(position, value)
-    else:
-        pairs = list(inside.items())
-        inside.clear()
-        inside.update([*pairs[:position], (name, value), *pairs[position:]])
-    return content
-
-
-def _call(content: Content, path: EntryPath, name: str) -> Content:
-    inside = content_at(content, path[:-1])
-    pairs = [(name if key == path[-1] else key, value) for key, value in inside.items()]
-    inside.clear()
-    inside.update(pairs)
-    return content
-
-
-def _shift(content: Content, parent: EntryPath, here: int, position: int) -> Content:
-    inside = content_at(content, parent)
-    entries = list(inside.items()) if isinstance(inside, dict) else list(inside)
-    entries.insert(position, entries.pop(here))
-    inside.clear()
-    if isinstance(inside, dict):
-        inside.update(entries)
-    else:
-        inside.extend(entries)
-    return content

@@ -12,7 +12,8 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.fields import DocumentPart
 from sequence_planner.model.mimic.documents import MimicDocument
-from sequence_planner.model.paths import type_of
+from sequence_planner.model.paths import has_scenarios, type_of
+from sequence_planner.model.scenarios.documents import ScenarioDocument
 from sequence_planner.model.sequences import SequenceDocument
 from sequence_planner.model.shifts.documents import ShiftDocument
 from sequence_planner.model.types.composed import InstanceDocument, TypeDocument
@@ -32,7 +33,13 @@ def declared_order(file: str, path: EntryPath) -> tuple[str, ...]:
     """The keys that the mapping at `path` of a file of a model may have, in their order; none where it is no part of a
     document, or one whose names are free.
     """
-    kind = InstanceDocument if file.startswith("resources/") else TypeDocument if type_of(file) else _FILES.get(file)
+    kind = _FILES.get(file)
+    if file.startswith("resources/"):
+        kind = InstanceDocument
+    elif type_of(file):
+        kind = TypeDocument
+    elif has_scenarios(file):
+        kind = dict[str, ScenarioDocument]
     return () if kind is None else _order(kind, path)
 
 

@@ -29,6 +29,7 @@ from yaml.events import (
 
 from sequence_planner.language.types import Place
 from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.texts.message import message
 
 # The nodes of a YAML text: what stands where, before anything is made of it.
 #
@@ -258,8 +259,8 @@ def text_of(path: Path, name: str) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise ModelError([Finding(Place(name, 1, 1), f"cannot be read: {reason}")]) from error
+        reason = error.strerror or str(error) if isinstance(error, OSError) else message("wrong.unreadable.utf-8")
+        raise ModelError([Finding(Place(name, 1, 1), message("wrong.unreadable", why=reason))]) from error
 
 
 def read_text(text: str, name: str) -> YamlDocument:
@@ -271,10 +272,13 @@ def read_text(text: str, name: str) -> YamlDocument:
     except MarkedYAMLError as error:
         raise ModelError([_not_yaml(name, error)]) from error
     except ReaderError as error:
-        what = f"this is not YAML: the character {ord(text[error.position]):#06x} is not allowed"
+        strange = message("wrong.yaml.character", code=f"{ord(text[error.position]):#06x}")
+        what = message("wrong.yaml", problem=strange)
         raise ModelError([Finding(reader.place_at(error.position), what)]) from error
     except RecursionError as error:
-        raise ModelError([Finding(Place(name, 1, 1), "cannot be read: it is nested too deeply")]) from error
+        raise ModelError(
+            [Finding(Place(name, 1, 1), message("wrong.unreadable", why=message("wrong.unreadable.nested")))]
+        ) from error
     if reader.findings:
         raise ModelError(reader.findings)
     return YamlDocument(name, content, reader.places, reader.values)
@@ -284,19 +288,19 @@ def _not_yaml(name: str, error: MarkedYAMLError) -> Finding:
     """The parser's complaint, in plain words where it has none, and at the opening of what is never closed."""
     problem, mark = str(error.problem), error.problem_mark
     if "end of stream" in problem:
-        problem, mark = "a quote is opened here and never closed", error.context_mark or mark
+        problem, mark = message("wrong.yaml.quote"), error.context_mark or mark
     elif "'\\t'" in problem:
-        problem = "a tab stands where only spaces may"
+        problem = message("wrong.yaml.tab")
     elif "another document" in problem:
-        problem = "a second document begins here, and a file has one"
+        problem = message("wrong.yaml.document")
     elif "expected ',' or" in problem:
-        problem += "; in a list written in one line, put quotes around a text with brackets or commas"
+        problem = message("wrong.yaml.in-line", problem=problem)
     elif "mapping values are not allowed" in problem:
-        problem = "a `name:` stands here where none may: look at the indentation, and quote a text that has `: `"
+        problem = message("wrong.yaml.name")
     elif "'<document start>'" in problem or "<block end>" in problem:
-        problem = "this does not belong to what is above it: look at the indentation and the quotes"
+        problem = message("wrong.yaml.indentation")
     place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
-    return Finding(place, f"this is not YAML: {problem}")
+    return Finding(place, message("wrong.yaml", problem=problem))
 
 
 class _Reader:
@@ -344,20 +348,17 @@ class _Reader:
         written: dict[str, str] = {}
         for key_node, value_node in node.value:
             if key_node.kind != "scalar":
-                self._found(self._place(key_node), "a list or mapping cannot be a name")
+                self._found(self._place(key_node), message("wrong.no-name"))
                 continue
             key = self._text_of(key_node)
             if key_node.tag == "merge":
-                self._found(key.place, "`<<` is not known here: write the entries out")
+                self._found(key.place, message("wrong.merge-key"))
                 continue
             value = self._text[value_node.start.index : value_node.end.index].strip()
             if key in content:
                 first = self.places[(*path, str(key))]
-                advice = "rename one of them, or leave one out"
-                if value == written[key]:
-                    advice = "it says the same here: leave one of them out"
-                message = f"duplicate name `{key}`, first used in line {first.line}: {advice}"
-                self._found(key.place, message)
+                id_ = "wrong.duplicate-same" if value == written[key] else "wrong.duplicate"
+                self._found(key.place, message(id_, name=str(key), line=first.line))
                 continue
             written[key] = value
             if not self._has_room(key_node):

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sequence_planner.model.paths import EditError
+from sequence_planner.texts.message import message
 
 BYTE_ORDER_MARK = "\ufeff"
 _LINE = re.compile(r"[^\n]*\n|[^\n]+")
@@ -31,22 +32,24 @@ def edit_file(path: Path, change: Callable[[str], str], *, expected: str | None 
         written = path.read_bytes()
         text = written.decode("utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise EditError(f"{path} cannot be read: {reason}") from error
+        reason = error.strerror or str(error) if isinstance(error, OSError) else message("wrong.unreadable.utf-8")
+        raise EditError(message("edit.file-unreadable", path=str(path), why=reason)) from error
     if expected is not None and hashlib.sha256(written).hexdigest() != expected:
         raise _changed(path)
     mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
     plain = text.removeprefix(mark).replace("\r\n", "\n")
     has_windows_ends = "\r\n" in text
     if has_windows_ends and plain.count("\n") != text.count("\r\n"):
-        raise EditError(f"{path} has line ends of both kinds, LF and CRLF: make them one kind first")
+        raise EditError(message("edit.mixed-line-ends", path=str(path)))
     new = change(plain)
     if new != plain:
         content = mark + (new.replace("\n", "\r\n") if has_windows_ends else new)
         try:
             _write(path, content.encode("utf-8"), instead_of=written)
         except OSError as error:
-            raise EditError(f"{path} cannot be written: {error.strerror}") from error
+            raise EditError(
+                message("edit.file-unwritable", path=str(path), why=error.strerror or str(error))
+            ) from error
     return _difference(path, plain, new)
 
 
@@ -59,9 +62,9 @@ def add_file(path: Path, text: str) -> str:
             file.flush()
             os.fsync(file.fileno())
     except FileExistsError:
-        raise EditError(f"{path} is there already: take another name, or look at it first") from None
+        raise EditError(message("edit.file-there", path=str(path))) from None
     except OSError as error:
-        raise EditError(f"{path} cannot be written: {error.strerror}") from error
+        raise EditError(message("edit.file-unwritable", path=str(path), why=error.strerror or str(error))) from error
     return _difference(path, "", text)
 
 
@@ -73,10 +76,7 @@ def _difference(path: Path, old: str, new: str) -> str:
 
 
 def _changed(path: Path) -> EditError:
-    return EditError(
-        f"{path} was changed by somebody else in the meantime. Nothing is lost: the file is as they left it, and"
-        " your change was not made. Look at it again and repeat your change"
-    )
+    return EditError(message("edit.file-changed-by-others", path=str(path)))
 
 
 def _write(path: Path, content: bytes, instead_of: bytes) -> None:

@@ -11,6 +11,7 @@ from contextlib import suppress
 from ctypes import CDLL
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Final
 from uuid import UUID
 
 import structlog
@@ -18,7 +19,7 @@ from cyclonedds.core import DDSException
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.internal import load_cyclonedds
 from cyclonedds.pub import DataWriter
-from cyclonedds.qos import Qos
+from cyclonedds.qos import Policy, Qos
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
@@ -55,6 +56,7 @@ from sequence_planner.ros.transports.cyclonedds_network import (
     RawTypes,
     Receiver,
     join,
+    leave,
     raw_types,
     release,
 )
@@ -343,6 +345,14 @@ def _responder(service: str, end: CallEnd, header: CallHeader) -> Callable[[byte
 # registry.
 
 
+TOLD_AGAIN: Final = (3.0, 15.0)
+"""Seconds after which peers are told of an endpoint once more.
+
+Discovery is reliable, and yet a peer that joins in just the moment in which an endpoint is made has been seen never to
+hear of it. An endpoint whose user data changes is told anew; ROS 2 reads no key there that it does not know.
+"""
+
+
 class _Publisher(Immutable):
     writer: DataWriter[RawSample]
     raw: type[RawSample]
@@ -380,7 +390,7 @@ class CycloneTransport:
             self._receiver = Receiver(self._participant, f"dds-{node_name}")
             self._events = EventWatch(self._participant, f"dds-events-{node_name}", self._changed)
         except DDSException as error:
-            release(self._participant)
+            leave(self._participant)
             raise TransportError(f"DDS cannot start on domain {domain}: {error}") from error
         self._services = CycloneServices(
             self._participant, registry, self._raw, self._receiver, loop, self._discovery.told_on
@@ -401,6 +411,7 @@ class CycloneTransport:
         except DDSException as error:
             raise TransportError(f"DDS cannot advertise {topic}: {error}") from error
         self._publishers[topic] = _Publisher(writer, self._raw(type_name), type_name, qos)
+        self._tell_later(writer, type_name)
         self._events.add(Watched(topic, qos, writer))
         self._announce()
 
@@ -423,6 +434,7 @@ class CycloneTransport:
             raise TransportError(f"DDS cannot subscribe to {topic}: {error}") from error
         delivery = Delivery(self._loop, topic, on_batch)
         self._readers.append((reader, delivery))
+        self._tell_later(reader, type_name)
         self._receiver.add(topic, reader, delivery)
         self._events.add(Watched(topic, qos, reader))
         self._announce()
@@ -485,9 +497,9 @@ class CycloneTransport:
             *(reader for reader, _ in self._readers),
             *(publisher.writer for publisher in self._publishers.values()),
             *self._topics.values(),
-            self._participant,
         ):
             release(entity)
+        leave(self._participant)
         self._readers.clear()
         self._publishers.clear()
         self._topics.clear()
@@ -511,6 +523,19 @@ class CycloneTransport:
 
     def _qos(self, type_name: str, qos: QualityOfService) -> Qos:
         return endpoint_qos(qos, names.type_hash_user_data(self._registry.type_hash(type_name)))
+
+    def _tell_later(self, endpoint: DataReader[RawSample] | DataWriter[RawSample], type_name: str) -> None:
+        data = names.type_hash_user_data(self._registry.type_hash(type_name))
+        for times, seconds in enumerate(TOLD_AGAIN, 2):
+            self._loop.call_later(seconds, self._tell_again, endpoint, data + f"told={times};".encode())
+
+    def _tell_again(self, endpoint: DataReader[RawSample] | DataWriter[RawSample], data: bytes) -> None:
+        if self._closed:
+            return
+        try:
+            endpoint.set_qos(Qos(Policy.Userdata(data)))
+        except DDSException:
+            _log.exception("DDS cannot tell of an endpoint again")
 
     def _changed(self, watched: Watched, change: StatusChange) -> None:
         """Hand a change over to the event loop; called on a thread of the middleware."""

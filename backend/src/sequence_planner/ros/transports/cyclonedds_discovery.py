@@ -343,9 +343,7 @@ class Discovery:
 
     def endpoints(self) -> list[NetworkEndpoint]:
         """Return the endpoints of ROS 2 topics that are on the network now."""
-        for direction in self._known:
-            self._refresh(direction)
-        self._refresh_nodes()
+        self._look()
         return [
             self._endpoint(topic, direction, seen)
             for direction, known in self._known.items()
@@ -355,9 +353,7 @@ class Discovery:
 
     def services_now(self, services: Collection[str]) -> list[ServiceEnd]:
         """Return the servers and clients of these services that are on the network now."""
-        for direction in self._known:
-            self._refresh(direction)
-        self._refresh_nodes()
+        self._look()
         return self.services(set(map(names.dds_requests, services)))
 
     def services(self, among: Container[str] | None = None) -> list[ServiceEnd]:
@@ -435,7 +431,17 @@ class Discovery:
             if len(taken) < _CHUNK:
                 return
 
-    def _refresh_nodes(self) -> None:
+    def _look(self) -> None:
+        """Take all that was announced since the last time."""
+        # In this order: a participant announces its nodes once, and what it is known by before that. One that comes
+        # while endpoints are taken would have said its nodes too early, and would have no names from then on.
+        self._take_nodes()
+        for direction in self._known:
+            self._refresh(direction)
+        present = {seen.participant_key for known in self._known.values() for seen in known.values()}
+        self._nodes = {participant: nodes for participant, nodes in self._nodes.items() if participant in present}
+
+    def _take_nodes(self) -> None:
         for sample in take_all(self._reader):
             try:
                 participant, nodes = discovery_info.decode(self._registry, sample.data)
@@ -443,5 +449,3 @@ class Discovery:
                 _log.debug("a participant announces its nodes in a form unknown here", reason=str(error))
                 continue
             self._nodes[participant] = nodes
-        present = {seen.participant_key for known in self._known.values() for seen in known.values()}
-        self._nodes = {participant: nodes for participant, nodes in self._nodes.items() if participant in present}

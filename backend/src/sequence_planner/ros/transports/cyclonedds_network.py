@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import threading
 import time
@@ -45,6 +46,10 @@ from sequence_planner.ros.types.messages import MessageRegistry
 #: Participants that can be found on one computer and domain.
 MAX_PARTICIPANTS = 32
 
+#: Participants that one process may have: in the next one cyclonedds never ends making a topic, and takes all memory.
+MOST_IN_PROCESS = 31
+
+_participants: WeakValueDictionary[int, DomainParticipant] = WeakValueDictionary()
 _domains: WeakValueDictionary[int, Domain] = WeakValueDictionary()
 _lock = threading.Lock()
 
@@ -86,6 +91,7 @@ def join(domain_id: int, discovery: DiscoveryRange) -> tuple[Domain | None, Doma
     if discovery is DiscoveryRange.OFF:
         raise TransportError(f"{environment.DISCOVERY_RANGE} is OFF, so no device could be found: use LOCALHOST")
     interface = environment.interface(discovery)
+    _require_room()
     qos = Qos(Policy.Userdata(b"enclave=/;"))
     try:
         domain = None
@@ -93,13 +99,32 @@ def join(domain_id: int, discovery: DiscoveryRange) -> tuple[Domain | None, Doma
             domain = _configured(domain_id, loopback_configuration())
         elif interface is not None:
             domain = _configured(domain_id, interface_configuration(interface))
-        return domain, DomainParticipant(domain_id, qos)
+        participant = DomainParticipant(domain_id, qos)
     except DDSException as error:
         way = "loopback interface" if discovery is DiscoveryRange.LOCALHOST else "network interface"
         raise TransportError(
             f"DDS cannot join domain {domain_id} ({error}). Check that a {way} is up, that fewer than "
             f"{MAX_PARTICIPANTS} programs share the domain on this computer, and what CYCLONEDDS_URI says"
         ) from error
+    _participants[id(participant)] = participant
+    return domain, participant
+
+
+def leave(participant: DomainParticipant) -> None:
+    """Take a participant off the network."""
+    _participants.pop(id(participant), None)
+    release(participant)
+
+
+def _require_room() -> None:
+    """Raises `TransportError` where this process has as many participants as it may have."""
+    if len(_participants) >= MOST_IN_PROCESS:
+        gc.collect()  # one that nobody has any more may still be there
+    if len(_participants) >= MOST_IN_PROCESS:
+        raise TransportError(
+            f"one process can be on a DDS network {MOST_IN_PROCESS} times, and an emulated device is there by itself: "
+            "emulate the devices of some resources in another one, with `sequence-planner emulate --resource`"
+        )
 
 
 def _configured(domain_id: int, configuration: str) -> Domain:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from sequence_planner.language import suggestions
+from sequence_planner.language.names import suggestions
 
 _LIKENESS = 0.6
 

@@ -1,8 +1,9 @@
 """Routes of commands and queries: each is made of what its command or query declares (`controller.commands`).
 
-A route makes one command with its actor and waits for the controller's word. 204 means that it was done; where what
-stops devices was done and the journal does not have it yet, 200. A refusal is a problem whose `type` ends in the
-controller's own slug. A body may say why, which is recorded. The route of a query answers with its document.
+A route makes one command with its actor and waits for the controller's word. 204 means that it was done, 201 with a
+document what it made; where what stops devices was done and the journal does not have it yet, 200. A refusal is a
+problem whose `type` ends in the controller's own slug. A body may say why, which is recorded. The route of a query
+answers with its document.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from sequence_planner.controller.commands.command import Command, Query, Route
 from sequence_planner.controller.commands.registry import COMMANDS, QUERIES
 from sequence_planner.controller.commands.tasks import TaskCommand
 from sequence_planner.controller.ipc import ControllerClient
-from sequence_planner.controller.views.part import View
+from sequence_planner.core.data_models import DataModel
 from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import JSON_ONLY, Actor, Body, Controller, live_view
 from sequence_planner.server.errors import ProblemFound, refused
@@ -57,14 +58,14 @@ def _add(router: APIRouter, declared: Declaring, route: Route) -> None:
         for name, info in fields.items()
         if route.method == "GET" or name in in_path
     ]
-    answer = declared.answer_type() if issubclass(declared, Query) else None
+    answer = declared.answer_type() if issubclass(declared, Query) else declared.makes
     may_be_early = issubclass(declared, Command) and declared.harmless is not Command.harmless
     role = Role(route.role)
     router.add_api_route(
         route.path,
         _endpoint(declared, route, words, parameters, body, may_be_early=may_be_early),
         methods=[route.method],
-        status_code=204 if answer is None else 200,
+        status_code=204 if answer is None else 200 if issubclass(declared, Query) else 201,
         tags=[route.tag],
         description=route.text or inspect.cleandoc(declared.__doc__ or ""),
         response_model=answer,
@@ -101,19 +102,21 @@ def _endpoint(
     body: type[Body] | None,
     *,
     may_be_early: bool,
-) -> Callable[..., Awaitable[Response | View | None]]:
+) -> Callable[..., Awaitable[Response | DataModel | None]]:
     """The function of the route, with the parameters that FastAPI is to find."""
 
-    async def carry_out(client: ControllerClient, **given: Any) -> Response | View | None:  # noqa: ANN401
+    async def carry_out(client: ControllerClient, **given: Any) -> Response | DataModel | None:  # noqa: ANN401
         fields = {name: given[word] for name, word in words.items() if word in given}
         if body is not None:
             fields |= {name: getattr(given["body"], name) for name in body.model_fields}
         if issubclass(declared, Query):
-            answer: View = await client.ask(declared(**fields))
+            answer: DataModel = await client.ask(declared(**fields))
             return answer
         told = declared(actor=given["actor"], **fields)
         if route.watch and isinstance(told, TaskCommand):
             await _check_own(given["connection"].state.watch, told, client)
+        if told.makes is not None:
+            return await client.produce(told)
         recorded = await client.send(told)
         return carried_out(recorded) if may_be_early else None
 

@@ -289,7 +289,7 @@ async def _read(identity: IdentityService, archive: Archive, work: Callable[[Who
 
 
 def _unreadable(why: str) -> ProblemFound:
-    return ProblemFound(409, "archive-unreadable", f"{why[0].upper()}{why[1:]}.")
+    return ProblemFound(409, "archive-unreadable", message("refused.archive-unreadable.why", why=why))
 
 
 def _empty() -> ProblemFound:
@@ -303,9 +303,7 @@ async def _asked(request: Request, question: Question, patience: float) -> Answe
     try:
         return await process.ask(question, patience)
     except HistoryError as error:
-        detail = error.detail[0].upper() + error.detail[1:]
-        status = _STATUSES[error.slug]
-        raise ProblemFound(status, error.slug, detail if detail.endswith(".") else f"{detail}.") from None
+        raise ProblemFound(_STATUSES[error.slug], error.slug, error.detail) from None
 
 
 async def _lines(identity: IdentityService, archive: Archive, number: int, to: int) -> AsyncIterator[bytes]:

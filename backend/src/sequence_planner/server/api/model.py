@@ -10,19 +10,17 @@ from asyncio.subprocess import PIPE
 from pathlib import Path as LocalPath
 from typing import Annotated, Any, Literal
 
-from fastapi import Depends, Path, Query, Request, Response, WebSocket
-from fastapi.requests import HTTPConnection
+from fastapi import Path, Query, Request, Response, WebSocket
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.controller.commands.queries import AskRecord
-from sequence_planner.controller.ipc import ControllerClient
 from sequence_planner.controller.views.details import AutomatonView
 from sequence_planner.core.actor import Actor as Acting
 from sequence_planner.core.secrets import environment
-from sequence_planner.editor.draft import ChangeBody, Edit, FilePath, PartChangedError, WriteText
+from sequence_planner.editor.draft import ChangeBody, Edit, FilePath, WriteText
 from sequence_planner.editor.language.schemas import CompletionView
 from sequence_planner.editor.model_graph import GraphView
 from sequence_planner.editor.pipelines.schemas import (
@@ -48,7 +46,15 @@ from sequence_planner.editor.processes import (
     TextAt,
 )
 from sequence_planner.editor.schemas.check import CheckView
-from sequence_planner.editor.schemas.draft import DraftPictureView, DraftView, FilesView, FoldsView, UsagesView
+from sequence_planner.editor.schemas.draft import (
+    DraftChangesView,
+    DraftOperationsView,
+    DraftPictureView,
+    DraftView,
+    FilesView,
+    FoldsView,
+    UsagesView,
+)
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.model.files import read_files, write_files
@@ -68,6 +74,7 @@ from sequence_planner.server.dependencies import (
 )
 from sequence_planner.server.errors import ProblemFound, refused
 from sequence_planner.server.interface import interface
+from sequence_planner.server.services.drafts import TheWorkshop, refusal, workshop
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.stream.endpoints import serve
@@ -88,23 +95,6 @@ ENGINEER = allowed(Role.ENGINEER)
 model_router = interface("/model", tags=["model"], responses=refused(409, 503))
 
 
-async def workshop(connection: HTTPConnection) -> Workshop:
-    """The workshop of the station. Raises `ProblemFound` where the server does not know its model, or stands by.
-
-    Who stands by has a folder of its own, which may be older than the draft that all share.
-    """
-    client: ControllerClient = connection.app.state.controller
-    if client.stands_by:
-        raise ProblemFound(503, "on-standby", message("refused.on-standby.model"))
-    shop: Workshop | None = connection.app.state.workshop
-    if shop is None:
-        raise ProblemFound(409, "no-model", message("refused.no-model.start"))
-    return shop
-
-
-TheWorkshop = Annotated[Workshop, Depends(workshop)]
-
-
 class RenameBody(Body):
     """A part of the model by its id, such as `variable:robot.pose`, and what it shall be called."""
 
@@ -116,6 +106,12 @@ class RenameBody(Body):
 async def draft(shop: TheWorkshop, actor: Actor) -> DraftView:
     """The draft of the model: its files, and the last changes."""
     return await shop.view(actor)
+
+
+@model_router.get("/changes", dependencies=[VIEWER])
+async def draft_changes(shop: TheWorkshop) -> DraftChangesView:
+    """In how many places the draft differs from what runs."""
+    return await shop.changes()
 
 
 @model_router.get("/files", dependencies=[VIEWER], response_model=FilesView)
@@ -143,7 +139,7 @@ async def finding_run(
     try:
         return await shop.played(finding, ability, number)
     except EditError as error:
-        raise ProblemFound(404, "no-run", _sentence(error)) from error
+        raise ProblemFound(404, "no-run", message("refused.edit-refused.why", why=error.why)) from error
 
 
 @model_router.post(
@@ -188,6 +184,12 @@ async def model_graph(shop: TheWorkshop) -> Response:
     return found(await shop.tied())
 
 
+@model_router.get("/operations", dependencies=[VIEWER], response_model=DraftOperationsView)
+async def draft_operations(shop: TheWorkshop) -> Response:
+    """The operations of the draft: what each begins with and ends with, who does it, and what it comes after."""
+    return found(await shop.sequenced())
+
+
 @model_router.get("/mimic", dependencies=[VIEWER], response_model=DraftPictureView)
 async def draft_picture(shop: TheWorkshop) -> Response:
     """The live picture of the draft, drawn as that of the station would be with it."""
@@ -229,18 +231,6 @@ async def stream(websocket: WebSocket) -> None:
     shop = await workshop(websocket)
     await shop.open()
     await serve(websocket, shop.latest)
-
-
-def refusal(error: EditError) -> ProblemFound:
-    """The problem that says why an edit is not made."""
-    text = _sentence(error)
-    if isinstance(error, PartChangedError):
-        return ProblemFound(409, "part-changed", message("refused.part-changed.why", why=text))
-    return ProblemFound(422, "edit-refused", text)
-
-
-def _sentence(error: Exception) -> str:
-    return f"{str(error)[:1].upper()}{str(error)[1:]}."
 
 
 # Attaching a topic of the network to the draft of the model; the station itself goes on as it is.

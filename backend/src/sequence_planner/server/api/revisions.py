@@ -2,56 +2,66 @@
 
 from __future__ import annotations
 
-import secrets
-import shutil
 from enum import StrEnum
-from pathlib import Path as Folder
 from typing import Annotated
 
-from fastapi import Path, Query, Request, Response
+from fastapi import Depends, Path, Query, Request, Response
 from pydantic import Field
-from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.auth.roles import Role, Scope
-from sequence_planner.controller.commands.execution import Deploy
-from sequence_planner.controller.views.station import StationView
-from sequence_planner.editor.draft import Draft
-from sequence_planner.editor.processes import worked
+from sequence_planner.core.actor import Actor as Acting
+from sequence_planner.editor.processes import PATIENCE, worked
 from sequence_planner.editor.schemas.diff import ComparisonView, TransferView
-from sequence_planner.editor.schemas.draft import FilesView, RevisionsView, RevisionView
-from sequence_planner.editor.schemas.what_if import WhatIfView, untransferred
+from sequence_planner.editor.schemas.draft import (
+    CommentsView,
+    CommentView,
+    FilesView,
+    PlannedDeploymentView,
+    RevisionsView,
+    RevisionView,
+)
+from sequence_planner.editor.schemas.what_if import untransferred
+from sequence_planner.editor.talk.comments import Comment, append_comment, read_comments
 from sequence_planner.journal.entry import LONGEST_REASON
-from sequence_planner.language.types import Value
-from sequence_planner.model.files import Files, write_files
 from sequence_planner.model.paths import EditError
-from sequence_planner.server.api.history import looked_back
-from sequence_planner.server.api.model import TheWorkshop, refusal
 from sequence_planner.server.auth import allowed
 from sequence_planner.server.dependencies import (
     JSON_ONLY,
     Actor,
     Body,
-    Controller,
+    Identity,
     LiveView,
-    controller,
     found,
-    live_view,
 )
-from sequence_planner.server.errors import ProblemFound, refused
+from sequence_planner.server.errors import refused
 from sequence_planner.server.http.middleware import while_waited_for
 from sequence_planner.server.interface import interface
-from sequence_planner.server.services.editor import Workshop
-from sequence_planner.texts.message import Message, joined, message
+from sequence_planner.server.services.deployments import (
+    AskedDeployment,
+    DeploymentService,
+    draft_after,
+    revision_of,
+    transfer_question,
+)
+from sequence_planner.server.services.drafts import DRAFT, HASH, RUNNING, TheWorkshop, refusal, version_files
 
-DRAFT, RUNNING = "draft", "running"
-SIMULATING = 40.0  # seconds of work
+MOST_COMMENTS = 200  # that are shown
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
-HASH = "[0-9a-f]{40}"
 
 router = interface("/model", tags=["model"], responses=refused(409, 503))
 Id = Annotated[str, Path(pattern=f"^{HASH}$")]
+
+
+async def deployments(request: Request, shop: TheWorkshop) -> DeploymentService:
+    """Who deploys the draft of the station, of which there is one where there is a workshop."""
+    desk: DeploymentService = request.app.state.deployments
+    return desk
+
+
+Desk = Annotated[DeploymentService, Depends(deployments)]
 Version = Annotated[str, Query(pattern=f"^({DRAFT}|{RUNNING}|{HASH})$")]
+Wait = Annotated[float, Query(ge=0, le=PATIENCE)]
 Number = Annotated[int, Field(ge=0, le=2**53 - 1, strict=True)]
 
 
@@ -88,11 +98,10 @@ class DeploymentBody(Body):
     simulation: Simulation = Simulation.KEEP
 
 
-class WhatIfBody(Body):
-    """For how many seconds, and from which record of the past on; without one from the present."""
+class CommentBody(Body):
+    """What is said of the draft."""
 
-    seconds: Annotated[float, Field(gt=0, le=600.0, strict=True)]
-    number: Annotated[int, Field(ge=1, le=2**53 - 1, strict=True)] | None = None
+    text: Annotated[str, Field(min_length=1, max_length=5000)]
 
 
 @router.get("/revisions", dependencies=[VIEWER])
@@ -104,7 +113,7 @@ async def revisions(shop: TheWorkshop) -> RevisionsView:
 @router.post("/revisions", status_code=201, dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
 async def save_revision(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> RevisionView:
     """Save the draft as a revision; refused where somebody has changed it since (`stale-draft`)."""
-    draft = await _at(shop, body.number)
+    draft = await draft_after(shop, body.number)
     try:
         return await shop.save(draft, body.name, body.message, actor)
     except EditError as error:
@@ -116,16 +125,55 @@ async def save_revision(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> 
 )
 async def restore_revision(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) -> Response:
     """Let the draft become a revision again, which can be undone; the files that are others now."""
-    draft = await _at(shop, body.number)
-    files = await _files(shop, id)
-    return found(await shop.restore(draft, files, (await _known(shop, id)).name, actor))
+    draft = await draft_after(shop, body.number)
+    files = await version_files(shop, id)
+    return found(await shop.restore(draft, files, (await revision_of(shop, id)).name, actor))
+
+
+@router.get("/comments", dependencies=[VIEWER])
+async def comments(identity: Identity) -> CommentsView:
+    """What was said of the draft, the newest 200 comments in the order in which they were made."""
+    known = await identity.read(lambda connection: read_comments(connection, MOST_COMMENTS))
+    return CommentsView(comments=[_comment_view(each) for each in known])
+
+
+@router.post("/comments", status_code=201, dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
+async def add_comment(body: CommentBody, shop: TheWorkshop, identity: Identity, actor: Actor) -> CommentView:
+    """Say something of the draft to the other engineers; what was said stays."""
+    draft, now = await shop.open(), identity.now()
+    made = await identity.write(
+        lambda connection: append_comment(connection, actor, draft.number, body.text, now), by=actor
+    )
+    shop.tell_comment(made.number)
+    return _comment_view(made)
+
+
+def _comment_view(comment: Comment) -> CommentView:
+    return CommentView(
+        number=comment.number, time=comment.time, by=comment.by_name, draft=comment.draft, text=comment.text
+    )
 
 
 @router.get("/comparison", dependencies=[VIEWER], response_model=ComparisonView, responses=refused(404))
-async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> Response:
-    """Difference of two versions in text and in behaviour: revisions by their ids, the draft, or what runs."""
-    files = await _files(shop, old), await _files(shop, new)
-    return await _found("compared", *files, shop.folder)
+async def comparison(
+    shop: TheWorkshop,
+    request: Request,
+    old: Version,
+    new: Version = DRAFT,
+    wait: Wait = PATIENCE,
+    written_only: Annotated[bool, Query()] = False,
+) -> Response:
+    """Difference of two versions in text and in behaviour: revisions by their ids, the draft, or what runs.
+
+    What is known after `wait` seconds is answered, with what is being compared in `doing`: ask again for more. It ends
+    when nobody asks for it any more. With `written_only` what follows from what is written is not found out, and stays
+    null.
+    """
+    compared = shop.compared(
+        await version_files(shop, old), await version_files(shop, new), wait, written_only=written_only
+    )
+    text = await while_waited_for(request, compared)
+    return Response(status_code=204) if text is None else found(text)  # that nobody reads the one
 
 
 @router.get("/transfer", dependencies=[VIEWER], response_model=TransferView, responses=refused())
@@ -139,22 +187,11 @@ async def transfer(
     """
     if (hindrance := (await shop.checked()).hindrance((await shop.open()).number)) is not None:
         return found(untransferred(hindrance.why).model_dump_json())
-    return await _found("fitted", *await _to_fit(shop, view, simulation))
-
-
-@router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], response_model=WhatIfView, responses=refused(404))
-async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> Response:
-    """Simulate the station with the draft, from its present state or from a past record; nothing of it reaches
-    the station. It ends when who asked leaves.
-    """
-    draft = await shop.open()
-    present = await _present(request) if body.number is None else await _past(request, body.number)
-    simulated = _found("simulated", draft.files, shop.folder, present, body.seconds, SIMULATING)
-    return await while_waited_for(request, simulated) or Response(status_code=204)  # which nobody reads
+    return await _found("fitted", *await transfer_question(shop, view, reset=simulation is Simulation.RESET))
 
 
 @router.post("/deployments", status_code=204, dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 422, 504))
-async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: Controller, view: LiveView) -> None:
+async def deploy(body: DeploymentBody, desk: Desk, actor: Actor, view: LiveView) -> None:
     """Let the checked revision that the draft is take the place of the model that runs.
 
     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
@@ -162,69 +199,37 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
     has become of it. 409 `not-checked` while the check of the draft has not ended, `check-found-errors` with the first
     of the errors and its place, `no-supervisor` where nothing of it could be started.
     """
-    draft = await _at(shop, body.number)
-    known = await _known(shop, body.revision)
-    if not known.draft:
-        raise ProblemFound(409, "not-the-draft", message("refused.not-the-draft.take-back"))
-    if (hindrance := (await shop.checked()).hindrance(draft.number)) is not None:
-        raise ProblemFound(409, hindrance.slug, f"{hindrance.why}.", title=hindrance.title)
-    fits = await worked("fitted", *await _to_fit(shop, view, body.simulation))
-    assert isinstance(fits, TransferView)
-    if not fits.legal:
-        raise ProblemFound(409, "not-legal", _why_not(fits))
-    reset = body.simulation is Simulation.RESET
-    if reset and not view.station.emulated:
-        raise ProblemFound(409, "not-emulated", message("refused.not-emulated.reset"))
-    shop.note_deployment(draft)
-    staged = client.path.parent / f"deploy-{secrets.token_hex(8)}"
-    await run_in_threadpool(_stage, draft.files, staged)
-    try:
-        await client.send(
-            Deploy(actor=actor, reason=body.reason, revision=known.id, name=known.name, staged=staged.name, reset=reset)
-        )
-    finally:
-        await run_in_threadpool(shutil.rmtree, staged, True)
+    await desk.deploy(_asked(body, actor), view)
 
 
-async def _at(shop: Workshop, number: int) -> Draft:
-    draft = await shop.open()
-    if draft.number != number:
-        raise ProblemFound(409, "stale-draft", message("refused.stale-draft.look"))
-    return draft
+@router.get("/deployments/planned", dependencies=[VIEWER])
+async def planned_deployment(shop: TheWorkshop) -> PlannedDeploymentView | None:
+    """What is deployed when the product in work is done, or why that was not done; null where nothing is planned."""
+    return shop.planned
 
 
-async def _known(shop: Workshop, id: str) -> RevisionView:
-    found = next((each for each in (await shop.revised()).revisions if each.id == id), None)
-    if found is None:
-        raise ProblemFound(404, "no-revision", message("refused.no-revision.look"))
-    return found
+@router.put(
+    "/deployments/planned", status_code=204, dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 422, 504)
+)
+async def plan_deployment(body: DeploymentBody, desk: Desk, actor: Actor, view: LiveView) -> None:
+    """Let the checked revision that the draft is take the place of the model that runs, once the product that is in
+    work is done.
+
+    The station pauses then (`cycle_stop`); what cannot be deployed at that moment is not, and `planned` in the stream
+    of the model says why. Refused as a deployment at once is, but for what the station is doing; 409 `not-automatic`
+    where it does not work.
+    """
+    await desk.deploy_when_done(_asked(body, actor), view)
 
 
-async def _files(shop: Workshop, version: str) -> Files:
-    if version == DRAFT:
-        return (await shop.open()).files
-    if version == RUNNING:
-        return (await shop.open()).base
-    await _known(shop, version)
-    return await shop.files_of(version)
+@router.delete("/deployments/planned", status_code=204, dependencies=[ENGINEER])
+async def cancel_deployment(desk: Desk) -> None:
+    """Deploy nothing when the product is done. The station pauses then unless `/mode/cycle-stop` takes that back."""
+    desk.cancel()
 
 
-async def _to_fit(shop: Workshop, view: StationView, simulation: Simulation) -> tuple[object, ...]:
-    """Return what `tasks.fitted` is asked about."""
-    draft = await shop.open()
-    present = {name: variable.value for name, variable in view.variables.items()}
-    running = [name for name, ability in view.abilities.items() if ability.running_since is not None]
-    return draft.base, draft.files, shop.folder, present, running, simulation is Simulation.RESET
-
-
-async def _present(request: Request) -> dict[str, Value | None]:
-    view = await live_view(await controller(request))
-    return {name: variable.value for name, variable in view.variables.items()}
-
-
-async def _past(request: Request, number: int) -> dict[str, Value | None]:
-    moment = await looked_back(request, number)
-    return dict(moment.past.values)
+def _asked(body: DeploymentBody, actor: Acting) -> AskedDeployment:
+    return AskedDeployment(body.revision, body.number, body.reason, reset=body.simulation is Simulation.RESET, by=actor)
 
 
 async def _found(name: str, *arguments: object) -> Response:
@@ -232,18 +237,3 @@ async def _found(name: str, *arguments: object) -> Response:
     text = await worked("told", name, *arguments)
     assert isinstance(text, str)
     return found(text)
-
-
-def _why_not(fits: TransferView) -> Message:
-    if fits.obstacle is not None:
-        return message("refused.not-legal.obstacle", why=fits.obstacle)
-    if fits.under_way:
-        return message("refused.not-legal.under-way", abilities=", ".join(fits.under_way))
-    if fits.violated:
-        return message("refused.not-legal.violates", specifications=joined(fits.violated))
-    return message("refused.not-legal.no-rest")
-
-
-def _stage(files: Files, folder: Folder) -> None:
-    folder.mkdir(mode=0o700)
-    write_files(files, folder)

@@ -86,12 +86,16 @@ class SessionWatch(AnswerModel):
 class SessionAnswer(AnswerModel):
     """Who the browser is for this server.
 
-    `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
+    `first-start`: nobody is signed in, and there is no administrator yet, but perhaps somebody else who may sign in
+    (`people`, which is true in all other states). `session` is the id that holds control where
     this session does; `expires` is when it ends at the latest, in seconds since the epoch. `demonstration` says that
-    one may be opened here. The `version` of the program is for those who are signed in.
+    one may be opened here. `station` is the station's title by language (`""`: the same in all), so that people see
+    where they sign in; null while that is not known. The `version` of the program is for those who are signed in.
     """
 
     state: Literal["signed-out", "signed-in", "first-start"]
+    people: bool
+    station: dict[str, str] | None
     person: SessionPerson | None
     session: str | None
     kind: Literal["person", "demonstration"] | None
@@ -117,6 +121,8 @@ async def answered(request: Request, signed_in: SignedIn | None) -> SessionAnswe
     watch = (await bearer_of(request, Credentials(watch=credentials(request).watch))).watch
     answer = SessionAnswer(
         state="signed-out",
+        people=True,
+        station=None if state.controller.view is None else state.controller.view.station.titles,
         person=None,
         session=None,
         kind=None,
@@ -130,8 +136,9 @@ async def answered(request: Request, signed_in: SignedIn | None) -> SessionAnswe
     if signed_in is not None:
         return answer.model_copy(update=_said_of(signed_in))
     office: IdentityService = state.identity
-    has_administrator = await office.read(users.administrator_exists)
-    return answer if has_administrator else answer.model_copy(update={"state": "first-start"})
+    if await office.read(users.administrator_exists):
+        return answer
+    return answer.model_copy(update={"state": "first-start", "people": await office.read(users.anybody_exists)})
 
 
 def _provider_answer(request: Request) -> SessionProvider | None:

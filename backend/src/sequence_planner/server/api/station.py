@@ -18,6 +18,8 @@ from sequence_planner.controller.views.station import (
     AbilityView,
     AlarmView,
     ApprovalView,
+    BreakpointView,
+    CycleStopView,
     DeploymentView,
     ForceView,
     LastCorrectionView,
@@ -80,6 +82,8 @@ class StationAnswer(Answer):
     silent: list[str]
     failing: list[str]
     stepping: bool
+    breakpoints: dict[str, BreakpointView]
+    cycle_stop: CycleStopView | None
     production: Production
     by_order: bool
     unconfirmed: bool

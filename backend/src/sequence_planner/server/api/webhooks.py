@@ -127,9 +127,9 @@ async def create_webhook(
     """Make a webhook. Its secret is answered this once; deliveries are signed with it."""
     try:
         await resolved(targets, targets.target(body.url))
-    except TargetRefused as why:
+    except TargetRefused as refusal:
         raise ProblemFound(
-            422, "webhook-target-refused", message("refused.webhook-target-refused.why", why=str(why))
+            422, "webhook-target-refused", message("refused.webhook-target-refused.why", why=refusal.why)
         ) from None
     seal, now = Seal(key_file(identity.database.place)), identity.now()
     secret, webhook = await identity.write(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -37,6 +37,7 @@ from sequence_planner.editor.pipelines.schemas import (
 from sequence_planner.editor.processes import (
     Changed,
     CheckDesk,
+    ComparisonDesk,
     DraftAnswering,
     DraftProcess,
     LanguageQuestionKind,
@@ -46,26 +47,33 @@ from sequence_planner.editor.processes import (
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView, waiting
 from sequence_planner.editor.schemas.draft import (
+    DraftChangesView,
     DraftView,
     FileMark,
+    PlannedDeploymentView,
     RevisionsView,
     RevisionView,
     WorkshopView,
     change_view,
     marks,
+    places_changed,
     revisions_view,
 )
 from sequence_planner.model.files import Files, FolderReader
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.services.identity import IdentityService
-from sequence_planner.server.settings import StreamLimits
+from sequence_planner.server.settings import Settings, StreamLimits
 from sequence_planner.server.stream.broadcast import LatestValue
 from sequence_planner.server.stream.messages import WorkshopSnapshot
+from sequence_planner.texts.message import message
 
 MOST_SHOWN = 50  # changes
+MOST_TOLD = 12  # changes of which it is told what they did: as many as the page shows
 ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
 RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
+FOLDED_WITHIN = 110.0  # seconds, for the states that a station can come to
+TRIED_FOR = 900.0  # seconds for which a simulation is kept that nobody asks for
 
 
 class Workshop:
@@ -84,21 +92,37 @@ class Workshop:
         self._editing = DraftProcess("editing_worker")
         self._process = DraftProcess()
         self._folding = DraftProcess("folds.folding_worker")
+        self._stepping = DraftProcess("stepping.worker")
+        self._simulating = DraftProcess("simulating.worker", rests_after=TRIED_FOR)
+        self._spaces = DraftProcess("state_space.worker", rests_after=TRIED_FOR)
         self._desk = CheckDesk(model, start, self._process, self._found)
+        self._comparing = ComparisonDesk(model)
         self._pipelines = DraftAnswering("pipelines.worker", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
-        self._marks: tuple[Draft, dict[str, FileMark]] | None = None
+        self._marks: tuple[Draft, dict[str, FileMark], int] | None = None  # and in how many places it differs
         self._opening = asyncio.Lock()
+        self._planned: PlannedDeploymentView | None = None
+        self._comment = 0
         self._deployed_over: tuple[float, Files] | None = None  # when, and what: until it is seen what became of it
         self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
         self._tying = asyncio.Lock()
 
+    @classmethod
+    def for_model(cls, identity: IdentityService, settings: Settings) -> Workshop | None:
+        """The workshop of the server's model; None where it does not know any."""
+        model, revisions = settings.model, settings.revisions
+        if model is None or revisions is None:
+            return None
+        return cls(identity, model, revisions, settings.stream, settings.start)
+
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
-        for each in (self._editing, self._process, self._folding, self._pipelines):
+        await self._comparing.close()
+        asked = self._editing, self._process, self._folding, self._stepping, self._simulating, self._spaces
+        for each in (*asked, self._pipelines):
             each.close()
 
     async def open(self) -> Draft:
@@ -125,19 +149,28 @@ class Workshop:
     async def view(self, by: Actor) -> DraftView:
         """The draft, for somebody who could undo what they did. Raises `WorkerError`."""
         draft = await self.open()
-        files = await self._marked(draft)
+        files, _ = await self._marked(draft)
 
         def read(connection: Connection) -> DraftView:
             done, undone = drafts.stacks(connection, by)
             return DraftView(
                 number=draft.number,
                 files=files,
-                changes=[change_view(each) for each in drafts.changes(connection, MOST_SHOWN)],
+                changes=[
+                    *(change_view(each, did) for each, did in drafts.accounts(connection, MOST_TOLD)),
+                    *(change_view(each, {}) for each in drafts.changes(connection, MOST_SHOWN)[MOST_TOLD:]),
+                ],
                 undo=done[-1].title if done else None,
                 redo=undone[-1].title if undone else None,
             )
 
         return await self._identity.read(read)
+
+    async def changes(self) -> DraftChangesView:
+        """In how many places the draft differs from what runs. It is neither begun nor checked for that."""
+        draft = await self._identity.read(drafts.read)
+        places = (await self._marked(draft))[1] if draft.number else 0
+        return DraftChangesView(number=draft.number, changes=places)
 
     async def files(self, paths: Sequence[str] | None = None) -> str:
         """JSON of a `FilesView` of the draft; all its files where none are named. Raises `WorkerError`."""
@@ -184,6 +217,13 @@ class Workshop:
                 self._tied = draft.number, found
             return self._tied[1]
 
+    async def sequenced(self) -> str:
+        """Return the operations and their order, as JSON of a `DraftOperationsView`. Raises `WorkerError`."""
+        draft = await self.open()
+        found = await self._process.ask(draft.files, "sequenced", draft.number)
+        assert isinstance(found, str)
+        return found
+
     async def pictured(self) -> str:
         """Return the picture of the draft, as JSON of a `DraftPictureView`. Raises `WorkerError`."""
         draft = await self.open()
@@ -202,6 +242,53 @@ class Workshop:
         assert isinstance(found, str)
         return found
 
+    async def stepped(
+        self, present: Mapping[str, object], steps: Sequence[object], *, follow: bool, until: str | None
+    ) -> str:
+        """Lead a station through the draft from `present` values on; JSON of a `StepsView`.
+
+        Raises `EditError` for a condition that is none, and `WorkerError`.
+        """
+        draft = await self.open()
+        asked = draft.number, self.folder, present, list(steps), follow, until
+        found = await self._stepping.ask(draft.files, "stepped", *asked)
+        assert isinstance(found, str)
+        return found
+
+    async def space(self, present: Mapping[str, object], question: object) -> str:
+        """Return the states that the draft can come to, folded as the question wants, with the `present` values; JSON
+        of a `StateSpaceView`.
+
+        Raises `EditError` for what is not in the model, and `WorkerError`.
+        """
+        draft = await self.open()
+        asked = draft.number, self.folder, present, question
+        found = await self._spaces.ask(draft.files, "space", *asked, patience=FOLDED_WITHIN)
+        assert isinstance(found, str)
+        return found
+
+    async def simulated(self, id: str | None, present: Mapping[str, object] | str, advance: object) -> str:
+        """Begin a simulation of the draft from `present` values or with the scenario of that name, or let the one with
+        this `id` go on; JSON of a `SimulationView`.
+
+        Raises `EditError` for what cannot be done, `NoSimulationError` and `WorkerError`.
+        """
+        draft = await self.open()
+        asked = draft.number, self.folder, id, present, advance
+        found = await self._simulating.ask(draft.files, "simulated", *asked)
+        assert isinstance(found, str)
+        return found
+
+    async def scenario_of(self, id: str, expected: object) -> str:
+        """Return the scenario that a simulation becomes; JSON of a `WrittenScenarioView`.
+
+        Raises `EditError` where it expects nothing, `NoSimulationError` and `WorkerError`.
+        """
+        draft = await self.open()
+        found = await self._simulating.ask(draft.files, "scenario", id, expected)
+        assert isinstance(found, str)
+        return found
+
     async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
         """Return how an ability goes through the run that shows a finding of the check of change `number`.
 
@@ -209,10 +296,10 @@ class Workshop:
         """
         check, draft = await self.checked(), await self.open()
         if number != check.number or number != draft.number:
-            raise EditError("the draft has changed since: look at its findings again")
+            raise EditError(message("edit.draft-changed"))
         trace = check.findings[finding].trace if finding < len(check.findings) else None
         if trace is None:
-            raise EditError("there is no run that shows such a finding")
+            raise EditError(message("edit.no-run"))
         found = await worked("drawn", draft.files, self.folder, ability, trace)
         if isinstance(found, str):
             raise EditError(found)
@@ -245,6 +332,14 @@ class Workshop:
         assert isinstance(found, dict)
         return found
 
+    async def compared(self, old: Files, new: Files, patience: float, *, written_only: bool) -> str:
+        """Return what is known within so many seconds of how two versions differ, or only of how that is written, as
+        JSON of a `ComparisonView`.
+
+        Raises `WorkerError`.
+        """
+        return await self._comparing.compare(old, new, patience, written_only=written_only)
+
     async def save(self, draft: Draft, name: str, message: str, by: Actor) -> RevisionView:
         """Save the draft under a name. Raises `EditError` and `WorkerError`."""
         asked = self._revisions, draft.base, name, message, by, self._identity.now()
@@ -255,6 +350,23 @@ class Workshop:
     def note_deployment(self, draft: Draft) -> None:
         """The draft is about to be deployed."""
         self._deployed_over = self._identity.now(), draft.base
+
+    @property
+    def planned(self) -> PlannedDeploymentView | None:
+        """What is to be deployed later, or was not."""
+        return self._planned
+
+    def plan_deployment(self, planned: PlannedDeploymentView | None) -> None:
+        """Show what is to be deployed later."""
+        self._planned = planned
+        if self._shown is not None and self._shown.planned != planned:
+            self._show(self._shown.model_copy(update={"planned": planned}))
+
+    def tell_comment(self, number: int) -> None:
+        """Show that somebody has said something of the draft."""
+        self._comment = number
+        if self._shown is not None:
+            self._show(self._shown.model_copy(update={"comment": number}))
 
     def hear(self, view: StationView) -> None:
         """Take note of what the controller shows: whoever brings files back that were there before a deployment that
@@ -319,7 +431,7 @@ class Workshop:
         def last(connection: Connection) -> tuple[DraftChange, Differences]:
             done, undone = drafts.stacks(connection, by)
             if not (found := done if undo else undone):
-                raise EditError(f"there is nothing of yours to {'undo' if undo else 'do again'}")
+                raise EditError(message("edit.nothing-to-undo" if undo else "edit.nothing-to-redo"))
             return found[-1], drafts.differences_of(connection, found[-1])
 
         return await self._proposed(draft, "undone" if undo else "redone", *await self._identity.read(last))
@@ -356,25 +468,35 @@ class Workshop:
         last = await self._identity.read(lambda connection: drafts.last_of(connection, error.file))
         if last is None or last.by_id == by.id:
             return error
-        return PartChangedError(error.file, error.path, f"{error}, by {last.by_name}")
+        return PartChangedError(error.file, error.path, message("edit.by", what=error.why, person=last.by_name))
 
     async def _noticed(self, draft: Draft) -> None:
         """Show the draft, and check it, where it is another one; after a deployment only how its files stand is."""
-        files = await self._marked(draft)
+        files, places = await self._marked(draft)
         if (shown := self._shown) is not None and shown.number == draft.number:
             if files != shown.files:
-                self._show(shown.model_copy(update={"files": files}))
+                self._show(shown.model_copy(update={"files": files, "changes": places}))
             return
-        changes = await self._identity.read(lambda connection: drafts.changes(connection, 1))
-        last = change_view(changes[0]) if changes else None
-        self._shown = WorkshopView(number=draft.number, files=files, last=last, check=waiting(draft.number))
+        changes = await self._identity.read(lambda connection: drafts.accounts(connection, 1))
+        last = change_view(*changes[0]) if changes else None
+        self._shown = WorkshopView(
+            number=draft.number,
+            files=files,
+            changes=places,
+            last=last,
+            check=waiting(draft.number),
+            planned=self._planned,
+            comment=self._comment,
+        )
+        if draft.files != draft.base:  # or else the check finds out about what runs
+            self._comparing.warm_up(draft.base)
         self._desk.check(draft.number, draft.files)
 
-    async def _marked(self, draft: Draft) -> dict[str, FileMark]:
-        """Return how each file stands; found once for each draft."""
+    async def _marked(self, draft: Draft) -> tuple[dict[str, FileMark], int]:
+        """Return how each file stands, and in how many places all differ; found once for each draft."""
         if self._marks is None or self._marks[0] != draft:
-            self._marks = draft, await run_in_threadpool(marks, draft)
-        return self._marks[1]
+            self._marks = draft, *await run_in_threadpool(lambda: (marks(draft), places_changed(draft)))
+        return self._marks[1:]
 
     def _found(self, check: CheckView) -> None:
         self._check = check

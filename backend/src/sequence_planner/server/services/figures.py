@@ -147,16 +147,16 @@ def _in_work(
             job=id_,
             title=job.title,
             work_master=job.work_master,
-            began=job.taken,
+            began=job.taken if job.begun is None else job.begun,
             expected_end=expected.get(id_, NOBODY_KNOWS).end,
         )
         for id_, job in view.jobs.items()
-        if not job.state.is_over
+        if not job.state.is_over and not (job.begun is None and view.cycle_stop is not None)
     ]
     found += [
         ProductInWork(job=None, title=masters[name].title, work_master=name, began=began, expected_end=None)
-        for name, began in known.open.items()
-        if began is not None and name in masters
+        for name, began in known.in_work().items()
+        if name in masters
     ]
     return found
 

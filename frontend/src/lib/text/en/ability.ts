@@ -2,19 +2,10 @@ import { count } from '../count.ts';
 
 /** An ability: its automaton, live, and a trial of it alone. */
 export const ability = {
-	list: 'Abilities',
-	choose: 'Choose an ability to see its states',
-	unknown: (name: string): string => `The station has no ability ${name}.`,
-	reading: 'Reading the definition.',
 	now: 'now',
-	runs: 'runs',
 	restartOnly: 'in restart mode only',
 	person: 'a person does it',
-	task: 'What the person is asked:',
-	acknowledgement: 'It is acknowledged by',
-	duration: (from: number, to: number): string => (from === to ? `A run takes about ${from} s.` : `A run takes about ${from}–${to} s.`),
 	place: (file: string, line: number): string => `${file}, line ${line}`,
-	written: 'Written in',
 	phases: {
 		unknown: 'not known',
 		idle: 'not enabled',
@@ -23,7 +14,6 @@ export const ability = {
 		executing: 'executing',
 		finished: 'finished'
 	},
-	present: (phase: string): string => `It is now: ${phase}`,
 
 	automaton: {
 		title: 'Automaton',
@@ -41,6 +31,14 @@ export const ability = {
 		neverFinished: 'Nothing says that it is finished: it can be enabled again.',
 		sets: 'then sets',
 		setsNothing: 'sets nothing'
+	},
+	/** What comes about without anybody who starts it. */
+	byItself: {
+		title: 'By itself',
+		finishes: 'finishes as soon as',
+		now: 'holds now',
+		whenever: 'It finishes whenever this holds, whether it was started or not:',
+		reactions: (n: number): string => count(n, 'reaction of its device', 'reactions of its device')
 	},
 	part: {
 		always: 'always',

@@ -37,7 +37,7 @@ export const account = {
 		session: 'This session',
 		ends: (moment: string): string => `It ends at ${moment} at the latest.`,
 		changed: (time: string): string => `The password was changed at ${time}. All your other sessions have ended.`,
-		present: 'Present password',
+		present: 'Current password',
 		presentMissing: 'Enter your present password.',
 		next: 'New password',
 		change: 'Change password'

@@ -49,6 +49,15 @@ export const alarms = {
 		over: 'Its cause is over',
 		history: 'All of it in History'
 	},
+	/** That nothing comes, by what it would tell; empty where nothing is called. */
+	silences: {
+		'silent.no-message-yet': (of) => (of ? `No message yet: ${of}` : 'No message yet'),
+		'silent.no-message': (of) => (of ? `No more messages: ${of}` : 'No more messages'),
+		'silent.no-message-past': (of) => (of ? `For some time no message came: ${of}` : 'For some time no message came'),
+		'silent.no-answer-yet': (of) => (of ? `No answer yet: ${of}` : 'No answer yet'),
+		'silent.no-answer': (of) => (of ? `No answer any more: ${of}` : 'No answer any more'),
+		'silent.no-answer-past': (of) => (of ? `For some time no answer came: ${of}` : 'For some time no answer came')
+	} as Readonly<Record<string, (of: string) => string>>,
 	standing: 'Standing',
 	setAside: 'Shelved and out of service',
 	asideAbout: 'People are not told of these, because somebody wanted that.',
@@ -64,6 +73,7 @@ export const alarms = {
 		gone: 'It is gone or acknowledged by now.'
 	},
 	shelve: {
+		ask: 'Shelve…',
 		button: 'Shelve',
 		title: 'Shelve this alarm?',
 		means: 'Silent for that long. If it becomes high, you are told.',
@@ -75,6 +85,7 @@ export const alarms = {
 		back: 'Tell it again'
 	},
 	suppress: {
+		ask: 'Take out of service…',
 		button: 'Take out of service',
 		title: 'Take this alarm out of service?',
 		means: 'Nobody is told of it until an engineer puts it back. Its cause stays as it is.',
@@ -85,8 +96,7 @@ export const alarms = {
 	goneNow: 'The alarm is gone.',
 	links: {
 		resource: (title: string): string => `State of ${title}`,
-		topics: (n: number): string => `All ${n} topics`,
-		topic: (name: string): string => `Topic ${name}`,
+		topics: (n: number): string => (n === 1 ? 'Its topic' : `Its ${n} topics`),
 		restart: 'Choose a way back',
 		label: 'Where to look'
 	},

@@ -1,38 +1,38 @@
 import { count } from '../count.ts';
 
-/** Check: what is found in the draft. */
+/** The check of a draft: how it stands, and what it finds. */
 export const check = {
-	asking: 'The draft is being read.',
-	notLive: 'Not live: the draft may be another one by now.',
-	running: 'What the station runs was checked too: see Supervisor on Operate.',
-	toOperate: 'To Operate',
-	toModel: 'To the model',
-	toDeploy: 'To Deploy',
 	draft: (number: number): string => `The draft after its change ${number}`,
 	last: (title: string, by: string, clock: string): string => `${title} (${by}, ${clock})`,
-	standing: 'State of the check',
 	verdict: {
 		waiting: 'It will be checked in a moment.',
 		checking: 'It is being checked.',
 		failed: 'It could not be checked.',
 		unusable: 'It cannot be used.',
 		unmeetable: 'It has no supervisor: nothing of it could be started.',
-		good: 'Checked. Ready to deploy.'
+		good: 'Checked. It can be used.'
+	},
+	/** The same in a line, beside when it was and how long it took. */
+	line: {
+		waiting: 'The check begins',
+		checking: (what: string): string => `Checking: ${what}`,
+		failed: (why: string): string => `Could not be checked: ${why}`,
+		unusable: (errors: number): string => `Cannot be used: ${count(errors, 'error', 'errors')}`,
+		unmeetable: 'No supervisor: nothing could start',
+		good: 'Checked',
+		took: (time: string): string => `in ${time}`
 	},
 	again: 'Change the model, and it is checked again.',
 	stages: 'What it looks for',
 	stage: {
 		'reading it': 'Can it be read?',
+		'the examples of pipelines': 'Do the examples of pipelines hold?',
 		'what is suspicious': 'What is suspicious in it?',
 		'the safe states': 'Which states are safe?',
 		'the findings': 'What is never possible?',
 		'the guards': 'What does the supervisor add?'
 	},
 	stageIs: { done: 'done', now: 'now', later: 'to come' },
-	counted: (errors: number, warnings: number): string =>
-		`${count(errors, 'error', 'errors')}, ${count(warnings, 'warning', 'warnings')}`,
-	soFar: 'so far',
-	size: 'Size of the model',
 	sizes: {
 		abilities: (n: number): string => count(n, 'ability', 'abilities'),
 		variables: (n: number): string => count(n, 'variable', 'variables'),
@@ -44,9 +44,10 @@ export const check = {
 	none: 'Nothing was found.',
 	noneYet: 'Nothing has been found yet.',
 	group: 'Grouped by',
-	by: { kind: 'kind', file: 'file' },
+	by: { severity: 'severity', kind: 'kind', file: 'file' },
 	error: 'error',
 	warning: 'warning',
+	write: (name: string): string => `Write “${name}”`,
 	open: (place: string): string => `${place} in the model`,
 	showAll: (n: number): string => `Show all ${n}`,
 	kinds: {
@@ -119,6 +120,7 @@ export const check = {
 	supervisor: 'What the supervisor adds',
 	adds: (n: number): string => `It adds to the guards of ${count(n, 'ability', 'abilities')}, each for the specifications that are named.`,
 	addsNothing: 'It adds nothing: the guards as they are written keep the station in its safe states.',
+	addsNothingTo: 'It adds nothing to this ability.',
 	addsLater: 'It is not known yet.',
 	noSupervisor: 'There is none.',
 	starts: 'Ability',

@@ -3,6 +3,8 @@ export const common = {
 	product: 'Sequence Planner',
 	noStation: 'Nothing is known of the station yet.',
 	old: 'old',
+	/** Of what is not live. */
+	asOf: (clock: string): string => `as it was at ${clock}`,
 	live: 'live',
 	now: 'now',
 	cancel: 'Cancel',
@@ -15,6 +17,7 @@ export const common = {
 	/** Why, in the journal. */
 	takenBack: 'Taken back at once',
 	reason: 'Reason',
+	reasonMissing: 'Say why: it is written into the journal.',
 	/** Of a field. */
 	needed: '(needed)',
 	optional: '(optional)',

@@ -10,6 +10,15 @@ export const figures = {
 	ready: (time: string): string => `ready ${time}`,
 	since: (time: string): string => `since ${time}`,
 	paused: 'order paused',
+	/** A pause when the product that is in work is done. */
+	after: {
+		full: 'Pause when this product is done',
+		not: 'Do not pause after this product',
+		why: 'The station pauses when this product is done, and does not begin another one.',
+		goOn: 'Go on without a pause',
+		asked: (who: string, why: string): string => `${who} asked for a pause when this product is done${why === '' ? '' : `: ${why}`}.`,
+		takeControl: (who: string, why: string): string => `${who} asked for a pause when this product is done${why === '' ? '' : `: ${why}`}. Take control to go on without.`
+	},
 	made: 'Made today',
 	madeInShift: 'Made this shift',
 	today: (count: number, planned: number | null): string => (planned === null ? `${count} today` : `${count} of ${planned} today`),
@@ -43,7 +52,7 @@ export const figures = {
 	nextShift: (shift: string, begins: string): string => `No shift is on. Next: ${shift}, ${begins}`,
 	availableTrend: (since: string): string => `Availability since ${since}`,
 	wall: {
-		picture: 'What is made',
+		picture: 'Product',
 		done: (n: number, all: number): string => `${n} of ${all} done`,
 		onSchedule: 'On schedule. Mark: due by now.',
 		behind: (n: number): string => `${n} behind. Mark: due by now.`,
@@ -56,6 +65,7 @@ export const figures = {
 		longer: (time: string): string => `Longer than the median, ${time}`,
 		firstOnes: 'No median yet',
 		then: (what: string): string => `then: ${what}`,
+		thenMoves: (who: string): string => `then moves: ${who}`,
 		next: 'Next:',
 		notLive: 'Not live',
 		sideBySide: 'Side by side',

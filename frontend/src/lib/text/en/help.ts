@@ -9,7 +9,7 @@ export const help: Helped = {
 			['Ctrl K', 'Search or act'],
 			['?', 'This help'],
 			['Tab, Shift Tab', 'To the next part of the page, or the one before'],
-			['Arrow keys', 'Within a list, a tree, the time line, the plan or the picture of the station'],
+			['Arrow keys', 'Within a list, a tree, the time line, the plan, the picture of the station or that of the operations'],
 			['F8', 'To what was done last, while that is told, and how it is taken back'],
 			['Escape', 'Puts a dialog or a menu away; what was typed in a field stays'],
 			['Ctrl Space', 'In a condition: what could stand there'],
@@ -91,23 +91,30 @@ export const help: Helped = {
 			how: [
 				'Choose a part in the tree, or search for its name.',
 				'Change it in its fields or as text. Both are the same, and everyone sees it at once.',
-				'Problems stand below, each with its place. Press one to go there.',
-				'Undo takes back what you have changed. When all is right, go on to Check and Deploy.'
+				'Problems stand below, each with its place: press that to go there. Some play the run that leads to them, step by step.',
+				'Undo takes back what you have changed. When all is right, go on to Review changes.',
+				'The draft is checked by itself whenever it changes; errors keep it from being used.',
+				'An ability shows how it stands in the station that runs, and what it waits for. Try it alone among the runs: the station must be paused.',
+				'Beside the problems are the usages of the chosen part, the guards that the supervisor adds, and runs. Shift and F12 lead to the usages.',
+				'Graph shows the model in four layers, and what is tied to what. Open leads from there to the form.'
 			]
 		},
-		station: {
-			about: 'The draft of the model as a whole: four layers, and what is tied to what.',
+		operations: {
+			about: 'What is to be done and in which order, as the draft of the model says it, with how far the station is.',
 			how: [
-				'Choose something to see what it rests on, and what rests on it.',
-				'Search for a name, or see fewer by layer.',
-				'From what is chosen go on to its place in the model.'
+				'Each resource has a lane; an arrow leads to what comes after. Solid: surely. Dashed: one of several will do.',
+				'Choose an operation to see what it begins with and ends with, in words and as it is now. By keyboard: arrow keys lead from one to the next, Home and End to the first and the last, Enter to what is said of it, Escape back.',
+				'Draw an arrow from the dot at the right of one to another to put it behind. It goes into the draft; what runs is not touched. Shift and a press, or Shift and Space, picks several to put together: in sequence, at once, in any order, or one of them.',
+				'See the same over time, or as a table.'
 			]
 		},
 		pipelines: {
 			about: 'From messages to variables and back, as the draft of the model has it, with what passes there in the station that runs.',
 			how: [
-				'Choose a pipeline from the list to see it from message to variable.',
-				'Choose a box or a line to edit it. Changes go into the draft; what runs is not touched.',
+				'Choose a pipeline from the list: what its resource says stands above, what it is told below.',
+				'Choose a box or a wire to edit it. Changes go into the draft; what runs is not touched.',
+				'Drag a stage onto a wire, or a stage of the picture onto another one. Drag a box elsewhere, and it stays there for you.',
+				'Ctrl C, Ctrl X and Ctrl V copy, cut and paste the chosen stage as YAML, also to another pipeline or an editor. Delete removes it.',
 				'Try it with a message, and keep that as an example that must hold.'
 			]
 		},
@@ -119,38 +126,25 @@ export const help: Helped = {
 				'See fewer by words, resource or state.'
 			]
 		},
-		ability: {
-			about: 'What an ability is made of, what of that holds now, and how it does when it is tried alone.',
-			how: [
-				'Choose an ability on the left.',
-				'Its states, with the one it is in now, and what each step between them needs.',
-				'Try it alone: the station must be paused.'
-			]
-		},
-		check: {
-			about: 'What is found in the draft of the model: what keeps it from being used, what is suspicious, and what the supervisor adds.',
-			how: [
-				'The draft is checked by itself whenever it changes.',
-				'Errors keep it from being used. Choose one to go to its place in the model.',
-				'Play what leads to a finding, step by step.',
-				'Without errors go on to Deploy.'
-			]
-		},
 		whatIf: {
 			about: 'How the station would go on with the model as it is edited: simulated, with emulated devices and people who do what they are asked. The station is not touched by it.',
 			how: [
 				'Choose where it begins: now, or at a record of the history.',
-				'Choose how many seconds, and simulate.',
-				'Read what would start and end, and what would differ in the end.'
+				'Take what shall happen next: by a device, a person, a fault or a start. Arrow keys lead back and on.',
+				'Go on otherwise from any step: that is a branch of its own.',
+				'Follow the plan, or run until a condition holds.',
+				'Or try it in simulated time: let the clock run, give a device a fault, go back to a moment and on otherwise.',
+				'Or see the whole state space: choose variables to fold it by, and what is forbidden or not safe stands out.'
 			]
 		},
-		deploy: {
-			about: 'Revisions of the model: saved under a name, compared in text and in behaviour, and deployed once checked.',
+		review: {
+			about: 'What will be different with the draft of the model, proven, and how it comes to the station.',
 			how: [
-				'Save the draft as a revision, with a name and why.',
-				'Compare it with what runs: texts, behaviour and plan.',
-				'Deploy it. What must be so first is listed there.',
-				'To go back, take an older revision into the draft and deploy that.'
+				'Read what will be different: each change in a sentence, with what follows from it. Files show every line.',
+				'The plan of the station as it stands now, with the model that runs and with the draft.',
+				'Checks: what was looked for, how long it took, and what was found.',
+				'Bring it to the station: do what is still missing in the list, then deploy.',
+				'Revisions: see what differs, or go back to one. You read what that undoes first.'
 			]
 		},
 		journal: {

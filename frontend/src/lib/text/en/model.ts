@@ -8,11 +8,63 @@ export const model = {
 	readOnly: (role: string): string => `You can look at the model. To change it the role ${role} is needed.`,
 	tree: 'Parts of the model',
 	search: 'Search: name or title',
-	none: 'No part has such a name or title.',
+	none: 'No part has such a name or title',
 	noneHow: 'A part of a name or of a title is enough.',
 	showAll: 'Show all parts',
 	form: 'Chosen part',
+	panel: 'About the draft',
+	views: { label: 'How the model is shown', form: 'Form', graph: 'Graph' },
+	/** What is told of the draft below its form. */
+	panels: {
+		problems: 'Problems',
+		usages: 'Usages',
+		guards: 'Guards added',
+		runs: 'Tried runs',
+		tests: 'Tests',
+		changes: 'Changes',
+		folds: 'Could be shorter'
+	},
+	noUsages: 'Choose a part to see where it is used',
+	guards: { only: (ability: string): string => `Only those of ${ability}` },
+	tests: {
+		title: 'Tests of the station',
+		none: 'No tests',
+		how: 'What was tried in simulation can be kept as a test. They stand in the folder tests.',
+		run: 'Run all',
+		running: 'Running…',
+		run1: 'Run',
+		one: (name: string): string => `Run ${name}`,
+		passed: 'passed',
+		failed: 'failed',
+		open: 'Look at it',
+		opens: (name: string): string => `Look at it: ${name}`,
+		summary: (passed: number, failed: number): string => `${passed} passed, ${failed} failed`,
+		seconds: (seconds: string): string => `${seconds} simulated`,
+		older: 'of the draft before',
+		unused: { abilities: (names: string): string => `Started in none of them: ${names}`, operations: (names: string): string => `Completed in none of them: ${names}` },
+		wrong: 'Cannot be carried out'
+	},
+	runs: {
+		none: 'Choose an ability to try it alone',
+		how: 'It runs once in the station, which has to have it and to be paused.',
+		found: 'Runs that show what the check found'
+	},
+	size: { tree: 'Width of the parts', file: 'Width of the file', panel: 'Height of what is below' },
+	unrun: (n: number): string => `${count(n, 'file', 'files')} the station does not run as here`,
+	review: 'Review changes',
+	moreFields: 'More',
+	inOperations: 'See it in the order of operations',
+	now: { title: 'In the station that runs', tag: 'station now', differs: 'This is of the station that runs: the draft differs from it.', which: 'Which one', may: 'May start when', supervised: 'added by the supervisor', try: 'Try it' },
+	/** How long an ability took, beside what is written. */
+	measured: {
+		is: (least: number, most: number, runs: number): string => `measured: ${least === most ? least : `${least} to ${most}`} s, ${count(runs, 'run', 'runs')}`,
+		other: 'What is written does not fit: plans come out too short or too long.',
+		use: (least: number, most: number): string => `Use ${least === most ? least : `${least} to ${most}`} s`
+	},
 	file: 'File',
+	runsNow: 'Runs now',
+	tryIt: 'Try in simulation',
+	tryItAbout: 'With emulated devices and a clock of its own, beside the station. It follows what you edit.',
 	hideFile: 'Hide the file',
 	showFile: 'Show the file',
 	fileState: { same: 'as in the station', changed: 'changed', new: 'new', removed: 'removed' },
@@ -44,6 +96,7 @@ export const model = {
 		work_master: 'Work master',
 		symbol: 'Symbol',
 		shift: 'Shift',
+		scenario: 'Test',
 		message: 'Message definition'
 	},
 	section: {
@@ -72,6 +125,7 @@ export const model = {
 		work_masters: 'Work masters',
 		picture: 'Live picture',
 		shifts: 'Shifts',
+		tests: 'Tests',
 		messages: 'Message definitions'
 	},
 	aboutSection: {
@@ -100,6 +154,7 @@ export const model = {
 		work_masters: 'What a job of a MES consists of.',
 		picture: 'The picture of the station on Operate: drawn by hand, or made from the model.',
 		shifts: 'When the station is to work: its availability and what it makes are shown for the shift that is on.',
+		tests: 'What is to come about in simulated time when certain things happen.',
 		messages: 'The definitions of the messages that the topics carry.'
 	},
 	/** Fields by their keys in the files. */
@@ -123,6 +178,7 @@ export const model = {
 		arguments: 'Arguments',
 		remove: 'Without',
 		restart: 'Only for restart',
+		moves: 'Something moves',
 		human: 'Done by a person',
 		instruction: 'Instruction',
 		text: 'Sentence',
@@ -222,6 +278,8 @@ export const model = {
 	},
 	required: 'needed',
 	otherwise: (value: string): string => `without it: ${value}`,
+	/** What counts where nothing is written. */
+	leftOut: (value: string): string => `${value} (not written)`,
 	unit: 's',
 	least: 'From',
 	most: 'To',
@@ -235,6 +293,14 @@ export const model = {
 	rowUp: (field: string, n: number): string => `Move ${field}, ${n} up`,
 	cell: (field: string, name: string): string => `${field}, ${name}`,
 	removeCell: (field: string, name: string): string => `Remove ${field}, ${name}`,
+	/** What a form asks of a parameter of a type of resources. */
+	parameter: {
+		kind: (name: string): string => `Kind of ${name}`,
+		of: (name: string): string => `Enumeration of ${name}`,
+		ofShort: 'of the enumeration',
+		otherwise: (name: string): string => `Default of ${name}`,
+		otherwiseShort: 'no default'
+	},
 	/** What more can be said of something that is written without keys. */
 	more: { enumeration: 'Include others, or give it an order', predicate: 'Give it a title or parameters' },
 	addPart: (field: string): string => `Add: ${field}`,
@@ -360,6 +426,11 @@ export const model = {
 		},
 		do: 'Add'
 	},
+	paste: {
+		copied: (name: string): string => `${name} copied as YAML`,
+		none: 'What was pasted is no part of a model. Copy a part of the tree first, or write one as YAML below its section: abilities: {move: {…}}',
+		nowhere: (section: string): string => `“${section}” has no place here. Choose a part of the resource to which it is to belong, and paste it there.`
+	},
 	duplicate: { title: (name: string): string => `Duplicate ${name}`, name: 'Name of the copy', do: 'Duplicate' },
 	rename: {
 		title: (name: string): string => `Rename ${name}`,
@@ -383,6 +454,7 @@ export const model = {
 	},
 	change: {
 		add: (kind: string, name: string): string => `${kind} ${name} added`,
+		pasted: (names: readonly string[]): string => `${names.join(', ')} pasted`,
 		duplicate: (name: string, of: string): string => `${name} made as a copy of ${of}`,
 		remove: (kind: string, name: string): string => `${kind} ${name} deleted`,
 		move: (name: string): string => `${name} moved`,
@@ -397,27 +469,20 @@ export const model = {
 		title: 'Last changes',
 		none: 'Nothing was changed yet',
 		how: 'Each change of the draft stands here, with who made it and when.',
+		was: 'was',
+		now: 'is now',
+		place: (file: string, line: number): string => `${file}, line ${line}`,
+		whole: 'All of it',
+		more: (n: number): string => count(n, 'more place', 'more places'),
 		undone: 'Undone',
 		redone: 'Done again',
 		by: (who: string, when: string): string => `${who}, ${when}`
 	},
 	problems: {
-		title: 'Problems',
-		waiting: 'The check begins.',
-		checking: (doing: string): string => `Being checked: ${doing}.`,
-		failed: (why: string): string => `It could not be checked: ${why}.`,
-		done: (findings: string): string => (findings === '' ? 'Checked: nothing was found.' : `Checked: ${findings}.`),
-		summary: (variables: number, abilities: number, operations: number, specifications: number): string =>
-			[
-				count(variables, 'variable', 'variables'),
-				count(abilities, 'ability', 'abilities'),
-				count(operations, 'operation', 'operations'),
-				count(specifications, 'specification', 'specifications')
-			].join(', '),
+		mended: (was: string, now: string): string => `“${was}” becomes “${now}”`,
 		error: 'Error',
 		warning: 'Warning',
-		place: (file: string, line: number): string => `${file}:${line}`,
-		more: (n: number): string => `Show ${n} more`
+		place: (file: string, line: number): string => `${file}:${line}`
 	},
 	folds: {
 		title: 'Shorter with the same meaning',

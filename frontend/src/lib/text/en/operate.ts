@@ -3,6 +3,12 @@ const starts = (n: number): string => (n === 1 ? '1 start' : `${n} starts`);
 const ticks = (n: number): string => (n === 1 ? '1 tick' : `${n} ticks`);
 
 export const operate = {
+	/** Another model comes once the product in work is done. */
+	change: {
+		product: (name: string): string => `The model is changed to “${name}” when this product is done.`,
+		orders: (name: string): string => `The model is changed to “${name}” when the orders in work are done.`,
+		by: (who: string, at: string, why: string): string => `${who}, ${at}: ${why}`
+	},
 	title: 'Operate',
 	plan: {
 		title: 'Plan',
@@ -61,15 +67,12 @@ export const operate = {
 	why: {
 		ask: 'Why?',
 		askOf: (title: string): string => `Why? ${title}`,
-		of: (title: string): string => `What ${title} waits for`,
+		of: (title: string): string => `What “${title}” waits for`,
 		nothing: 'Nothing is in its way.',
 		goalHolds: 'Its goal holds now.',
-		undone: 'Once that is no longer so, it waits until all of these are so',
 		again: 'Ask again',
 		asked: (clock: string): string => `As it was at ${clock}`,
 		asking: 'Asking',
-		expanded: 'What of it does not hold',
-		conditions: 'It waits until all of these are so',
 		kind: {
 			station: 'The station',
 			service: 'Service',
@@ -85,13 +88,40 @@ export const operate = {
 		changers: 'Could be changed by',
 		nobody: 'nobody',
 		how: {
-			start: (title: string, running: boolean): string => `the start of ${title}${running ? ', which runs' : ''}`,
-			finish: (title: string, running: boolean): string => `the end of ${title}${running ? ', which runs' : ''}`,
-			effect: (title: string, running: boolean): string => `what ${title} does${running ? ', which runs' : ''}`,
+			start: (title: string, running: boolean): string => `the start of “${title}”${running ? ', which runs' : ''}`,
+			finish: (title: string, running: boolean): string => `the end of “${title}”${running ? ', which runs' : ''}`,
+			effect: (title: string, running: boolean): string => `what “${title}” does${running ? ', which runs' : ''}`,
 			correction: (): string => 'a correction by a person',
 			force: (): string => 'forcing the output'
 		} as Readonly<Record<string, (title: string, running: boolean) => string>>,
-		plan: (n: number): string => `A plan is at hand: ${starts(n)}.`
+		plan: (n: number): string => `A plan is at hand: ${starts(n)}.`,
+		about: {
+			enabled: 'It can start when',
+			start: 'It starts when',
+			supervisor: 'The supervisor allows it when',
+			finish: 'It is done when',
+			precondition: 'It begins when',
+			turn: 'It is its turn when',
+			goal: 'It is done when',
+			undone: 'It is done as long as',
+			predicate: 'It is so when'
+		},
+		sake: (titles: string): string => `for the sake of ${titles}`,
+		toRest: 'so that the station can come to rest again',
+		inSequence: (name: string): string => `in the sequence ${name}`,
+		truth: { holds: 'holds', fails: 'does not hold', open: 'not known' },
+		joined: {
+			all: 'All of these:',
+			any: 'One of these:',
+			not: 'Not this:',
+			implies: 'The second, if the first:',
+			same: 'Which means:'
+		},
+		called: (predicate: string): string => `is called ${predicate}`,
+		mustEnd: 'must not be so',
+		others: (n: number): string => (n === 1 ? '1 more, which does not decide' : `${n} more, which do not decide`),
+		above: 'stands above',
+		operation: (title: string): string => `the operation ${title}`
 	},
 	operations: {
 		title: 'Operations',
@@ -114,26 +144,6 @@ export const operate = {
 			skipped: (job: string): string => `not needed for ${job}`
 		} as Readonly<Record<'none' | 'later' | 'now' | 'done' | 'skipped', (job: string) => string>>,
 		leftOut: 'not in the plan'
-	},
-	resources: {
-		title: 'Resources',
-		product: 'Product',
-		online: 'online',
-		offline: 'offline',
-		out: 'out of service',
-		estimated: 'estimated',
-		commanded: 'commanded',
-		unknown: 'unknown',
-		awaitsAll: 'Awaits',
-		awaits: 'awaits',
-		nothingRuns: 'nothing runs',
-		notConfirmed: 'not confirmed',
-		forced: 'forced',
-		all: (n: number): string => `All ${n} values`,
-		allOf: (n: number, title: string): string => `All ${n} values of ${title}`,
-		abilities: (n: number): string => (n === 1 ? '1 ability' : `${n} abilities`),
-		runs: 'runs',
-		restartOnly: 'restart mode only'
 	},
 	service: {
 		title: 'Out of service',
@@ -171,42 +181,22 @@ export const operate = {
 			'out of service': (n: number): string => (n === 1 ? 'is out of service' : 'are out of service')
 		} as Readonly<Record<string, (n: number) => string>>
 	},
-	topics: {
-		title: 'Topics',
-		never: 'never',
-		silent: 'silent',
-		in: 'in',
-		out: 'out',
-		peers: (n: number): string => (n === 1 ? '1 peer' : `${n} peers`)
-	},
 	supervisor: {
-		title: 'Supervisor',
-		computed: (what: string): string => `Being computed: ${what}.`,
-		guards: (n: number): string => (n === 1 ? '1 guard added by it' : `${n} guards added by it`),
-		onlyWhen: 'only when',
 		noShort: 'no short rule; show the states',
 		blocked: 'Not, among others, where:',
 		expanded: 'Written out',
-		over: (index: string): string => `for ${index}`,
-		because: 'because of',
-		rest: 'coming to rest again',
 		none: 'There is no supervisor, so nothing is started.',
 		about: (number: string): string => `about ${number}`,
 		reached: (number: string, one: boolean): string => `${number} ${one ? 'state' : 'states'} can be reached`,
 		supervised: (number: string): string => `${number} of them with the supervisor`,
-		atMost: (number: string): string => `At most ${number} states can be reached with the supervisor`,
-		fromBeginning: 'It is so from the beginning',
-		howItComes: (n: number): string => `How it comes about, in ${n} ${n === 1 ? 'step' : 'steps'}`,
-		kind: { tick: 'Tick', start: 'Start', activity: 'Operation', transition: 'Step' } as Readonly<Record<string, string>>,
-		finished: 'finished:',
-		nothingChanges: 'nothing changes',
-		forbiddenBy: 'forbidden by'
+		atMost: (number: string): string => `At most ${number} states can be reached with the supervisor`
 	},
 	/** Whoever is asked for something says what is in the way; on the watch with one touch, and nothing more. */
 	task: {
 		yours: 'Your task',
 		comesHere: 'What the station asks of you comes here.',
 		goesOn: 'Your task goes on',
+		toldAbove: 'Its problem is told above',
 		thenMoves: 'Then moves:',
 		next: 'Next for you:',
 	},

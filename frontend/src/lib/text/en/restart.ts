@@ -12,6 +12,8 @@ export const restart = {
 			restart: 'The station is in restart mode.',
 			hold: 'The station is held.',
 			paused: 'The station is paused.',
+			productDone: (who: string, why: string): string => `The product is done, and the station is paused, as ${who} asked${why === '' ? '.' : `: ${why}`}`,
+			atBreakpoint: (condition: string, who: string): string => `The station is paused at a breakpoint of ${who}: ${condition}.`,
 			undecided: (n: number): string => `${count(n, 'output', 'outputs')} from before the start ${n === 1 ? 'waits' : 'wait'} for a decision.`,
 			questions: (n: number): string => `${count(n, 'question', 'questions')}: what is believed does not fit what is measured.`,
 			unconfirmed: 'The station believes things that nobody has confirmed yet.',
@@ -65,7 +67,7 @@ export const restart = {
 		taken: (title: string, at: string): string => `${title}, done at ${at}.`,
 		runs: (title: string): string => `${title} is carried out.`,
 		works: 'Production goes on by itself then.',
-		to: (title: string): string => `Next: ${title}`,
+		to: (number: number, title: string): string => `To step ${number}: ${title}`,
 		first: (title: string): string => `First: ${title}`,
 		calm: 'The station works by itself',
 		calmAbout: 'When it stops, this page leads back to production: understand, make the state true, choose a way back, go on.',
@@ -105,6 +107,7 @@ export const restart = {
 
 	believed: {
 		title: 'Believed and measured',
+		besides: 'Something else',
 		agree: 'The state fits every measurement.',
 		agreeHeard: 'The state fits all that is heard.',
 		ask: (so: string): string => `Is it true that ${so}?`,
@@ -165,7 +168,7 @@ export const restart = {
 		ifChecked: 'Only if you have checked',
 		ifCheckedMeaning: 'Each says that work on the product is done. The station knows of nobody who did it: take one only if you have seen it.',
 		onlyIf: (claims: string): string => `Only if you have checked: ${claims}`,
-		records: (values: string): string => `As soon as that is done the station notes of the product: ${values}.`,
+		records: (values: string): string => `Once that is done the station takes it that ${values}.`,
 		claims: (titles: string): string => `It would count as done, or nearer to it: ${titles}.`,
 		kinds: {
 			replan: 'goes on by itself',
@@ -178,6 +181,8 @@ export const restart = {
 			goal: 'a goal by hand'
 		},
 		starts: (n: number): string => count(n, 'start', 'starts'),
+		/** Below a time. */
+		withThen: 'with what follows',
 		seconds: (n: number): string => `≈ ${n} s`,
 		minutes: (n: number, seconds: number): string => (seconds === 0 ? `≈ ${n} min` : `≈ ${n} min ${seconds} s`),
 		rest: 'ends at rest',
@@ -198,10 +203,10 @@ export const restart = {
 		leftOutShort: (n: number): string => `Gives up ${count(n, 'operation', 'operations')}`,
 		first: 'You do first',
 		see: (so: string): string => `See to it that ${so}.`,
-		now: (value: string): string => `(now ${value})`,
+		now: (value: string): string => `(now: ${value})`,
 		online: (title: string): string => `Bring ${title} back.`,
-		waits: (topics: string): string => `The station notices it on ${topics}.`,
-		senseless: (topics: string): string => `It is heard on ${topics}, but not understood. The station notices once it is.`,
+		waits: 'The station notices it by itself.',
+		senseless: 'It is heard, but not understood. The station notices once it is.',
 		outBecause: (why: string): string => `It is out of service: ${why}`,
 		back: 'It is back.',
 		service: (title: string): string => `Look after “${title}”, then put it back into service.`,
@@ -221,12 +226,13 @@ export const restart = {
 			out: (title: string): string => `${title} is still out of service`,
 			other: (so: string, now: string): string => `it is not so yet that ${so} ${now}`
 		},
-		holdFirst: 'Press Hold before you go in: the station goes on by itself as soon as this is so. The ways are looked for again then.',
+		holdFirst: 'Press Hold before you go in: the station goes on by itself once this is done. The ways are then looked for again.',
 		goOn: 'Nothing has to be carried out.'
 	},
 	plan: {
 		title: 'What happens then',
 		ends: (time: string): string => `ends after ${time}`,
+		inAll: (time: string): string => `${time} with what follows`,
 		endsSafe: (time: string): string => `ends after ${time}, in a safe state`,
 		movesFirst: 'moves first',
 		nothing: 'Nothing is started: the devices do it by themselves.',
@@ -282,11 +288,6 @@ export const restart = {
 	},
 	why: {
 		title: (title: string): string => `Why not: ${title}`,
-		involved: 'Involved:',
-		value: (name: string, value: string, wanted: string): string => `${name} is ${value}, and should be ${wanted}`,
-		several: (name: string, value: string): string => `${name} is ${value}`,
-		or: ' or ',
-		changers: 'Could change it:',
 		reasons: 'As long as all of this stays as it is there is no way:',
 		corrections: 'There would be one with:',
 		plan: 'The station could reach it:'

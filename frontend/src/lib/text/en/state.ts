@@ -3,7 +3,7 @@ import { count } from '../count.ts';
 /** State, and corrections of it. */
 export const state = {
 	variables: 'Variables',
-	none: 'No variable is like that.',
+	none: 'No variable is like that',
 	noneHow: (all: number): string => `The search and the filter hide all ${all}. Change them, or show all.`,
 	noneYet: 'No variables yet',
 	howYet: 'Each value that a device sends or gets, and each estimate, stands here once the model declares it.',
@@ -109,6 +109,22 @@ export const state = {
 		correction: 'Corrections',
 		gone: 'The station has no such variable any more.'
 	},
+	watch: 'Watch',
+	watched: 'watched',
+	/** Conditions for which the station pauses. */
+	breakpoints: {
+		title: 'Breakpoints',
+		open: 'Pause when…',
+		meaning: 'The station pauses after the tick in which one of these conditions becomes true. What runs then is finished, and nothing starts. They are forgotten when the controller begins again.',
+		none: 'There are none.',
+		stopped: 'Stopped here',
+		by: (who: string, at: string): string => `${who}, ${at}`,
+		hits: (n: number, last: string | null): string => (n === 0 || last === null ? 'not yet' : n === 1 ? `once, ${last}` : `${n} times, last ${last}`),
+		remove: 'Remove',
+		removeOne: (condition: string): string => `Remove ${condition}`,
+		pauseWhen: 'Pause when',
+		set: 'Set breakpoint'
+	},
 	change: {
 		title: 'What could make it otherwise?',
 		value: 'So that it is',
@@ -189,10 +205,10 @@ export const state = {
 		believes: 'The station believes:',
 		unmeasured: 'Nothing measures it.',
 		asIs: 'leave it as it is',
-		written: (writer: string, at: string): string => `last written by ${writer}${at && `, ${at}`}`,
+		written: (writer: string, at: string): string => `last written by “${writer}”${at && `, ${at}`}`,
 		from: (evidence: string): string => `from ${evidence}`,
 		journal: 'It is written into the journal.',
-		doubt: (values: string): string => `In doubt; with what is measured would fit: ${values}`,
+		doubt: (values: string): string => `In doubt. What is measured would fit: ${values}`,
 		lookAgain: 'Look again',
 		looking: 'Working out what follows',
 		altered: 'What follows is another by now. Read it again, then press once more.',
@@ -213,8 +229,8 @@ export const state = {
 		noLonger: 'Could not start any more',
 		activated: (title: string): string => `“${title}” begins.`,
 		completed: (title: string): string => `“${title}” counts as done.`,
-		fits: (what: string): string => `Fits then: ${what}`,
-		fitsNot: (what: string): string => `Does not fit then: ${what}`,
+		fits: (what: string): string => `The measurements fit it then. ${what}`,
+		fitsNot: (what: string): string => `A measurement does not fit it then. ${what}`,
 		plan: 'The plan then, in automatic mode',
 		steps: (n: number): string => `Step by step: ${count(n, 'start', 'starts')}`,
 		noStarts: 'Nothing has to be started.',

@@ -1,4 +1,4 @@
-/** The page that shows the model as a whole. */
+/** The graph of Model: the model as a whole. */
 import { count } from '../count.ts';
 
 export const station = {
@@ -84,9 +84,8 @@ export const station = {
 	implied: 'It is declared nowhere: it follows from messages and stages.',
 	given: 'It is given with ROS 2.',
 	missing: 'It is named, and declared nowhere.',
-	toAbility: 'Its automaton',
+	open: 'Open',
 	findings: (n: number): string => count(n, 'finding of the check', 'findings of the check'),
-	toCheck: 'To the check',
 	within: 'Part of',
 	up: 'Above: what uses it, or may change with it',
 	down: 'Below: what it rests on',
@@ -104,7 +103,7 @@ export const station = {
 	showAll: (n: number): string => `Show all ${n}`,
 	usages: 'Find usages',
 	usagesOf: (name: string): string => `Usages of ${name}`,
-	inStation: 'Show it in the station',
+	inStation: 'Show it in the graph',
 	usedAt: (n: number): string => (n === 0 ? 'It is used nowhere.' : `It is used in ${count(n, 'place', 'places')}.`),
 	byName: (n: number): string =>
 		`${count(n, 'entry uses', 'entries use')} it though nothing there names it, because a field of a message has its name.`,

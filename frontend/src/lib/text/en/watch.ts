@@ -14,7 +14,7 @@ export const watch = {
 	gone: 'This task is gone.',
 	movesNext: 'Moves next:',
 	moreAfter: (n: number): string => `${n} more after this`,
-	waits: (duration: string): string => `waits ${duration}`,
+	waits: (duration: string): string => `Waits ${duration}`,
 	/** Instead of what moves next, where nothing does. */
 	nothingMoves: 'Nothing moves yet. Done is recorded.',
 	/** The same in two parts, the second where there is room. */

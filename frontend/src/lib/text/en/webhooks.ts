@@ -1,7 +1,7 @@
 /** Webhooks: other systems that are told what becomes of orders and of the station. */
 export const webhooks = {
 	table: 'Who is told',
-	none: 'Nobody is told.',
+	none: 'Nobody is told',
 	howYet: 'Make one below: the other system is then told of each event.',
 	name: 'Name',
 	address: 'Address',

@@ -1,19 +1,11 @@
+import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const ability: Text['ability'] = {
-	list: 'Förmågor',
-	choose: 'Välj en förmåga för att se dess tillstånd',
-	unknown: (name) => `Stationen har ingen förmåga ${name}.`,
-	reading: 'Läser definitionen.',
 	now: 'nu',
-	runs: 'pågår',
 	restartOnly: 'endast i omstartsläge',
 	person: 'en person gör det',
-	task: 'Vad personen ombeds göra:',
-	acknowledgement: 'Den kvitteras med',
-	duration: (from, to) => (from === to ? `En körning tar omkring ${from} s.` : `En körning tar omkring ${from}–${to} s.`),
 	place: (file, line) => `${file}, rad ${line}`,
-	written: 'Skriven i',
 	phases: {
 		unknown: 'inte känt',
 		idle: 'inte redo',
@@ -22,7 +14,6 @@ export const ability: Text['ability'] = {
 		executing: 'utförs',
 		finished: 'färdig'
 	},
-	present: (phase) => `Den är nu: ${phase}`,
 
 	automaton: {
 		title: 'Automat',
@@ -40,6 +31,13 @@ export const ability: Text['ability'] = {
 		neverFinished: 'Inget säger att den är färdig: den kan bli redo igen.',
 		sets: 'sätter då',
 		setsNothing: 'sätter ingenting'
+	},
+	byItself: {
+		title: 'Av sig själv',
+		finishes: 'blir klar så fort som',
+		now: 'gäller nu',
+		whenever: 'Den blir klar så fort det här gäller, vare sig den har startats eller inte:',
+		reactions: (n) => count(n, 'reaktion hos enheten', 'reaktioner hos enheten')
 	},
 	part: {
 		always: 'alltid',

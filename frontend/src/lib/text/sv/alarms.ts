@@ -48,6 +48,14 @@ export const alarms: Text['alarms'] = {
 		over: 'Orsaken är över',
 		history: 'Allt i Historik'
 	},
+	silences: {
+		'silent.no-message-yet': (of) => (of ? `Inget meddelande än: ${of}` : 'Inget meddelande än'),
+		'silent.no-message': (of) => (of ? `Inga meddelanden längre: ${of}` : 'Inga meddelanden längre'),
+		'silent.no-message-past': (of) => (of ? `En tid kom inga meddelanden: ${of}` : 'En tid kom inga meddelanden'),
+		'silent.no-answer-yet': (of) => (of ? `Inget svar än: ${of}` : 'Inget svar än'),
+		'silent.no-answer': (of) => (of ? `Inga svar längre: ${of}` : 'Inga svar längre'),
+		'silent.no-answer-past': (of) => (of ? `En tid kom inga svar: ${of}` : 'En tid kom inga svar')
+	},
 	standing: 'Aktuella',
 	setAside: 'Lagda åt sidan och ur drift',
 	asideAbout: 'Om dessa får ingen veta något, eftersom någon ville det.',
@@ -62,6 +70,7 @@ export const alarms: Text['alarms'] = {
 		gone: 'Det är borta eller kvitterat vid det här laget.'
 	},
 	shelve: {
+		ask: 'Lägg åt sidan…',
 		button: 'Lägg åt sidan',
 		title: 'Lägga larmet åt sidan?',
 		means: 'Ingen får veta av det under den tiden. Orsaken är kvar. Blir prioriteten hög visas det genast.',
@@ -73,6 +82,7 @@ export const alarms: Text['alarms'] = {
 		back: 'Ta fram igen'
 	},
 	suppress: {
+		ask: 'Ta ur drift…',
 		button: 'Ta ur drift',
 		title: 'Ta larmet ur drift?',
 		means: 'Ingen får veta av det förrän en ingenjör sätter det i drift igen. Orsaken är kvar.',
@@ -83,8 +93,7 @@ export const alarms: Text['alarms'] = {
 	goneNow: 'Larmet är borta.',
 	links: {
 		resource: (title) => `Tillstånd för ${title}`,
-		topics: (n) => `Alla ${n} topics`,
-		topic: (name) => `Topic ${name}`,
+		topics: (n) => (n === 1 ? 'Dess topic' : `Dess ${n} topics`),
 		restart: 'Välj en väg tillbaka',
 		label: 'Var man kan titta'
 	},

@@ -2,36 +2,36 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const check: Text['check'] = {
-	asking: 'Utkastet läses.',
-	notLive: 'Inte direkt: utkastet kan vara ett annat nu.',
-	running: 'Också det som stationen kör har granskats: se Övervakare på Drift.',
-	toOperate: 'Till Drift',
-	toModel: 'Till modellen',
-	toDeploy: 'Till Driftsättning',
 	draft: (number) => `Utkastet efter ändring ${number}`,
 	last: (title, by, clock) => `${title} (${by}, ${clock})`,
-	standing: 'Hur långt granskningen har kommit',
 	verdict: {
 		waiting: 'Det granskas strax.',
 		checking: 'Det granskas.',
 		failed: 'Det kunde inte granskas.',
 		unusable: 'Det kan inte användas.',
 		unmeetable: 'Det har ingen övervakare: inget i det skulle kunna startas.',
-		good: 'Det är granskat och kan driftsättas.'
+		good: 'Det är granskat och kan användas.'
+	},
+	line: {
+		waiting: 'Kontrollen börjar',
+		checking: (what) => `Kontrollerar: ${what}`,
+		failed: (why) => `Kunde inte kontrolleras: ${why}`,
+		unusable: (errors) => `Kan inte användas: ${count(errors, 'fel', 'fel')}`,
+		unmeetable: 'Ingen övervakare: inget skulle kunna starta',
+		good: 'Kontrollerat',
+		took: (time) => `på ${time}`
 	},
 	again: 'Ändra modellen, så granskas den igen.',
 	stages: 'Vad den letar efter',
 	stage: {
 		'reading it': 'Kan det läsas?',
+		'the examples of pipelines': 'Håller exemplen på pipelines?',
 		'what is suspicious': 'Vad är misstänkt i det?',
 		'the safe states': 'Vilka tillstånd är säkra?',
 		'the findings': 'Vad är aldrig möjligt?',
 		'the guards': 'Vad lägger övervakaren till?'
 	},
 	stageIs: { done: 'klart', now: 'nu', later: 'återstår' },
-	counted: (errors, warnings) => `${count(errors, 'fel', 'fel')}, ${count(warnings, 'varning', 'varningar')}`,
-	soFar: 'hittills',
-	size: 'Modellens storlek',
 	sizes: {
 		abilities: (n) => count(n, 'förmåga', 'förmågor'),
 		variables: (n) => count(n, 'variabel', 'variabler'),
@@ -43,9 +43,10 @@ export const check: Text['check'] = {
 	none: 'Inget har hittats.',
 	noneYet: 'Inget har hittats än.',
 	group: 'Ordnat efter',
-	by: { kind: 'sort', file: 'fil' },
+	by: { severity: 'allvar', kind: 'sort', file: 'fil' },
 	error: 'fel',
 	warning: 'varning',
+	write: (name: string): string => `Skriv ”${name}”`,
 	open: (place) => `${place} i modellen`,
 	showAll: (n) => `Visa alla ${n}`,
 	kinds: {
@@ -61,7 +62,7 @@ export const check: Text['check'] = {
 		'always-holds': 'Gäller alltid',
 		'unreachable': 'Inget gör det sant',
 		'relies-on-executing': 'En snabb enhet skulle inte ses bli klar',
-		'effect-never-happens': 'Död: en verkan som aldrig inträffar',
+		'effect-never-happens': 'Död: en effekt som aldrig inträffar',
 		'nothing-brings-about': 'Ingen plan kan använda den',
 		'nothing-feeds': 'Mäts, men inget ger den värden',
 		'carried-nowhere': 'En utgång som ingen topic för vidare',
@@ -118,6 +119,7 @@ export const check: Text['check'] = {
 	supervisor: 'Vad övervakaren lägger till',
 	adds: (n) => `Den lägger till villkor för ${count(n, 'förmåga', 'förmågor')}, vart och ett för de specifikationer som nämns.`,
 	addsNothing: 'Den lägger inte till något: villkoren som de är skrivna håller stationen i säkra tillstånd.',
+	addsNothingTo: 'Den lägger inte till något för den här förmågan.',
 	addsLater: 'Det är inte känt än.',
 	noSupervisor: 'Det finns ingen.',
 	starts: 'Förmåga',

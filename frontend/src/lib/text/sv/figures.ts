@@ -11,6 +11,14 @@ export const figures: Text['figures'] = {
 	ready: (time) => `klar ${time}`,
 	since: (time) => `sedan ${time}`,
 	paused: 'ordern pausad',
+	after: {
+		full: 'Pausa när produkten är klar',
+		not: 'Pausa inte efter produkten',
+		why: 'Stationen pausar när produkten är klar och börjar inte på nästa.',
+		goOn: 'Fortsätt utan paus',
+		asked: (who, why) => `${who} bad om paus när produkten är klar${why === '' ? '' : `: ${why}`}.`,
+		takeControl: (who, why) => `${who} bad om paus när produkten är klar${why === '' ? '' : `: ${why}`}. Ta kontrollen för att fortsätta utan.`
+	},
 	made: 'Gjort i dag',
 	madeInShift: 'Gjort under skiftet',
 	today: (count, planned) => (planned === null ? `${count} i dag` : `${count} av ${planned} i dag`),
@@ -42,7 +50,7 @@ export const figures: Text['figures'] = {
 	nextShift: (shift, begins) => `Inget skift pågår. Nästa: ${shift}, ${begins}`,
 	availableTrend: (since) => `Tillgänglighet sedan ${since}`,
 	wall: {
-		picture: 'Det som görs',
+		picture: 'Produkt',
 		done: (n, all) => `${n} av ${all} klara`,
 		onSchedule: 'Enligt plan. Strecket: ska vara klart nu.',
 		behind: (n) => `${n} efter. Strecket: ska vara klart nu.`,
@@ -55,6 +63,7 @@ export const figures: Text['figures'] = {
 		longer: (time) => `Längre än medianen, ${time}`,
 		firstOnes: 'Ingen median än',
 		then: (what) => `sedan: ${what}`,
+		thenMoves: (who) => `sedan rör sig: ${who}`,
 		next: 'Sedan:',
 		notLive: 'Inte direkt',
 		sideBySide: 'Sida vid sida',

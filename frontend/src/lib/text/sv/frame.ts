@@ -48,6 +48,10 @@ export const frame: Text['frame'] = {
 		clearing: 'Clearing'
 	},
 	stepByStep: 'Steg för steg',
+	pausesAfter: 'sedan paus',
+	pausedAfter: 'produkten klar',
+	atBreakpoint: 'brytpunkt',
+	pausesBy: (who, why) => `Stationen pausar när produkten är klar, som ${who} bad om${why === '' ? '.' : `: ${why}`}`,
 	pause: 'Pausa',
 	hold: 'Stanna',
 	holdMeans: 'Pausa, och avbryt det som pågår',
@@ -57,8 +61,9 @@ export const frame: Text['frame'] = {
 	takeControlFirst: 'Ta kontrollen först',
 	lookOn: (role) => `Du ser på som ${role}; en operatör agerar.`,
 	alarms: (n) => `${n} larm`,
+	undeployed: (n) => (n === 1 ? '1 ändring är inte driftsatt' : `${n} ändringar är inte driftsatta`),
 	noAlarms: 'Inga larm',
-	alarmsWhenHeard: (n) => (n === 0 ? 'inga larm när den senast hördes' : `${n} larm när den senast hördes`),
+	alarmsWhenHeard: (n) => (n === 0 ? 'Inga larm när den senast hördes' : `${n} larm när den senast hördes`),
 	moreAlarms: (n) => `+${n}`,
 	alarmsOver: (n) => `${n} över, inte kvitterade`,
 	notAcknowledged: (n) => `${n} okvitterade`,
@@ -107,7 +112,7 @@ export const frame: Text['frame'] = {
 	},
 	notices: 'Meddelanden',
 	help: (page) => `Hjälp: ${page}`,
-	search: 'Sök eller agera',
+	search: 'Sök eller gör',
 	arrived: {
 		paused: 'Paus har nått stationen. Det som visas är fortfarande gammalt.',
 		hold: 'Stanna har nått stationen. Det som visas är fortfarande gammalt.'

@@ -8,7 +8,7 @@ export const help: Helped = {
 			['Ctrl K', 'Sök eller agera'],
 			['?', 'Den här hjälpen'],
 			['Tab, Skift Tab', 'Till sidans nästa del, eller den förra'],
-			['Piltangenter', 'Inom en lista, ett träd, tidslinjen, planen eller bilden av stationen'],
+			['Piltangenter', 'Inom en lista, ett träd, tidslinjen, planen, bilden av stationen eller den av operationerna'],
 			['F8', 'Till det som gjordes senast, medan det visas, och hur det tas tillbaka'],
 			['Escape', 'Lägger undan en dialog eller en meny; det som skrivits i ett fält är kvar'],
 			['Ctrl Mellanslag', 'I ett villkor: vad som kan stå där'],
@@ -90,23 +90,30 @@ export const help: Helped = {
 			how: [
 				'Välj en del i trädet, eller sök efter dess namn.',
 				'Ändra den i dess fält eller som text. Båda är samma sak, och alla ser det genast.',
-				'Problem står nedanför, vart och ett med sin plats. Tryck på ett för att komma dit.',
-				'Ångra tar tillbaka det du har ändrat. När allt stämmer: gå vidare till Granskning och Driftsättning.'
+				'Problem står nedanför, vart och ett med sin plats: tryck på den för att komma dit. Några spelar upp det som leder till dem, steg för steg.',
+				'Ångra tar tillbaka det du har ändrat. När allt stämmer: gå vidare till Granska ändringar.',
+				'Utkastet kontrolleras av sig självt så fort det ändras; fel gör att det inte kan användas.',
+				'En förmåga visar hur den står i stationen som kör, och vad den väntar på. Prova den ensam bland körningarna: stationen måste vara pausad.',
+				'Bredvid problemen finns var den valda delen används, villkoren som övervakaren lägger till, och körningar. Skift och F12 leder till användningarna.',
+				'Graf visar modellen i fyra lager, och vad som hör ihop med vad. Öppna leder därifrån till formuläret.'
 			]
 		},
-		station: {
-			about: 'Utkastet till modellen som helhet: fyra lager, och vad som hänger ihop med vad.',
+		operations: {
+			about: 'Vad som ska göras och i vilken ordning, som utkastet till modellen säger, och hur långt stationen har kommit.',
 			how: [
-				'Välj något för att se vad det vilar på och vad som vilar på det.',
-				'Sök efter ett namn, eller visa färre lager.',
-				'Gå från det valda vidare till dess plats i modellen.'
+				'Varje resurs har en bana; en pil leder till det som kommer efter. Heldragen: säkert. Streckad: en av flera räcker.',
+				'Välj en operation för att se vad den börjar med och slutar med, i ord och som det är nu. Med tangentbordet: piltangenterna leder från en till nästa, Home och End till den första och den sista, Enter till det som sägs om den, Escape tillbaka.',
+				'Dra en pil från punkten till höger om en operation till en annan för att lägga den efter. Det hamnar i utkastet; det som kör påverkas inte. Skift och ett tryck, eller Skift och mellanslag, väljer ut flera att lägga ihop: i följd, samtidigt, i valfri ordning eller en av dem.',
+				'Se samma sak över tid eller som tabell.'
 			]
 		},
 		pipelines: {
 			about: 'Från meddelanden till variabler och tillbaka, så som modellens utkast har det, med det som passerar i stationen som kör.',
 			how: [
-				'Välj en pipeline i listan för att se den från meddelande till variabel.',
-				'Välj en ruta eller en linje för att ändra den. Ändringar hamnar i utkastet; det som körs rörs inte.',
+				'Välj en pipeline i listan: vad resursen säger står ovanför, vad den får höra nedanför.',
+				'Välj en ruta eller en ledning för att ändra den. Ändringar hamnar i utkastet; det som körs rörs inte.',
+				'Dra ett steg till en ledning, eller ett steg i bilden till en annan. Dra en ruta någon annanstans, så stannar den där för dig.',
+				'Ctrl C, Ctrl X och Ctrl V kopierar, klipper ut och klistrar in det valda steget som YAML, även till en annan pipeline eller en editor. Delete tar bort det.',
 				'Prova med ett meddelande, och spara det som ett exempel som måste stämma.'
 			]
 		},
@@ -118,38 +125,25 @@ export const help: Helped = {
 				'Visa färre med ord, resurs eller tillstånd.'
 			]
 		},
-		ability: {
-			about: 'Vad en förmåga består av, vad av det som gäller nu, och hur den gör när den provas för sig.',
-			how: [
-				'Välj en förmåga till vänster.',
-				'Dess tillstånd, med det som gäller nu, och vad varje steg mellan dem kräver.',
-				'Prova den ensam: stationen måste vara pausad.'
-			]
-		},
-		check: {
-			about: 'Vad som har hittats i utkastet till modellen: vad som gör att det inte kan användas, vad som är misstänkt och vad övervakaren lägger till.',
-			how: [
-				'Utkastet granskas av sig självt så fort det ändras.',
-				'Fel gör att det inte kan användas. Välj ett för att komma till stället i modellen.',
-				'Spela upp det som leder till ett fynd, steg för steg.',
-				'Utan fel går du vidare till Driftsättning.'
-			]
-		},
 		whatIf: {
 			about: 'Hur stationen skulle fortsätta med modellen som den redigeras: simulerat, med emulerade enheter och personer som gör det de ombeds. Stationen påverkas inte.',
 			how: [
 				'Välj var det börjar: nu, eller vid en post i historiken.',
-				'Välj antal sekunder och simulera.',
-				'Läs vad som skulle starta och sluta, och vad som till slut skulle vara annorlunda.'
+				'Ta det som ska hända härnäst: av en enhet, en person, ett fel eller en start. Piltangenterna leder bakåt och framåt.',
+				'Gå vidare på annat sätt från vilket steg som helst: det blir en egen gren.',
+				'Följ planen, eller kör tills ett villkor gäller.',
+				'Eller prova i simulerad tid: låt klockan gå, ge en enhet ett fel, gå tillbaka till ett ögonblick och vidare på annat sätt.',
+				'Eller se hela tillståndsrummet: välj variabler att dela in det efter, så syns vad som är förbjudet eller inte säkert.'
 			]
 		},
-		deploy: {
-			about: 'Revisioner av modellen: de sparas under ett namn, jämförs i text och beteende, och driftsätts när de är granskade.',
+		review: {
+			about: 'Vad som blir annorlunda med utkastet av modellen, bevisat, och hur det kommer till stationen.',
 			how: [
-				'Spara utkastet som en revision, med namn och varför.',
-				'Jämför det med det som körs: texter, beteende och plan.',
-				'Driftsätt det. Vad som måste gälla först står där.',
-				'För att gå tillbaka: ta en äldre revision till utkastet och driftsätt den.'
+				'Läs vad som blir annorlunda: varje ändring i en mening, med det som följer av den. Filer visar varje rad.',
+				'Planen för stationen som den står nu, med modellen som körs och med utkastet.',
+				'Kontroller: vad som söktes, hur lång tid det tog och vad som hittades.',
+				'För det till stationen: gör det som saknas i listan, driftsätt sedan.',
+				'Revisioner: se vad som skiljer, eller gå tillbaka till en. Du läser först vad det ångrar.'
 			]
 		},
 		journal: {

@@ -9,11 +9,61 @@ export const model: Text['model'] = {
 	readOnly: (role) => `Du kan titta på modellen. För att ändra den krävs rollen ${role}.`,
 	tree: 'Modellens delar',
 	search: 'Sök: namn eller titel',
-	none: 'Ingen del har ett sådant namn eller en sådan titel.',
+	none: 'Ingen del har ett sådant namn eller en sådan titel',
 	noneHow: 'En del av ett namn eller en titel räcker.',
 	showAll: 'Visa alla delar',
+	panel: 'Om utkastet',
+	views: { label: 'Hur modellen visas', form: 'Formulär', graph: 'Graf' },
+	panels: {
+		problems: 'Problem',
+		usages: 'Användningar',
+		guards: 'Tillagda villkor',
+		runs: 'Provkörningar',
+		tests: 'Tester',
+		changes: 'Ändringar',
+		folds: 'Kan kortas'
+	},
+	noUsages: 'Välj en del för att se var den används',
+	guards: { only: (ability) => `Bara de för ${ability}` },
+	tests: {
+		title: 'Stationens tester',
+		none: 'Inga tester',
+		how: 'Det som prövats i simulering kan behållas som ett test. De står i mappen tests.',
+		run: 'Kör alla',
+		running: 'Kör…',
+		run1: 'Kör',
+		one: (name) => `Kör ${name}`,
+		passed: 'godkänt',
+		failed: 'underkänt',
+		open: 'Titta på det',
+		opens: (name) => `Titta på det: ${name}`,
+		summary: (passed, failed) => `${passed} godkända, ${failed} underkända`,
+		seconds: (seconds) => `${seconds} simulerat`,
+		older: 'för ett tidigare utkast',
+		unused: { abilities: (names) => `Startade inte i något: ${names}`, operations: (names) => `Blev inte klara i något: ${names}` },
+		wrong: 'Kan inte utföras'
+	},
+	runs: {
+		none: 'Välj en förmåga för att prova den ensam',
+		how: 'Den körs en gång i stationen, som måste ha den och vara pausad.',
+		found: 'Körningar som visar vad kontrollen hittade'
+	},
+	size: { tree: 'Delarnas bredd', file: 'Filens bredd', panel: 'Höjden på det nedanför' },
+	unrun: (n) => `${count(n, 'fil', 'filer')} som stationen inte kör som här`,
+	review: 'Granska ändringar',
+	moreFields: 'Mer',
+	inOperations: 'Se den i operationernas ordning',
+	now: { title: 'I stationen som kör', tag: 'stationen nu', differs: 'Det här är stationen som kör: utkastet skiljer sig från den.', which: 'Vilken', may: 'Får starta när', supervised: 'tillagt av övervakaren', try: 'Prova den' },
 	form: 'Vald del',
+	measured: {
+		is: (least, most, runs) => `uppmätt: ${least === most ? least : `${least} till ${most}`} s, ${count(runs, 'körning', 'körningar')}`,
+		other: 'Det som står stämmer inte: planerna blir för korta eller för långa.',
+		use: (least, most) => `Använd ${least === most ? least : `${least} till ${most}`} s`
+	},
 	file: 'Fil',
+	runsNow: 'Körs nu',
+	tryIt: 'Prova i simulering',
+	tryItAbout: 'Med emulerade enheter och en egen klocka, bredvid stationen. Den följer det du redigerar.',
 	hideFile: 'Dölj filen',
 	showFile: 'Visa filen',
 	fileState: { same: 'som i stationen', changed: 'ändrad', new: 'ny', removed: 'borttagen' },
@@ -43,6 +93,7 @@ export const model: Text['model'] = {
 		work_master: 'Arbetsmall',
 		symbol: 'Symbol',
 		shift: 'Skift',
+		scenario: 'Test',
 		message: 'Meddelandedefinition'
 	},
 	section: {
@@ -71,6 +122,7 @@ export const model: Text['model'] = {
 		work_masters: 'Arbetsmallar',
 		picture: 'Levande bild',
 		shifts: 'Skift',
+		tests: 'Tester',
 		messages: 'Meddelandedefinitioner'
 	},
 	aboutSection: {
@@ -99,6 +151,7 @@ export const model: Text['model'] = {
 		work_masters: 'Vad ett jobb från ett MES består av.',
 		picture: 'Bilden av stationen på Drift: ritad för hand, eller gjord av modellen.',
 		shifts: 'När stationen ska arbeta: tillgängligheten och det som görs visas för det skift som pågår.',
+		tests: 'Vad som ska ske i simulerad tid när vissa saker händer.',
 		messages: 'Definitionerna av de meddelanden som topics bär.'
 	},
 	field: {
@@ -121,6 +174,7 @@ export const model: Text['model'] = {
 		arguments: 'Argument',
 		remove: 'Utan',
 		restart: 'Endast för omstart',
+		moves: 'Något rör sig',
 		human: 'Utförs av en person',
 		instruction: 'Anvisning',
 		text: 'Mening',
@@ -219,6 +273,7 @@ export const model: Text['model'] = {
 	},
 	required: 'krävs',
 	otherwise: (value) => `utan det: ${value}`,
+	leftOut: (value) => `${value} (inte skrivet)`,
 	unit: 's',
 	least: 'Från',
 	most: 'Till',
@@ -232,6 +287,13 @@ export const model: Text['model'] = {
 	rowUp: (field, n) => `Flytta upp ${field}, ${n}`,
 	cell: (field, name) => `${field}, ${name}`,
 	removeCell: (field, name) => `Ta bort ${field}, ${name}`,
+	parameter: {
+		kind: (name) => `Slag av ${name}`,
+		of: (name) => `Uppräkning för ${name}`,
+		ofShort: 'ur uppräkningen',
+		otherwise: (name) => `Förval för ${name}`,
+		otherwiseShort: 'inget förval'
+	},
 	more: { enumeration: 'Ta med andra, eller ge den en ordning', predicate: 'Ge det en titel eller parametrar' },
 	addPart: (field) => `Lägg till: ${field}`,
 	removePart: (field) => `Ta bort: ${field}`,
@@ -352,6 +414,11 @@ export const model: Text['model'] = {
 		},
 		do: 'Lägg till'
 	},
+	paste: {
+		copied: (name) => `${name} kopierad som YAML`,
+		none: 'Det som klistrades in är ingen del av en modell. Kopiera en del i trädet först, eller skriv en som YAML under dess avdelning: abilities: {move: {…}}',
+		nowhere: (section) => `”${section}” har ingen plats här. Välj en del av resursen som den ska höra till, och klistra in den där.`
+	},
 	duplicate: { title: (name) => `Duplicera ${name}`, name: 'Kopians namn', do: 'Duplicera' },
 	rename: {
 		title: (name) => `Byt namn på ${name}`,
@@ -374,6 +441,7 @@ export const model: Text['model'] = {
 	},
 	change: {
 		add: (kind, name) => `${kind} ${name} tillagd`,
+		pasted: (names) => `${names.join(', ')} inklistrat`,
 		duplicate: (name, of) => `${name} gjord som kopia av ${of}`,
 		remove: (kind, name) => `${kind} ${name} borttagen`,
 		move: (name) => `${name} flyttad`,
@@ -388,27 +456,20 @@ export const model: Text['model'] = {
 		title: 'Senaste ändringar',
 		none: 'Inget har ändrats än',
 		how: 'Varje ändring av utkastet står här, med vem som gjorde den och när.',
+		was: 'var',
+		now: 'är nu',
+		place: (file, line) => `${file}, rad ${line}`,
+		whole: 'Allt',
+		more: (n) => count(n, 'ställe till', 'ställen till'),
 		undone: 'Ångrat',
 		redone: 'Gjort om',
 		by: (who, when) => `${who}, ${when}`
 	},
 	problems: {
-		title: 'Problem',
-		waiting: 'Kontrollen börjar.',
-		checking: (doing) => `Kontrolleras: ${doing}.`,
-		failed: (why) => `Det kunde inte kontrolleras: ${why}.`,
-		done: (findings) => (findings === '' ? 'Kontrollerat: inget hittades.' : `Kontrollerat: ${findings}.`),
-		summary: (variables, abilities, operations, specifications) =>
-			[
-				count(variables, 'variabel', 'variabler'),
-				count(abilities, 'förmåga', 'förmågor'),
-				count(operations, 'operation', 'operationer'),
-				count(specifications, 'specifikation', 'specifikationer')
-			].join(', '),
+		mended: (was: string, now: string): string => `”${was}” blir ”${now}”`,
 		error: 'Fel',
 		warning: 'Varning',
-		place: (file, line) => `${file}:${line}`,
-		more: (n) => `Visa ${n} till`
+		place: (file, line) => `${file}:${line}`
 	},
 	folds: {
 		title: 'Kortare med samma innebörd',

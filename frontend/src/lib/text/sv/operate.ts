@@ -4,6 +4,11 @@ const starts = (n: number): string => (n === 1 ? '1 start' : `${n} starter`);
 const runs = (running: boolean): string => (running ? ', som pågår' : '');
 
 export const operate: Text['operate'] = {
+	change: {
+		product: (name) => `Modellen byts till ”${name}” när produkten är klar.`,
+		orders: (name) => `Modellen byts till ”${name}” när ordrarna i arbete är klara.`,
+		by: (who, at, why) => `${who}, ${at}: ${why}`
+	},
 	title: 'Drift',
 	plan: {
 		title: 'Plan',
@@ -60,15 +65,12 @@ export const operate: Text['operate'] = {
 	why: {
 		ask: 'Varför?',
 		askOf: (title) => `Varför? ${title}`,
-		of: (title) => `Vad ${title} väntar på`,
+		of: (title) => `Vad ”${title}” väntar på`,
 		nothing: 'Inget är i vägen.',
 		goalHolds: 'Dess mål gäller nu.',
-		undone: 'När målet inte gäller längre väntar den tills allt detta är så',
 		again: 'Fråga igen',
 		asked: (clock) => `Som det var ${clock}`,
 		asking: 'Frågar',
-		expanded: 'Vad av det som inte gäller',
-		conditions: 'Det väntar tills allt detta gäller',
 		kind: {
 			station: 'Stationen',
 			service: 'I drift',
@@ -84,13 +86,40 @@ export const operate: Text['operate'] = {
 		changers: 'Kan ändras av',
 		nobody: 'ingen',
 		how: {
-			start: (title, running) => `starten av ${title}${runs(running)}`,
-			finish: (title, running) => `slutet av ${title}${runs(running)}`,
-			effect: (title, running) => `det som ${title} gör${runs(running)}`,
+			start: (title, running) => `starten av ”${title}”${runs(running)}`,
+			finish: (title, running) => `slutet av ”${title}”${runs(running)}`,
+			effect: (title, running) => `det som ”${title}” gör${runs(running)}`,
 			correction: () => 'en rättelse av en person',
 			force: () => 'att utgången tvingas'
 		},
-		plan: (n) => `Det finns en plan: ${starts(n)}.`
+		plan: (n) => `Det finns en plan: ${starts(n)}.`,
+		about: {
+			enabled: 'Den kan starta när',
+			start: 'Den startar när',
+			supervisor: 'Övervakaren tillåter den när',
+			finish: 'Den är klar när',
+			precondition: 'Den börjar när',
+			turn: 'Det är dess tur när',
+			goal: 'Den är klar när',
+			undone: 'Den är klar så länge',
+			predicate: 'Det är så när'
+		},
+		sake: (titles) => `för ${titles}`,
+		toRest: 'så att stationen kan komma till vila igen',
+		inSequence: (name) => `i sekvensen ${name}`,
+		truth: { holds: 'gäller', fails: 'gäller inte', open: 'inte känt' },
+		joined: {
+			all: 'Allt detta:',
+			any: 'Något av detta:',
+			not: 'Inte detta:',
+			implies: 'Det andra, om det första:',
+			same: 'Det betyder:'
+		},
+		called: (predicate) => `heter ${predicate}`,
+		mustEnd: 'får inte vara så',
+		others: (n) => (n === 1 ? '1 till, som inte avgör' : `${n} till, som inte avgör`),
+		above: 'står ovanför',
+		operation: (title) => `operationen ${title}`
 	},
 	operations: {
 		title: 'Operationer',
@@ -112,26 +141,6 @@ export const operate: Text['operate'] = {
 			skipped: (job) => `behövs inte för ${job}`
 		},
 		leftOut: 'utanför planen'
-	},
-	resources: {
-		title: 'Resurser',
-		product: 'Produkt',
-		online: 'ansluten',
-		offline: 'tyst',
-		out: 'ur drift',
-		estimated: 'uppskattat',
-		commanded: 'beordrat',
-		unknown: 'okänt',
-		awaitsAll: 'Inväntar',
-		awaits: 'inväntar',
-		nothingRuns: 'inget pågår',
-		notConfirmed: 'inte bekräftat',
-		forced: 'tvingat',
-		all: (n) => `Alla ${n} värden`,
-		allOf: (n, title) => `Alla ${n} värden för ${title}`,
-		abilities: (n) => (n === 1 ? '1 förmåga' : `${n} förmågor`),
-		runs: 'pågår',
-		restartOnly: 'bara vid omstart'
 	},
 	service: {
 		title: 'Ur drift',
@@ -165,41 +174,21 @@ export const operate: Text['operate'] = {
 			[nobody > 0 ? `${nobody} kan inte göras nu` : '', others > 0 ? `${others} kan fortfarande göras` : ''].filter(Boolean).join(' · '),
 		absent: { silent: () => 'hörs inte', 'out of service': () => 'är ur drift' }
 	},
-	topics: {
-		title: 'Topics',
-		never: 'aldrig',
-		silent: 'tyst',
-		in: 'in',
-		out: 'ut',
-		peers: (n) => (n === 1 ? '1 motpart' : `${n} motparter`)
-	},
 	supervisor: {
-		title: 'Övervakare',
-		computed: (what) => `Beräknas: ${what}.`,
-		guards: (n) => (n === 1 ? '1 tillagt villkor' : `${n} tillagda villkor`),
-		onlyWhen: 'bara när',
 		noShort: 'inget kort villkor säger det',
 		blocked: 'Inte, bland annat, där:',
 		expanded: 'Utskrivet',
-		over: (index) => `för ${index}`,
-		because: 'på grund av',
-		rest: 'att åter komma till vila',
 		none: 'Det finns ingen övervakare, så inget startas.',
 		about: (number) => `cirka ${number}`,
 		reached: (number) => `${number} tillstånd kan nås`,
 		supervised: (number) => `${number} av dem med övervakaren`,
-		atMost: (number) => `Högst ${number} tillstånd kan nås med övervakaren`,
-		fromBeginning: 'Det är så från början',
-		howItComes: (n) => `Hur det uppstår, i ${n} steg`,
-		kind: { tick: 'Tick', start: 'Start', activity: 'Operation', transition: 'Steg' },
-		finished: 'klart:',
-		nothingChanges: 'inget ändras',
-		forbiddenBy: 'förbjuds av'
+		atMost: (number) => `Högst ${number} tillstånd kan nås med övervakaren`
 	},
 	task: {
 		yours: 'Din uppgift',
 		comesHere: 'Det stationen ber dig om kommer hit.',
 		goesOn: 'Din uppgift fortsätter',
+		toldAbove: 'Problemet berättas ovan',
 		thenMoves: 'Sedan rör sig:',
 		next: 'Nästa för dig:',
 	},

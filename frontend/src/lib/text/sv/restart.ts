@@ -11,6 +11,8 @@ export const restart: Text['restart'] = {
 			restart: 'Stationen är i omstartsläge.',
 			hold: 'Stationen är stoppad.',
 			paused: 'Stationen är pausad.',
+			productDone: (who, why) => `Produkten är klar och stationen pausad, som ${who} bad om${why === '' ? '.' : `: ${why}`}`,
+			atBreakpoint: (condition, who) => `Stationen är pausad vid en brytpunkt av ${who}: ${condition}.`,
 			undecided: (n) => `${count(n, 'utsignal', 'utsignaler')} från före starten väntar på beslut.`,
 			questions: (n) => `${count(n, 'fråga', 'frågor')}: det som antas stämmer inte med det som mäts.`,
 			unconfirmed: 'Stationen antar sådant som ingen har bekräftat ännu.',
@@ -63,7 +65,7 @@ export const restart: Text['restart'] = {
 		taken: (title, at) => `${title}, klart ${at}.`,
 		runs: (title) => `${title} utförs.`,
 		works: 'Produktionen fortsätter sedan av sig själv.',
-		to: (title) => `Härnäst: ${title}`,
+		to: (number, title) => `Till steg ${number}: ${title}`,
 		first: (title) => `Först: ${title}`,
 		calm: 'Stationen arbetar själv',
 		calmAbout: 'När den stannar leder denna sida tillbaka till produktion: förstå, gör tillståndet sant, välj en väg tillbaka, fortsätt.',
@@ -103,6 +105,7 @@ export const restart: Text['restart'] = {
 
 	believed: {
 		title: 'Antaget och uppmätt',
+		besides: 'Något annat',
 		agree: 'Tillståndet stämmer med alla mätningar.',
 		agreeHeard: 'Tillståndet stämmer med allt som hörs.',
 		ask: (so) => `Stämmer det att ${so}?`,
@@ -163,7 +166,7 @@ export const restart: Text['restart'] = {
 		ifChecked: 'Bara om du har kontrollerat',
 		ifCheckedMeaning: 'Var och en säger att arbete på produkten är gjort. Stationen känner inte till någon som har gjort det: välj en bara om du har sett det.',
 		onlyIf: (claims) => `Bara om du har kontrollerat: ${claims}`,
-		records: (values) => `Så snart det är gjort noterar stationen om produkten: ${values}.`,
+		records: (values) => `När det är gjort utgår stationen från att ${values}.`,
 		claims: (titles) => `Det räknas då som gjort, eller närmare det: ${titles}.`,
 		kinds: {
 			replan: 'fortsätter själv',
@@ -176,6 +179,7 @@ export const restart: Text['restart'] = {
 			goal: 'ett mål för hand'
 		},
 		starts: (n) => count(n, 'start', 'starter'),
+		withThen: 'med det som följer',
 		seconds: (n) => `≈ ${n} s`,
 		minutes: (n, seconds) => (seconds === 0 ? `≈ ${n} min` : `≈ ${n} min ${seconds} s`),
 		rest: 'slutar i vila',
@@ -196,10 +200,10 @@ export const restart: Text['restart'] = {
 		leftOutShort: (n) => `Avstår från ${count(n, 'operation', 'operationer')}`,
 		first: 'Du gör först',
 		see: (so) => `Se till att ${so}.`,
-		now: (value) => `(nu ${value})`,
+		now: (value) => `(nu: ${value})`,
 		online: (title) => `Få tillbaka ${title}.`,
-		waits: (topics) => `Stationen märker det på ${topics}.`,
-		senseless: (topics) => `Den hörs på ${topics} men förstås inte. Stationen märker när den förstås.`,
+		waits: 'Stationen märker det av sig själv.',
+		senseless: 'Den hörs men förstås inte. Stationen märker när den förstås.',
 		outBecause: (why) => `Den är ur drift: ${why}`,
 		back: 'Den är tillbaka.',
 		service: (title) => `Se över ”${title}” och ta det sedan i drift igen.`,
@@ -218,12 +222,13 @@ export const restart: Text['restart'] = {
 			out: (title) => `${title} är fortfarande ur drift`,
 			other: (so, now) => `det är inte så än att ${so} ${now}`
 		},
-		holdFirst: 'Tryck Stanna innan du går in: stationen fortsätter av sig själv så snart det är så. Vägarna söks då på nytt.',
+		holdFirst: 'Tryck Stanna innan du går in: stationen fortsätter av sig själv så snart det är gjort. Vägarna söks då på nytt.',
 		goOn: 'Inget behöver utföras.'
 	},
 	plan: {
 		title: 'Vad som händer då',
 		ends: (time) => `slutar efter ${time}`,
+		inAll: (time) => `${time} med det som följer`,
 		endsSafe: (time) => `slutar efter ${time}, i ett säkert tillstånd`,
 		movesFirst: 'rör sig först',
 		nothing: 'Inget startas: enheterna gör det själva.',
@@ -279,11 +284,6 @@ export const restart: Text['restart'] = {
 	},
 	why: {
 		title: (title) => `Varför inte: ${title}`,
-		involved: 'Inblandat:',
-		value: (name, value, wanted) => `${name} är ${value}, och borde vara ${wanted}`,
-		several: (name, value) => `${name} är ${value}`,
-		or: ' eller ',
-		changers: 'Kan ändra det:',
 		reasons: 'Så länge allt detta förblir som det är finns ingen väg:',
 		corrections: 'Det skulle finnas en med:',
 		plan: 'Stationen kan nå det:'

@@ -13,7 +13,7 @@ export const watch: Text['watch'] = {
 	gone: 'Uppgiften finns inte längre.',
 	movesNext: 'Rör sig sedan:',
 	moreAfter: (n) => `${n} till efter denna`,
-	waits: (duration) => `väntar ${duration}`,
+	waits: (duration) => `Väntar ${duration}`,
 	nothingMoves: 'Inget rör sig än. Klart antecknas.',
 	still: 'Inget rör sig än.',
 	recorded: 'Klart antecknas.',

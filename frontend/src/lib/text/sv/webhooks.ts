@@ -2,7 +2,7 @@ import type { Text } from '../text.svelte.ts';
 
 export const webhooks: Text['webhooks'] = {
 	table: 'Vilka som får veta',
-	none: 'Ingen får veta något.',
+	none: 'Ingen får veta något',
 	howYet: 'Gör en nedan: det andra systemet får sedan veta varje händelse.',
 	name: 'Namn',
 	address: 'Adress',

@@ -14,8 +14,8 @@ from sequence_planner.editor.folds.proposal import NAME, FoldProposal, apart
 from sequence_planner.editor.folds.texts import FoldableStation, FoldableText, Rewriting
 from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.editor.symbols.texts import STATION
+from sequence_planner.language.names.scope import NameScope
 from sequence_planner.language.printer import print_expression
-from sequence_planner.language.resolver import NameScope
 from sequence_planner.language.syntax import (
     And,
     Comparison,

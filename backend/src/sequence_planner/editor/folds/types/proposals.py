@@ -19,7 +19,8 @@ from sequence_planner.editor.schemas.draft import FoldKind
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.types.expansion import DocumentShape, resource_shape
 from sequence_planner.model.types.layers import OF_INSTANCES, merged_order
-from sequence_planner.model.yaml.editor import WIDTH, in_brackets, lines, plain, removed, renamed, replaced
+from sequence_planner.model.yaml.content import plain
+from sequence_planner.model.yaml.editor import WIDTH, in_brackets, lines, removed, renamed, replaced
 from sequence_planner.model.yaml.reader import EntryPath
 
 _MOST_ROUNDS = 20  # in which gaps are given up

@@ -31,6 +31,7 @@ from sequence_planner.model.types.documents import ParameterDocument
 from sequence_planner.model.types.expansion import Expansion, GivenArgument
 from sequence_planner.model.types.layers import Layer
 from sequence_planner.model.yaml.reader import EntryPath
+from sequence_planner.texts.message import message
 
 _MOST_INSTANCES = 10  # for which a text of a type is looked at while it is typed
 
@@ -185,6 +186,14 @@ class _Instance:
         return _MadeText(written, Expansion(self.name, self.layer.arguments).text_at(written, self.path))
 
 
+def _of(names: list[str], what: str) -> str:
+    """Say of which instances something is said."""
+    *most, last = names
+    return message(
+        "found.in", instances=message("list.and", most=" and ".join(most), last=last) if most else last, what=what
+    )
+
+
 @dataclass(frozen=True)
 class _PlaceInType(AskedPlace):
     lexicon: Lexicon
@@ -205,9 +214,7 @@ class _PlaceInType(AskedPlace):
         everywhere = {problem for problem, names in found.items() if len(names) == len(self.instances)}
         return tuple(
             sorted(
-                problem
-                if problem in everywhere
-                else replace(problem, message=f"in {' and '.join(names)}: {problem.message}")
+                problem if problem in everywhere else replace(problem, message=_of(names, problem.message))
                 for problem, names in found.items()
             )
         )

@@ -1,0 +1,1 @@
+"""The draft, tried with emulated devices and a clock that somebody leads."""

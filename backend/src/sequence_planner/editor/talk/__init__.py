@@ -1,0 +1,1 @@
+"""What engineers say to one another about the model."""

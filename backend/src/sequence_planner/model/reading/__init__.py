@@ -1,0 +1,1 @@
+"""Reading a station's folder."""

@@ -1,0 +1,1 @@
+"""Scenarios by which a station is tested, as an engineer writes them."""
