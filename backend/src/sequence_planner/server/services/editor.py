@@ -94,6 +94,7 @@ class Workshop:
         self._folding = DraftProcess("folds.folding_worker")
         self._stepping = DraftProcess("stepping.worker")
         self._simulating = DraftProcess("simulating.worker", rests_after=TRIED_FOR)
+        self._outlining = DraftProcess("outline.worker")
         self._spaces = DraftProcess("state_space.worker", rests_after=TRIED_FOR)
         self._desk = CheckDesk(model, start, self._process, self._found)
         self._comparing = ComparisonDesk(model)
@@ -122,7 +123,7 @@ class Workshop:
         await self._desk.close()
         await self._comparing.close()
         asked = self._editing, self._process, self._folding, self._stepping, self._simulating, self._spaces
-        for each in (*asked, self._pipelines):
+        for each in (*asked, self._outlining, self._pipelines):
             each.close()
 
     async def open(self) -> Draft:
@@ -228,6 +229,15 @@ class Workshop:
         """Return the picture of the draft, as JSON of a `DraftPictureView`. Raises `WorkerError`."""
         draft = await self.open()
         found = await self._process.ask(draft.files, "pictured", draft.number)
+        assert isinstance(found, str)
+        return found
+
+    async def outlined(self, outline: object) -> str:
+        """Return what an `Outline` becomes, for a station that is called as this one, as JSON of an `OutlineView`.
+
+        Raises `WorkerError`.
+        """
+        found = await self._outlining.ask((await self.open()).files, "outlined", outline)
         assert isinstance(found, str)
         return found
 
