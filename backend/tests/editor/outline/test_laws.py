@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from hypothesis import given
@@ -38,6 +38,7 @@ TITLES = st.one_of(
     ),
     st.text(st.characters(exclude_categories=["Cs"]), max_size=12),
 )
+ACTIONS: st.SearchStrategy[Literal["open", "close"]] = st.sampled_from(["open", "close"])
 # Surrogates are in no JSON that is sent.
 SOUND = TITLES.filter(lambda title: "{" not in title and "}" not in title)
 
@@ -67,7 +68,7 @@ def outlines(draw: st.DrawFn) -> Outline:
     for at in range(len(states) - 1):
         by = draw(st.sampled_from(able))
         where = [Stand(robot=each.name, pose=draw(st.sampled_from(each.poses)).name) for each in robots]
-        action = draw(st.sampled_from(["open", "close"])) if isinstance(by, Clamp) else None
+        action = draw(ACTIONS) if isinstance(by, Clamp) else None
         steps.append(
             OutlineStep(
                 name=f"step_{at}",

@@ -16,7 +16,6 @@ from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.analysis.report import FindingDocument
 from sequence_planner.auth.roles import Role
-from sequence_planner.core.actor import Actor as Acting
 from sequence_planner.core.secrets import environment
 from sequence_planner.editor.draft import Edit, WriteText
 from sequence_planner.journal.audit import append
@@ -123,7 +122,7 @@ async def _tried(shop: Workshop, transport: str, body: AttachmentBody) -> tuple[
     return plain, edits
 
 
-async def _record(identity: IdentityService, entry: Entry, *, by: Acting | None = None) -> int:
+async def _record(identity: IdentityService, entry: Entry, *, by: Actor | None = None) -> int:
     """Write an entry, if `by` still may act; its number."""
     now = identity.now()
     record = await identity.write(lambda connection: append(connection, entry, now), by=by)
