@@ -199,6 +199,10 @@ export type PartDifference = Schemas['PartDifference'];
 export type BehaviourDifference = Schemas['BehaviourDifference'];
 export type PlanDifference = Schemas['PlanDifference'];
 export type Transfer = Schemas['TransferView'];
+export type Outline = Schemas['Outline'];
+export type OutlineView = Schemas['OutlineView'];
+export type OutlineProblem = Schemas['OutlineProblem'];
+export type Templates = Schemas['TemplatesView'];
 export type Edit = Schemas['ChangeBody']['edits'][number];
 export type Json = Schemas['JsonValue'];
 

@@ -62,7 +62,10 @@ export const MENU: readonly Page[] = [
 	{ address: WATCH, title: 'watch', role: 'viewer' }
 ];
 
-const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU];
+/** Those to which another page leads, and the palette. */
+export const WITHIN: readonly Page[] = [{ address: '/begin', title: 'begin', role: 'engineer' }];
+
+const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU, ...WITHIN];
 
 /** The page at `address`, where it is one of these. */
 export function pageAt(address: string): Page | undefined {

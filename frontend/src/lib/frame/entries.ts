@@ -1,6 +1,6 @@
 /** What the palette can lead to or do: pages, variables, abilities, operations, alarms, and what is possible now. */
 import { addressOf as abilityAddress } from '#lib/ability/address.ts';
-import { MENU, type Page } from '#lib/account/pages.ts';
+import { MENU, WITHIN, type Page } from '#lib/account/pages.ts';
 import type { Session } from '#lib/account/session.svelte.ts';
 import { byUrgency } from '#lib/alarm/priority.ts';
 import { setCycleStop, setMode, startProduction, takeControl, releaseControl } from '#lib/command/send.ts';
@@ -59,7 +59,7 @@ function acts({ session, view, mine }: Known): Entry[] {
 /** All that there is, in the order in which it is offered before anything is typed. */
 export function entriesOf(known: Known): Entry[] {
 	const { session, view } = known;
-	const pages = [...pagesFor(session).flatMap((group) => group.pages), ...MENU.filter(({ role }) => session.may(role))];
+	const pages = [...pagesFor(session).flatMap((group) => group.pages), ...[...WITHIN, ...MENU].filter(({ role }) => session.may(role))];
 	return [
 		...acts(known),
 		...pages.map(({ title, address }): Entry => ({ group: 'page', text: say().pages[title], name: title, page: title, does: { to: address } })),

@@ -6,6 +6,7 @@ import Box from '@lucide/svelte/icons/box';
 import ClipboardList from '@lucide/svelte/icons/clipboard-list';
 import Database from '@lucide/svelte/icons/database';
 import FlaskConical from '@lucide/svelte/icons/flask-conical';
+import Footprints from '@lucide/svelte/icons/footprints';
 import GitPullRequestArrow from '@lucide/svelte/icons/git-pull-request-arrow';
 import History from '@lucide/svelte/icons/history';
 import KeyRound from '@lucide/svelte/icons/key-round';
@@ -36,6 +37,7 @@ export const MARKS = {
 	ros: Network,
 	whatIf: FlaskConical,
 	review: GitPullRequestArrow,
+	begin: Footprints,
 	journal: BookText,
 	watches: Watch,
 	people: Users,

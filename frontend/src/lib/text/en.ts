@@ -2,6 +2,7 @@
 import { station as ofStation } from './en-station.ts';
 import { ability } from './en/ability.ts';
 import { backups } from './en/backups.ts';
+import { begin } from './en/begin.ts';
 import { check } from './en/check.ts';
 import { review } from './en/review.ts';
 import { model } from './en/model.ts';
@@ -15,4 +16,4 @@ import { tryOut } from './en/try-out.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...ofStation, ability, backups, check, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };
+export const en = { ...ofStation, ability, backups, begin, check, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };

@@ -137,6 +137,16 @@ export const help: Helped = {
 				'Or see the whole state space: choose variables to fold it by, and what is forbidden or not safe stands out.'
 			]
 		},
+		begin: {
+			about: 'A first station of few answers, which become plain documents that you can change like any others.',
+			how: [
+				'Six steps, in any order. A triangle marks a step in which something is still to put right.',
+				'Answer what is asked. A name follows from its title until you write one.',
+				'Read the document that is being made, as you write.',
+				'Go on to the next step. The last one puts all of it into the draft, as one change.',
+				'Leave whenever you like: what you wrote is kept in this browser.'
+			]
+		},
 		review: {
 			about: 'What will be different with the draft of the model, proven, and how it comes to the station.',
 			how: [

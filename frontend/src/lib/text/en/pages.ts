@@ -13,6 +13,7 @@ export const pages = {
 	ros: 'ROS network',
 	whatIf: 'What-if',
 	review: 'Review changes',
+	begin: 'First station',
 	watch: 'Operator view',
 	account: 'Account',
 	journal: 'Journal',

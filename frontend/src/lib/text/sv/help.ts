@@ -136,6 +136,16 @@ export const help: Helped = {
 				'Eller se hela tillståndsrummet: välj variabler att dela in det efter, så syns vad som är förbjudet eller inte säkert.'
 			]
 		},
+		begin: {
+			about: 'En första station av några svar, som blir vanliga dokument som du kan ändra som alla andra.',
+			how: [
+				'Sex steg, i valfri ordning. En triangel märker ett steg där något är kvar att rätta.',
+				'Svara på det som frågas. Ett namn följer av titeln tills du skriver ett.',
+				'Läs dokumentet som görs, medan du skriver.',
+				'Gå vidare till nästa steg. Det sista lägger allt i utkastet, som en ändring.',
+				'Gå när du vill: det du har skrivit behålls i den här webbläsaren.'
+			]
+		},
 		review: {
 			about: 'Vad som blir annorlunda med utkastet av modellen, bevisat, och hur det kommer till stationen.',
 			how: [

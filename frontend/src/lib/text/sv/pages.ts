@@ -14,6 +14,7 @@ export const pages: Text['pages'] = {
 	ros: 'ROS-nätverk',
 	whatIf: 'Tänk om',
 	review: 'Granska ändringar',
+	begin: 'Första stationen',
 	watch: 'Operatörsvy',
 	account: 'Konto',
 	journal: 'Journal',
