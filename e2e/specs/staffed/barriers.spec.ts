@@ -7,7 +7,7 @@ import { DESK, expect, test } from '../../station/test.ts';
 const OPERATE = ['/', '/restart', '/state', '/alarms', '/history', '/orders', '/wall'];
 /** One page with much in it. */
 const MODEL = ['/model', '/model?view=graph', '/model?panel=guards', '/model?ability=robot.move_to_position(home)&panel=runs', '/model?panel=usages&entry=resources%2Frobot.yaml%23measured%23pose'];
-const ENGINEER = [...MODEL, '/operations', '/pipelines', '/ros', '/what-if', '/review'];
+const ENGINEER = [...MODEL, '/operations', '/pipelines', '/ros', '/what-if', '/review', '/begin'];
 const ADMIN = ['/journal', '/wearables', '/users', '/api-keys', '/webhooks', '/backups', '/storage'];
 const WATCH = '/operator';
 /** Of each role the pages of its rail, and its own account. */

@@ -6,7 +6,7 @@ import { unread, type Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import type { Kept } from './kept.ts';
-import { keyOf, wrongIn, type Key, type Wrong } from './places.ts';
+import { keyOf, unsendable, wrongIn, type Key, type Wrong } from './places.ts';
 import { neverText } from './sentences.ts';
 import { blank, isWritten, numbered, outlineOf, sketchOf, type Sketch } from './sketch.ts';
 import type { Step } from './steps.ts';
@@ -24,8 +24,8 @@ export class Begin {
 	/** The last documents that there were; older than what is written while `isWhole` is not so. */
 	files = $state.raw<Readonly<Record<string, string>>>({});
 	errors = $state.raw<OutlineView['errors']>([]);
-	/** All that is wrong with what was written when it was last asked. */
-	wrong = $state.raw<readonly Wrong[]>([]);
+	/** What the server said is wrong with what was written when it was last asked. */
+	#told = $state.raw<readonly Wrong[]>([]);
 	/** Why it is not known what becomes of it. */
 	refusal = $state.raw<Refusal | null>(null);
 	/** Where somebody was and went on: what is wrong there is said. */
@@ -45,6 +45,12 @@ export class Begin {
 		outlineOf(this.sketch, (never) => (never.facts.length > 0 ? neverText(never, this.things, say()).replaceAll(/[{}]/g, '').slice(0, 200) : ''))
 	);
 	readonly asked: string = $derived(JSON.stringify(this.outline));
+	readonly #here: readonly Wrong[] = $derived.by(() => unsendable(this.sketch, say().begin));
+	/** All that is wrong; what follows from something that cannot be sent is left out. */
+	readonly wrong: readonly Wrong[] = $derived.by(() => {
+		const known = new Set(this.#here.map(({ key }) => key));
+		return [...this.#told.filter(({ key }) => !known.has(key)), ...this.#here];
+	});
 	/** What is known is of what is written now. */
 	readonly isKnown: boolean = $derived(this.#answered === this.asked);
 	/** The documents are those of what is written now. */
@@ -95,7 +101,7 @@ export class Begin {
 
 	#take({ files, problems, errors }: OutlineView, of: Sketch, asked: string): void {
 		if (Object.keys(this.templates).length === 0) void this.begin(); // when these were asked for there was no answer
-		this.wrong = wrongIn(problems, of, say().begin);
+		this.#told = wrongIn(problems, of);
 		if (this.wrong.length === 0) this.files = files;
 		this.errors = errors;
 		this.#answered = asked;
@@ -167,7 +173,7 @@ export class Begin {
 		this.sketch = sketch;
 		this.device = null;
 		this.files = {};
-		this.wrong = [];
+		this.#told = [];
 		this.#left.clear();
 		this.leftSteps.clear();
 	}

@@ -12,6 +12,7 @@ test('topics are of the node that publishes them, or else hears them; those of t
 		'/ur/command': topic([], ['/ur']),
 		'/a': topic(['/camera']),
 		'/rosout': topic(['/ur']),
+		'/sequence_planner/emulator/faults': topic([], ['/emulated_devices']),
 		'/ours': topic([], [], { publishers: [end('/station', true)] }),
 		'/nameless': topic([], [], { publishers: [end(null)] })
 	};

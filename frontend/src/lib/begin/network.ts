@@ -8,14 +8,14 @@ export interface FoundNode {
 	readonly topics: readonly { readonly name: string; readonly types: readonly string[] }[];
 }
 
-/** Those that every node has for ROS itself. */
-const OF_ROS = new Set(['/rosout', '/parameter_events', '/clock']);
+/** Those that nodes have for ROS itself, and by which emulated devices are told what happens to them. */
+const ASIDE = /^\/(?:rosout|parameter_events|clock|sequence_planner\/.*)$/;
 
-/** The nodes that are not the station's own, each topic with who publishes it, or else with who hears it. */
+/** The nodes that are not the station itself, each topic with who publishes it, or else with who hears it. */
 export function nodesOn(network: Network | null): FoundNode[] {
 	const nodes = new Map<string | null, { name: string; types: readonly string[] }[]>();
 	for (const [name, { types, publishers, subscribers, station }] of Object.entries(network?.topics ?? {})) {
-		if (OF_ROS.has(name) || station !== null) continue;
+		if (ASIDE.test(name) || station !== null) continue;
 		const end = [...publishers, ...subscribers].find(({ own }) => !own);
 		if (end === undefined) continue;
 		const there = nodes.get(end.node);

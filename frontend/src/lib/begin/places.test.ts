@@ -1,5 +1,5 @@
-import { describe, expect, test } from 'vitest';
-import { keyAt, keyOf, stepOf, wrongIn } from './places.ts';
+import { expect, test } from 'vitest';
+import { keyAt, keyOf, stepOf, unsendable, wrongIn } from './places.ts';
 import { sketchOf } from './sketch.ts';
 import { BOLT } from './testing.ts';
 
@@ -27,20 +27,15 @@ test.each([
 	expect(stepOf(place)).toBe(of);
 });
 
-describe('all that is wrong', () => {
+test('what the server says is told where it is written', () => {
+	const problem = { place: ['devices', 1, 'name'], why: 'a name is missing', why_message: null };
+	expect(wrongIn([problem], SKETCH)).toEqual([{ key: keyOf(robot.id, 'name'), step: 'devices', why: 'a name is missing' }]);
+});
+
+test('what is no number is told without the server', () => {
+	const sketch = sketchOf(BOLT);
 	const words = { notNumbers: 'Write numbers.' };
-	const problem = (place: (string | number)[], why: string) => ({ place, why, why_message: null });
-
-	test('is said as the server says it', () => {
-		expect(wrongIn([problem(['devices', 1, 'name'], 'a name is missing')], SKETCH, words)).toEqual([
-			{ key: keyOf(robot.id, 'name'), step: 'devices', why: 'a name is missing' }
-		]);
-	});
-
-	test('has what cannot be sent, in the place of what follows from that', () => {
-		const sketch = sketchOf(BOLT);
-		sketch.devices[1]!.poses[1]!.joints = '0.6, up';
-		const found = wrongIn([problem(['devices', 1, 'poses', 1, 'joints'], 'there are no joints')], sketch, words);
-		expect(found.map(({ why }) => why)).toEqual(['Write numbers.']);
-	});
+	expect(unsendable(sketch, words)).toEqual([]);
+	sketch.devices[1]!.poses[1]!.joints = '0.6, up';
+	expect(unsendable(sketch, words)).toEqual([{ key: keyOf(robot.poses[1]!.id, 'joints'), step: 'poses', why: 'Write numbers.' }]);
 });

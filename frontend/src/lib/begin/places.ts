@@ -38,16 +38,13 @@ export function stepOf([of, , within]: OutlineProblem['place']): Step {
 	return of === 'product' || of === 'never' ? of : 'station';
 }
 
-/** All that is wrong with a sketch: as the server says, and what cannot be sent at all. */
-export function wrongIn(problems: readonly OutlineProblem[], sketch: Sketch, words: { readonly notNumbers: string }): Wrong[] {
-	const here = notNumbers(sketch).map((key): Wrong => ({ key, step: 'poses', why: words.notNumbers }));
-	const known = new Set(here.map(({ key }) => key));
-	const there = problems.map(
-		({ place, why, why_message: message }): Wrong => ({ key: keyAt(place, sketch), step: stepOf(place), why: told(message, why) })
-	);
-	return [...there.filter(({ key }) => !known.has(key)), ...here];
+/** What the server says is wrong with a sketch. */
+export function wrongIn(problems: readonly OutlineProblem[], sketch: Sketch): Wrong[] {
+	return problems.map(({ place, why, why_message: message }) => ({ key: keyAt(place, sketch), step: stepOf(place), why: told(message, why) }));
 }
 
-function notNumbers({ devices }: Sketch): Key[] {
-	return devices.flatMap(({ poses }) => poses.filter(({ joints }) => readNumbers(joints) === null).map(({ id }) => keyOf(id, 'joints')));
+/** What cannot be sent at all: joints that are no numbers. */
+export function unsendable({ devices }: Sketch, words: { readonly notNumbers: string }): Wrong[] {
+	const poses = devices.flatMap((device) => device.poses).filter(({ joints }) => readNumbers(joints) === null);
+	return poses.map(({ id }) => ({ key: keyOf(id, 'joints'), step: 'poses', why: words.notNumbers }));
 }

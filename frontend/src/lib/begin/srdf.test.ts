@@ -1,14 +1,16 @@
 import { describe, expect, test } from 'vitest';
 import { numbersText } from './numbers.ts';
-import { groupsIn, readSrdf, type Marked } from './srdf.ts';
+import { readSrdf, type Group } from './srdf.ts';
 
-// What the browser makes of a text is tried in a browser (`e2e/specs/own/begin.spec.ts`); here what is read of that.
-function element(localName: string, attributes: Readonly<Record<string, string>> = {}, ...children: Marked[]): Marked {
-	return { localName, children, getAttribute: (name) => attributes[name] ?? null };
+const joint = (name: string, value: string): string => `<joint name="${name}" value="${value}"/>`;
+const state = (name: string, group: string, ...joints: string[]): string => `<group_state name="${name}" group="${group}">${joints.join('')}</group_state>`;
+const robot = (...children: string[]): string => `<?xml version="1.0"?>\n<robot name="ur"><group name="arm"/>${children.join('\n')}</robot>`;
+
+function groupsIn(text: string): readonly Group[] {
+	const read = readSrdf(text);
+	if ('what' in read) throw new Error(read.what);
+	return read;
 }
-const joint = (name: string, value: string): Marked => element('joint', { name, value });
-const state = (name: string, group: string, ...joints: Marked[]): Marked => element('group_state', { name, group }, ...joints);
-const robot = (...children: Marked[]): Marked => element('robot', { name: 'ur' }, element('group', { name: 'arm' }), ...children);
 
 describe('the group states of an SRDF', () => {
 	test('are given by group, each with its joints in the order of the first', () => {
@@ -32,7 +34,7 @@ describe('the group states of an SRDF', () => {
 	});
 
 	test('are found wherever they stand, and a joint may have several numbers', () => {
-		const [group] = groupsIn(robot(element('macro', {}, state('home', 'base', joint('floating', ' 0 0  1.5 ')))));
+		const [group] = groupsIn(robot(`<xacro:macro name="x">${state('home', 'base', joint('floating', ' 0 0  1.5 '))}</xacro:macro>`));
 		expect(group?.states).toEqual([{ name: 'home', joints: [0, 0, 1.5], wrong: null }]);
 	});
 
@@ -68,8 +70,10 @@ describe('the group states of an SRDF', () => {
 		expect(numbersText(groups[1]?.states.at(-1)?.joints ?? [])).toBe('1.999');
 	});
 
-	test('are none where there are none', () => {
-		expect(groupsIn(robot())).toEqual([]);
+	test('are none where there are none, or what is there is no XML', () => {
+		expect(readSrdf(robot())).toEqual({ what: 'none' });
+		expect(readSrdf(robot('<group_state>'))).toEqual({ what: 'xml', line: 2 });
+		expect(readSrdf('# joints: 1, 2')).toEqual({ what: 'xml', line: 1 });
 	});
 });
 

@@ -1,12 +1,6 @@
 /** Named poses of an SRDF: `<group_state name group>` with a `<joint name value>` for each joint, as MoveIt has them. */
 import { numbersText } from './numbers.ts';
-
-/** As much of an element of a document as is looked at. */
-export interface Marked {
-	readonly localName: string;
-	readonly children: Iterable<Marked>;
-	getAttribute(name: string): string | null;
-}
+import { readXml, type XmlElement } from './xml.ts';
 
 export interface GroupState {
 	readonly name: string;
@@ -26,7 +20,7 @@ export interface Group {
 }
 
 /** Why nothing can be read: it is no XML, has entities of its own, or no group states. */
-export type Unread = { readonly what: 'xml'; readonly line: number | null } | { readonly what: 'entities' | 'none' | 'long' };
+export type Unread = { readonly what: 'xml'; readonly line: number } | { readonly what: 'entities' | 'none' | 'long' };
 
 /** Letters: a robot with some thousands of states has fewer. */
 const LONGEST = 5_000_000;
@@ -36,34 +30,29 @@ export function readSrdf(text: string): readonly Group[] | Unread {
 	if (text.length > LONGEST) return { what: 'long' };
 	// They could stand for other files, or for texts without end; an SRDF has none.
 	if (/<!(?:DOCTYPE|ENTITY)/i.test(text)) return { what: 'entities' };
-	const document = new DOMParser().parseFromString(text.trim(), 'application/xml');
-	const error = document.querySelector('parsererror');
-	if (error) {
-		const line = /line(?: number)?:? (\d+)/i.exec(error.textContent)?.[1];
-		const above = text.length - text.trimStart().length;
-		return { what: 'xml', line: line === undefined ? null : Number(line) + text.slice(0, above).split('\n').length - 1 };
-	}
-	const groups = groupsIn(document.documentElement);
+	const root = readXml(text);
+	if ('line' in root) return { what: 'xml', line: root.line };
+	const groups = groupsIn(root);
 	return groups.length === 0 ? { what: 'none' } : groups;
 }
 
 /** The group states anywhere in an element, by group. */
-export function groupsIn(root: Marked): Group[] {
-	const found = new Map<string, Marked[]>();
-	const waiting: Marked[] = [root];
+function groupsIn(root: XmlElement): Group[] {
+	const found = new Map<string, XmlElement[]>();
+	const waiting: XmlElement[] = [root];
 	for (let element = waiting.pop(); element !== undefined; element = waiting.pop()) {
-		if (element.localName === 'group_state') {
-			const group = element.getAttribute('group') ?? '';
+		if (element.name === 'group_state') {
+			const group = element.attributes.get('group') ?? '';
 			const states = found.get(group);
 			if (states) states.push(element);
 			else found.set(group, [element]);
-		} else for (const child of [...element.children].toReversed()) waiting.push(child);
+		} else for (const child of element.children.toReversed()) waiting.push(child);
 	}
 	return [...found].map(([name, states]) => groupOf(name, states));
 }
 
-function groupOf(name: string, elements: readonly Marked[]): Group {
-	const all = elements.map((element) => ({ name: element.getAttribute('name')?.trim() ?? '', joints: jointsOf(element) }));
+function groupOf(name: string, elements: readonly XmlElement[]): Group {
+	const all = elements.map((element) => ({ name: element.attributes.get('name')?.trim() ?? '', joints: jointsOf(element) }));
 	const joints = [...(all[0]?.joints.keys() ?? [])];
 	const states = all.map(({ name: state, joints: given }): GroupState => {
 		const wrong = lacking(state, given, joints);
@@ -72,14 +61,14 @@ function groupOf(name: string, elements: readonly Marked[]): Group {
 	return { name, joints, states };
 }
 
-function jointsOf(element: Marked): Map<string, number[] | null> {
-	const joints = [...element.children].filter(({ localName }) => localName === 'joint');
-	return new Map(joints.map((joint) => [joint.getAttribute('name')?.trim() ?? '', numbersIn(joint.getAttribute('value'))]));
+function jointsOf({ children }: XmlElement): Map<string, number[] | null> {
+	const joints = children.filter(({ name }) => name === 'joint').map(({ attributes }) => attributes);
+	return new Map(joints.map((joint) => [joint.get('name')?.trim() ?? '', numbersIn(joint.get('value') ?? '')]));
 }
 
 /** A joint that turns in several ways has several numbers. */
-function numbersIn(value: string | null): number[] | null {
-	const numbers = (value ?? '').split(/\s+/).filter(Boolean).map(Number);
+function numbersIn(value: string): number[] | null {
+	const numbers = value.split(/\s+/).filter(Boolean).map(Number);
 	return numbers.length > 0 && numbers.every(Number.isFinite) ? numbers : null;
 }
 

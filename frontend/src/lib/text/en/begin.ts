@@ -93,7 +93,7 @@ export const begin = {
 			file: 'File',
 			text: 'Or its text',
 			noFile: (name: string): string => `${name} cannot be read.`,
-			xml: (line: number | null): string => (line === null ? 'This is no XML.' : `This is no XML: line ${line} cannot be read.`),
+			xml: (line: number): string => `This is no XML: line ${line} cannot be read.`,
 			unread: {
 				entities: 'This has a document type or entities of its own, which are not read. Take them out.',
 				none: 'This has no group states: nothing like <group_state name="home" group="arm">.',

@@ -92,7 +92,7 @@ export const begin: Text['begin'] = {
 			file: 'Fil',
 			text: 'Eller dess text',
 			noFile: (name) => `${name} kan inte läsas.`,
-			xml: (line) => (line === null ? 'Det här är ingen XML.' : `Det här är ingen XML: rad ${line} kan inte läsas.`),
+			xml: (line) => `Det här är ingen XML: rad ${line} kan inte läsas.`,
 			unread: {
 				entities: 'Det här har en dokumenttyp eller egna entiteter, som inte läses. Ta bort dem.',
 				none: 'Det här har inga lägen: inget som <group_state name="home" group="arm">.',
