@@ -48,7 +48,7 @@ const heading = (page: Page, name: string): Locator => page.getByRole('heading',
 const put = (page: Page): Locator => page.getByRole('button', { name: 'Put it into the draft' });
 const dialog = (page: Page): Locator => page.getByRole('dialog');
 const row = (page: Page, text: string | RegExp): Locator => part(page).locator('[data-row]').filter({ has: page.getByText(text) });
-const suggested = (page: Page): Locator => page.getByRole('region', { name: 'Probably' });
+const suggested = (page: Page): Locator => page.getByRole('region', { name: 'Suggestions' });
 
 /** What becomes of what is written is known. */
 async function known(page: Page): Promise<void> {
@@ -208,8 +208,11 @@ test('what is wrong is said at its field once that was left, and leads there; no
 	await page.getByLabel('Joint angles: Home').fill('');
 
 	// In the last step all of it is said, each with the way there.
+	await toStep(page, 'never').click();
+	await part(page).getByRole('button', { name: 'Add a rule' }).click();
 	await toStep(page, 'look').click();
 	await expect(put(page)).toHaveAttribute('aria-disabled', 'true');
+	await expect(part(page).getByRole('link', { name: 'Never: Choose one.' })).toBeVisible();
 	await expect(part(page)).toContainText('still to put right');
 	await part(page).getByRole('link', { name: /^Product: a name is missing/ }).click();
 	await expect(heading(page, 'Product')).toBeVisible();

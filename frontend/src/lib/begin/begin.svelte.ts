@@ -6,7 +6,7 @@ import { unread, type Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import type { Kept } from './kept.ts';
-import { keyOf, unsendable, wrongIn, type Key, type Wrong } from './places.ts';
+import { keyOf, unsaid, wrongIn, type Key, type Wrong } from './places.ts';
 import { neverText } from './sentences.ts';
 import { blank, isWritten, numbered, outlineOf, sketchOf, type Sketch } from './sketch.ts';
 import type { Step } from './steps.ts';
@@ -45,8 +45,8 @@ export class Begin {
 		outlineOf(this.sketch, (never) => (never.facts.length > 0 ? neverText(never, this.things, say()).replaceAll(/[{}]/g, '').slice(0, 200) : ''))
 	);
 	readonly asked: string = $derived(JSON.stringify(this.outline));
-	readonly #here: readonly Wrong[] = $derived.by(() => unsendable(this.sketch, say().begin));
-	/** All that is wrong; what follows from something that cannot be sent is left out. */
+	readonly #here: readonly Wrong[] = $derived.by(() => unsaid(this.sketch, say().begin));
+	/** All that is wrong, each place once. */
 	readonly wrong: readonly Wrong[] = $derived.by(() => {
 		const known = new Set(this.#here.map(({ key }) => key));
 		return [...this.#told.filter(({ key }) => !known.has(key)), ...this.#here];

@@ -4,9 +4,13 @@
 const MOST = 32;
 const LARGEST = 1e6;
 
-/** The numbers of a line with commas, semicolons or blanks between; null where something else is in it. */
+/**
+ * The numbers of a line with commas or blanks between; null where something else is in it. With semicolons between, a comma is
+ * the point of a number.
+ */
 export function readNumbers(text: string): number[] | null {
-	const parts = text.replace(/^\s*\[|\]\s*$/g, '').split(/[\s,;]+/).filter(Boolean);
+	const line = text.replace(/^\s*\[|\]\s*$/g, '');
+	const parts = (line.includes(';') ? line.replaceAll(',', '.') : line).split(/[\s,;]+/).filter(Boolean);
 	const numbers = parts.map((part) => (/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(part) ? Number(part) : NaN));
 	return numbers.length <= MOST && numbers.every((each) => Math.abs(each) <= LARGEST) ? numbers : null;
 }

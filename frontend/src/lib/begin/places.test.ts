@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { keyAt, keyOf, stepOf, unsendable, wrongIn } from './places.ts';
+import { keyAt, keyOf, stepOf, unsaid, wrongIn } from './places.ts';
 import { sketchOf } from './sketch.ts';
 import { BOLT } from './testing.ts';
 
@@ -32,10 +32,18 @@ test('what the server says is told where it is written', () => {
 	expect(wrongIn([problem], SKETCH)).toEqual([{ key: keyOf(robot.id, 'name'), step: 'devices', why: 'a name is missing' }]);
 });
 
-test('what is no number is told without the server', () => {
+test('what is no number, and what was not chosen yet, is told without the server', () => {
 	const sketch = sketchOf(BOLT);
-	const words = { notNumbers: 'Write numbers.' };
-	expect(unsendable(sketch, words)).toEqual([]);
+	const words = { notNumbers: 'Write numbers.', notChosen: 'Choose one.' };
+	expect(unsaid(sketch, words)).toEqual([]);
 	sketch.devices[1]!.poses[1]!.joints = '0.6, up';
-	expect(unsendable(sketch, words)).toEqual([{ key: keyOf(robot.poses[1]!.id, 'joints'), step: 'poses', why: 'Write numbers.' }]);
+	sketch.product.steps[1]!.where[0]!.pose = null;
+	sketch.never[0]!.facts[0]!.value = null;
+	sketch.never[0]!.during[0]!.thing = null;
+	expect(unsaid(sketch, words)).toEqual([
+		{ key: keyOf(robot.poses[1]!.id, 'joints'), step: 'poses', why: 'Write numbers.' },
+		{ key: keyOf(step.where[0]!.id, 'pose'), step: 'product', why: 'Choose one.' },
+		{ key: keyOf(never.facts[0]!.id, 'value'), step: 'never', why: 'Choose one.' },
+		{ key: keyOf(never.during[0]!.id, 'thing'), step: 'never', why: 'Choose one.' }
+	]);
 });

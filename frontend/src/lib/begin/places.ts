@@ -43,8 +43,15 @@ export function wrongIn(problems: readonly OutlineProblem[], sketch: Sketch): Wr
 	return problems.map(({ place, why, why_message: message }) => ({ key: keyAt(place, sketch), step: stepOf(place), why: told(message, why) }));
 }
 
-/** What cannot be sent at all: joints that are no numbers. */
-export function unsendable({ devices }: Sketch, words: { readonly notNumbers: string }): Wrong[] {
+/** What the page itself knows better: joints that are no numbers cannot be sent, and what was not chosen yet is not gone. */
+export function unsaid({ devices, product, never }: Sketch, words: { readonly notNumbers: string; readonly notChosen: string }): Wrong[] {
+	const open = (step: Step, id: number, field: string): Wrong => ({ key: keyOf(id, field), step, why: words.notChosen });
 	const poses = devices.flatMap((device) => device.poses).filter(({ joints }) => readNumbers(joints) === null);
-	return poses.map(({ id }) => ({ key: keyOf(id, 'joints'), step: 'poses', why: words.notNumbers }));
+	const stands = product.steps.flatMap(({ where }) => where);
+	const facts = never.flatMap((each) => [...each.facts, ...each.during]);
+	return [
+		...poses.map(({ id }): Wrong => ({ key: keyOf(id, 'joints'), step: 'poses', why: words.notNumbers })),
+		...stands.flatMap(({ id, robot, pose }) => (robot === null ? [open('product', id, 'robot')] : pose === null ? [open('product', id, 'pose')] : [])),
+		...facts.flatMap(({ id, thing, value }) => (thing === null ? [open('never', id, 'thing')] : value === null ? [open('never', id, 'value')] : []))
+	];
 }

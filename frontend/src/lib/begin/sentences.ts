@@ -22,6 +22,12 @@ export function neverText({ facts, during }: Pick<NeverSketch, 'facts' | 'during
 	return words.sentence.never(all(never, text), meanwhile.length > 0 ? all(meanwhile, text) : null);
 }
 
+/** The same as a sentence; one with a gap at its end has no full stop. */
+export function neverSentence(never: Pick<NeverSketch, 'facts' | 'during'>, things: readonly Thing[], text: Text): string {
+	const said = neverText(never, things, text);
+	return said.endsWith(text.begin.blank) ? said : `${said}.`;
+}
+
 function deviceText(device: DeviceSketch, text: Text): string {
 	const words = text.begin.sentence;
 	const title = titled(device);
@@ -54,6 +60,6 @@ export function sentences(sketch: Sketch, text: Text): Sentence[] {
 	found.push(...product.steps.map((step, at): Sentence => ({ step: 'product', text: stepText(step, at, sketch, text) })));
 	if (product.states.length > 1) found.push({ step: 'product', text: words.then[product.then](titled(product)) });
 	const things = thingsOf(sketch, text.begin.values);
-	found.push(...never.map((each): Sentence => ({ step: 'never', text: `${neverText(each, things, text)}.` })));
+	found.push(...never.map((each): Sentence => ({ step: 'never', text: neverSentence(each, things, text) })));
 	return found;
 }

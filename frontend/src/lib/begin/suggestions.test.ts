@@ -39,6 +39,12 @@ describe('what probably must never be', () => {
 		expect(told(sketch)).toHaveLength(2);
 	});
 
+	test('is not suggested where something else was said of the same things', () => {
+		const sketch = sketchOf(BOLT);
+		sketch.never[0]!.during = [{ id: 900, thing: sketch.devices[0]!.id, value: 'free', holds: false }];
+		expect(told(sketch)).toEqual([]);
+	});
+
 	test('are three at most, and none of nothing', () => {
 		const sketch = sketchOf({ ...BOLT, devices: [...BOLT.devices, ...['b', 'c', 'd', 'e'].map((name) => ({ kind: 'person' as const, name, title: name }))] });
 		expect(told(sketch)).toHaveLength(3);

@@ -14,16 +14,15 @@ const is = (thing: number, value: number | string): Suggested['facts'][number] =
 
 /** Up to three, the likeliest first, without those that are there. */
 export function suggestionsOf(sketch: Sketch): Suggested[] {
-	const there = new Set(sketch.never.map(meaning));
 	return [...nearPeople(sketch), ...nearDoors(sketch), ...together(sketch), ...unheld(sketch)]
-		.filter((each) => !there.has(meaning(each)))
+		.filter((each) => !sketch.never.some((never) => isOf(each, never)))
 		.slice(0, MOST);
 }
 
-/** The same for two that say the same in another order. */
-function meaning({ facts, during }: Suggested | NeverSketch): string {
-	const told = (of: Suggested['facts']): string[] => of.map(({ thing, value, holds }) => `${thing} ${value} ${holds}`).sort();
-	return [...told(facts), 'while', ...told(during)].join(',');
+/** Whether somebody has said the like: the same facts, in any order, while something of the same things holds. */
+function isOf({ facts, during }: Suggested, never: NeverSketch): boolean {
+	const told = (of: Suggested['facts']): string => of.map(({ thing, value, holds }) => `${thing} ${value} ${holds}`).sort().join();
+	return told(facts) === told(never.facts) && during.every(({ thing }) => never.during.some((each) => each.thing === thing));
 }
 
 /** Where a robot is while something is done to the product: the poses that a person or a door may be in the way of. */

@@ -37,8 +37,9 @@ export function thingsOf({ devices, product }: Sketch, words: Text['begin']['val
 /** A fact in words: `Robot in the pose “at the bolt”`, or `Operator is busy` where it is what holds meanwhile. */
 export function factText(fact: FactSketch, things: readonly Thing[], words: Text['begin'], meanwhile: boolean): string {
 	const thing = things.find(({ id }) => id === fact.thing);
-	const value = thing?.values.find((each) => each.value === fact.value)?.title ?? words.blank;
+	if (thing === undefined) return words.blank;
+	const value = thing.values.find((each) => each.value === fact.value)?.title ?? words.blank;
 	const say = meanwhile ? words.sentence.during : words.sentence.fact;
-	const said = thing?.kind === 'robot' ? words.sentence.inPose(value) : value;
-	return say(thing?.title ?? words.blank, said, fact.holds);
+	const said = thing.kind === 'robot' ? words.sentence.inPose(value) : value;
+	return say(thing.title, said, fact.holds);
 }

@@ -24,6 +24,7 @@ export const begin = {
 	/** In the place of what was not chosen yet. */
 	blank: '…',
 	notNumbers: 'Write numbers with commas between, 32 at most.',
+	notChosen: 'Choose one.',
 	most: (n: number): string => `${n} at most.`,
 	field: {
 		title: 'Title',
@@ -79,7 +80,7 @@ export const begin = {
 	},
 	poses: {
 		none: 'The station has no robot: there is nothing to do here.',
-		about: 'Joints in rad or m, with commas between, as many in each pose. Leave them out where the robot knows its poses by their names.',
+		about: 'Joints in rad or m, such as 0.5, -1.57: as many in each pose. Leave them out where the robot knows its poses by their names.',
 		waysOf: 'Between which poses it goes',
 		ways: { any: 'Any way', row: 'Along this row' },
 		joints: 'Joint angles',
@@ -111,7 +112,7 @@ export const begin = {
 				other: (joint: string): string => `The first pose does not have the joint ${joint}.`
 			},
 			tooMany: (room: number): string => `There is room for ${room} more.`,
-			bring: (n: number): string => `Import ${count(n, 'pose', 'poses')}`
+			bring: (n: number): string => (n === 0 ? 'Import' : `Import ${count(n, 'pose', 'poses')}`)
 		}
 	},
 	product: {
@@ -148,7 +149,7 @@ export const begin = {
 		addAnd: 'and',
 		addWhile: 'while',
 		add: 'Add a rule',
-		suggested: 'Probably',
+		suggested: 'Suggestions',
 		take: 'Add',
 		takeIt: (text: string): string => `Add: ${text}`,
 		called: (title: string): string => `It is called “${title}”.`,
@@ -160,7 +161,7 @@ export const begin = {
 		label: 'Document',
 		notYet: 'The documents are here as soon as nothing is missing.',
 		missing: 'Still to put right',
-		old: 'As it was before what is still to put right.'
+		old: 'As it was before. Something is still to put right.'
 	},
 	/** What was said, in words. */
 	sentence: {

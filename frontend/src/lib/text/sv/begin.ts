@@ -23,6 +23,7 @@ export const begin: Text['begin'] = {
 	startOverDo: 'Börja om',
 	blank: '…',
 	notNumbers: 'Skriv tal med komma emellan, högst 32.',
+	notChosen: 'Välj en.',
 	most: (n) => `Högst ${n}.`,
 	field: {
 		title: 'Titel',
@@ -78,7 +79,7 @@ export const begin: Text['begin'] = {
 	},
 	poses: {
 		none: 'Stationen har ingen robot: här finns inget att göra.',
-		about: 'Leder i rad eller m, med komma emellan, lika många i varje läge. Utelämna dem där roboten själv kan sina lägen vid namn.',
+		about: 'Leder i rad eller m, som 0.5, -1.57: lika många i varje läge. Utelämna dem där roboten själv kan sina lägen vid namn.',
 		waysOf: 'Mellan vilka lägen den går',
 		ways: { any: 'Hur som helst', row: 'Längs den här raden' },
 		joints: 'Ledvinklar',
@@ -110,7 +111,7 @@ export const begin: Text['begin'] = {
 				other: (joint) => `Det första läget har inte leden ${joint}.`
 			},
 			tooMany: (room) => `Det finns plats för ${room} till.`,
-			bring: (n) => `Importera ${count(n, 'läge', 'lägen')}`
+			bring: (n) => (n === 0 ? 'Importera' : `Importera ${count(n, 'läge', 'lägen')}`)
 		}
 	},
 	product: {
@@ -147,7 +148,7 @@ export const begin: Text['begin'] = {
 		addAnd: 'och',
 		addWhile: 'medan',
 		add: 'Lägg till en regel',
-		suggested: 'Troligen',
+		suggested: 'Förslag',
 		take: 'Lägg till',
 		takeIt: (text) => `Lägg till: ${text}`,
 		called: (title) => `Den heter ”${title}”.`,
@@ -159,7 +160,7 @@ export const begin: Text['begin'] = {
 		label: 'Dokument',
 		notYet: 'Dokumenten finns här så snart inget saknas.',
 		missing: 'Kvar att rätta',
-		old: 'Som det var före det som är kvar att rätta.'
+		old: 'Som det var förut. Något är kvar att rätta.'
 	},
 	sentence: {
 		station: (title) => `Stationen heter ”${title}”.`,
