@@ -330,6 +330,26 @@ def test_what_could_be_said_shorter_is_one_change(eva: httpx.Client, adam: httpx
     assert read(eva, "/folds")["usable"] is False
 
 
+def test_an_outline_becomes_documents_that_are_one_change(eva: httpx.Client) -> None:
+    templates = read(eva, "/outlines")["templates"]
+    assert set(templates) == {"bolt", "person-and-clamp", "pick-and-place"}
+    preview = eva.post(f"{MODEL}/outlines/preview", json=templates["bolt"]).json()
+    assert (preview["problems"], preview["errors"]) == ([], [])
+    present = {path: each["text"] for path, each in read(eva, "/files")["files"].items()}
+    made(
+        eva,
+        *(
+            {"kind": "text", "file": file, "was": present.get(file), "text": preview["files"].get(file)}
+            for file in sorted(preview["files"].keys() | present.keys())
+            if present.get(file) != preview["files"].get(file)
+        ),
+    )
+    assert [each for each in checked(eva)["findings"] if each["severity"] == "error"] == []
+    unfinished = eva.post(f"{MODEL}/outlines/preview", json={**templates["bolt"], "devices": []}).json()
+    assert unfinished["files"] == {}
+    assert unfinished["problems"][0]["place"] == ["devices"]
+
+
 def test_the_picture_of_the_draft_is_drawn_as_that_of_the_station(eva: httpx.Client) -> None:
     """What is drawn by hand, what is made without a file, and the file to begin with, which draws the same."""
     found = read(eva, "/mimic")

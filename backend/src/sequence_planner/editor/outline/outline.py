@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from sequence_planner.analysis.report import FindingDocument
+from sequence_planner.controller.views.part import View
 from sequence_planner.core.data_models import DataModel
 from sequence_planner.texts.message import Message
 
@@ -143,7 +144,7 @@ class OutlineProblem(DataModel):
     why_message: Message | None
 
 
-class OutlineView(DataModel):
+class OutlineView(View):
     """The documents that an outline becomes, by their paths; none while it has problems. `errors` make these
     documents unusable as they are.
     """
