@@ -3,6 +3,7 @@ import { station as ofStation } from './en-station.ts';
 import { ability } from './en/ability.ts';
 import { backups } from './en/backups.ts';
 import { check } from './en/check.ts';
+import { examples } from './en/examples.ts';
 import { review } from './en/review.ts';
 import { model } from './en/model.ts';
 import { picture } from './en/picture.ts';
@@ -15,4 +16,4 @@ import { tryOut } from './en/try-out.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...ofStation, ability, backups, check, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };
+export const en = { ...ofStation, ability, backups, check, examples, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };

@@ -290,6 +290,20 @@ class Workshop(ReadableWorkshop):
         title = f"Back to “{name}”"
         return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
 
+    async def begin_with(self, draft: Draft, example: Files, title: str, by: Actor) -> str:
+        """Let the draft become an example with the name that the station has; JSON of a `FilesView` of what is other
+        now.
+
+        Raises `EditError` where somebody else has changed it since, and `WorkerError`.
+        """
+
+        async def propose(now: Draft) -> DraftProposal:
+            if now.number != draft.number:
+                raise EditError(message("edit.draft-changed"))
+            return await self._proposed(now, "begun_with", example, title)
+
+        return (await self._changed(propose, by))[1]
+
     async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
         """Add an example to the draft. Raises `EditError` and `WorkerError`."""
         question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)

@@ -22,7 +22,7 @@ from sequence_planner.editor.processes import (
     worked,
 )
 from sequence_planner.editor.schemas.check import CheckView, waiting
-from sequence_planner.editor.schemas.draft import DraftChangesView, DraftView, WorkshopView
+from sequence_planner.editor.schemas.draft import DraftView, WorkshopView
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.settings import StreamLimits
@@ -66,10 +66,6 @@ class ReadableWorkshop(ABC):
     async def open(self) -> Draft:
         """The draft as it is now. Raises `WorkerError`."""
         return await self._opened()
-
-    async def changes(self) -> DraftChangesView:
-        """In how many places the draft differs from what runs: nowhere, where it is no draft of that."""
-        return DraftChangesView(number=(await self.open()).number, changes=0)
 
     async def close(self) -> None:
         """End what is being checked and answered."""
