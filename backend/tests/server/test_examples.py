@@ -56,8 +56,8 @@ def test_all_models_of_the_repository_are_listed_with_what_they_are(eva: httpx.C
     assert list(found) == sorted(path.parent.name for path in MODELS.glob("*/station.yaml"))
     assert found["bolt_tightening"]["title"] == {"en": "Bolt tightening station", "sv": "Station för skruvdragning"}
     assert found[SMALL]["description"].startswith("An operator places a bolt")
-    # Two robots of one type, and the station's own two operations.
-    assert [found[ROBOTS][each] for each in ("resources", "abilities", "operations")] == [2, 10, 2]
+    # As they are written: an ability with parameters is one. Both robots have those of their type.
+    assert [found[ROBOTS][each] for each in ("resources", "abilities", "operations")] == [2, 8, 2]
 
 
 def test_where_there_are_none_the_list_is_empty_and_no_name_is_known(

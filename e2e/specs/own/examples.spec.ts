@@ -35,7 +35,7 @@ test('an example is opened in one press from an empty station, looked at in all 
 	const page = await browse(INA, '/model');
 	const first = page.getByRole('region', { name: 'Begin with an example' });
 	await expect(first.locator('li')).toHaveCount(5);
-	await expect(first.locator(`[data-example="${TRUCK}"]`)).toContainText('9 resources');
+	await expect(first.locator(`[data-example="${TRUCK}"]`)).toContainText('8 resources, 22 abilities, 11 operations');
 	await examine(page, 'examples-first');
 	await first.getByRole('link', { name: TITLE }).click();
 
@@ -59,9 +59,8 @@ test('an example is opened in one press from an empty station, looked at in all 
 
 	// Operations and Pipelines of the same example, by what leads there.
 	await page.getByRole('button', { name: 'Form' }).click();
-	await row(page, 'operations.yaml').press('ArrowRight');
-	await row(page, 'operations.yaml').press('ArrowDown');
-	await page.keyboard.press('Enter');
+	await page.getByLabel('Search: name or title').fill('tighten_bolt_pair');
+	await row(page, 'operations.yaml', 'tighten_bolt_pair').click();
 	await form(page).getByRole('link', { name: 'See it in the order of operations' }).click();
 	await expect(page).toHaveURL(`/operations?example=${TRUCK}`);
 	await expect(banner(page)).toContainText(TITLE);
@@ -94,6 +93,7 @@ test('an example is opened in one press from an empty station, looked at in all 
 
 test('a part is copied out of an example; the station begins with one, and undo takes that back', async ({ browse, complaints }) => {
 	const page = await browse(INA, '/model');
+	await expect(page.getByRole('tree')).toBeVisible();
 	// Wherever one is, the examples are a few letters away.
 	await page.keyboard.press('Control+k');
 	await page.getByRole('combobox').fill('example');
@@ -101,6 +101,8 @@ test('a part is copied out of an example; the station begins with one, and undo 
 	await dialog(page).getByRole('link', { name: 'A single bolt' }).click();
 	await expect(banner(page)).toContainText('A single bolt');
 	const robot = row(page, 'resources/robot.yaml');
+	await robot.click();
+	await expect(robot).toHaveAttribute('aria-selected', 'true');
 	await robot.focus();
 	await expect(async () => {
 		await page.keyboard.press('Control+c');

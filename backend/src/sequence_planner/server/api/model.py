@@ -111,7 +111,7 @@ class RenameBody(Body):
     name: Annotated[str, Field(min_length=1, max_length=200)]
 
 
-class BeginBody(Body):
+class BeginExampleBody(Body):
     """The draft, after its change `number`, becomes this example; `title` says so in the list of changes."""
 
     example: Annotated[str, Field(min_length=1, max_length=100)]
@@ -132,9 +132,7 @@ async def draft_changes(shop: TheWorkshop) -> DraftChangesView:
 
 
 @model_router.get("/files", dependencies=[VIEWER], response_model=FilesView, responses=refused(404))
-async def draft_files(
-    shop: LookedAt, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None
-) -> Response:
+async def draft_files(shop: LookedAt, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None) -> Response:
     """Files of the draft with what they hold; all of them where no `path` is named."""
     return found(await shop.files(path))
 
@@ -224,10 +222,8 @@ async def folds(shop: LookedAt, fold: FoldMark | None = None, name: FoldName | N
         raise refusal(error) from error
 
 
-@model_router.post(
-    "/begin", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(404, 422)
-)
-async def begin_with_example(body: BeginBody, shop: TheWorkshop, examples: TheExamples, actor: Actor) -> Response:
+@model_router.post("/begin", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(404, 422))
+async def begin_with_example(body: BeginExampleBody, shop: TheWorkshop, examples: TheExamples, actor: Actor) -> Response:
     """Let an example station take the place of all that is in the draft, apart from the name of the station; the files
     that are others now. It is one change, which can be undone.
 

@@ -380,7 +380,6 @@ class Workshop(ReadableWorkshop):
         return self._marks[1:]
 
 
-
 def _taken_up(draft: Draft, files: Files, proposal: DraftProposal, now: float, connection: Connection) -> Draft | None:
     return drafts.take_up(connection, draft, files, proposal, now)
 
