@@ -148,8 +148,7 @@ def test_nothing_is_changed_simulated_or_recorded_in_an_example(eva: httpx.Clien
         ("POST", "/pipelines/recordings", {"pipeline": "/robot/state", "name": "one"}),
     ]
     for method, address, body in asked:
-        content = {} if method == "GET" else {"json": body}
-        answer = eva.request(method, f"{MODEL}{address}", params={"example": SMALL}, **content)
+        answer = eva.request(method, f"{MODEL}{address}", params={"example": SMALL}, json=body)
         assert answer.status_code == 409, (address, answer.text)
         problem(answer, 409, "example-unchanged")
     assert read(eva) == before

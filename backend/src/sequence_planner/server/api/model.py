@@ -223,7 +223,7 @@ async def folds(shop: LookedAt, fold: FoldMark | None = None, name: FoldName | N
 
 
 @model_router.post("/begin", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(404, 422))
-async def begin_with_example(body: BeginExampleBody, shop: TheWorkshop, examples: TheExamples, actor: Actor) -> Response:
+async def begin_draft(body: BeginExampleBody, shop: TheWorkshop, examples: TheExamples, actor: Actor) -> Response:
     """Let an example station take the place of all that is in the draft, apart from the name of the station; the files
     that are others now. It is one change, which can be undone.
 
