@@ -15,7 +15,7 @@ from sequence_planner.editor.draft import PartChangedError
 from sequence_planner.model.files import Files
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.errors import ProblemFound
-from sequence_planner.server.services.deployments import draft_after, revision_of
+from sequence_planner.server.services.deployments import revision_of
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.examples import ExampleShelf
 from sequence_planner.server.services.identity import IdentityService
@@ -82,10 +82,9 @@ async def begin_with(shop: Workshop, shelf: ExampleShelf, example: str, number: 
 
     Raises `Refused` where there is no such example or the draft is another one, `EditError` and `WorkerError`.
     """
-    draft = await draft_after(shop, number)
     if (files := await shelf.files_to_begin_with(example)) is None:
         raise _no_example(example)
-    return await shop.begin_with(draft, files, title, by)
+    return await shop.begin_with(number, files, title, by)
 
 
 def _no_example(name: str) -> ProblemFound:

@@ -49,6 +49,7 @@ from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.reading import ReadableWorkshop
 from sequence_planner.server.settings import Settings, StreamLimits
 from sequence_planner.texts.message import message
+from sequence_planner.texts.refused import Refused
 
 MOST_SHOWN = 50  # changes
 MOST_TOLD = 12  # changes of which it is told what they did: as many as the page shows
@@ -290,17 +291,17 @@ class Workshop(ReadableWorkshop):
         title = f"Back to “{name}”"
         return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
 
-    async def begin_with(self, draft: Draft, example: Files, title: str, by: Actor) -> str:
-        """Let the draft become an example with the name that the station has; JSON of a `FilesView` of what is other
-        now.
+    async def begin_with(self, number: int, example: Files, title: str, by: Actor) -> str:
+        """Let the draft, after its change `number`, become an example with the name that the station has; JSON of a
+        `FilesView` of what is other now.
 
-        Raises `EditError` where somebody else has changed it since, and `WorkerError`.
+        Raises `Refused` where it is another draft by now, `EditError` and `WorkerError`.
         """
 
-        async def propose(now: Draft) -> DraftProposal:
-            if now.number != draft.number:
-                raise EditError(message("edit.draft-changed"))
-            return await self._proposed(now, "begun_with", example, title)
+        async def propose(draft: Draft) -> DraftProposal:
+            if draft.number != number:
+                raise Refused("stale-draft", message("refused.stale-draft.look"))
+            return await self._proposed(draft, "begun_with", example, title)
 
         return (await self._changed(propose, by))[1]
 

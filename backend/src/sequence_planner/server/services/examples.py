@@ -71,17 +71,19 @@ class ExampleShelf:
     async def workshop(self, name: str) -> ExampleWorkshop | None:
         """The example of this name; None where there is none."""
         if name not in self._shops:
-            folder = (await run_in_threadpool(example_folders, self._folder)).get(name)
-            if folder is None:
+            if (folder := await self._folder_of(name)) is None:
                 return None
             self._shops.setdefault(name, ExampleWorkshop(folder, self._limits))
         return self._shops[name]
 
     async def files_to_begin_with(self, name: str) -> Files | None:
-        """The files of an example; None where there is none of this name."""
-        shop = await self.workshop(name)
-        return None if shop is None else (await shop.open()).files
+        """The files of an example, which is not checked for that; None where there is none of this name."""
+        folder = await self._folder_of(name)
+        return None if folder is None else await run_in_threadpool(example_files, folder)
 
     async def close(self) -> None:
         """End what is being checked and answered."""
         await asyncio.gather(*(shop.close() for shop in self._shops.values()))
+
+    async def _folder_of(self, name: str) -> Path | None:
+        return (await run_in_threadpool(example_folders, self._folder)).get(name)
