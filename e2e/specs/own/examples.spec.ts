@@ -149,5 +149,5 @@ test('who is no engineer looks at examples and begins with none', async ({ brows
 	await expect(banner(page)).toContainText('A single bolt');
 	await expect(banner(page).getByRole('button', { name: 'Begin with it' })).toHaveCount(0);
 	await page.goto('/model?example=nowhere');
-	await expect(page.getByText('There is no example station nowhere.')).toBeVisible();
+	await expect(page.getByText('There is no example station “nowhere”.')).toBeVisible();
 });

@@ -8,6 +8,9 @@ const ADDRESS = '/api/v1/model';
 /** Milliseconds in which the files of a large model are read or written. */
 const PATIENCE = 20_000;
 
+/** What was begun, until the page of the draft tells it. */
+let begun: string | null = null;
+
 /** The draft of the station after its change `number`, and its files that an example would take the place of. */
 export interface OwnDraft {
 	readonly number: number;
@@ -39,9 +42,6 @@ export async function beginWith(example: string, number: number, title: string):
 	begun = title;
 	return null;
 }
-
-/** What was begun, until the page of the draft tells it. */
-let begun: string | null = null;
 
 /** The title of the change by which the draft has just begun with an example, once; null for none. */
 export function justBegun(): string | null {
