@@ -93,6 +93,7 @@ bench: install-bench ## Measure
 campaign: install-test page e2e/node_modules/done.stamp chromium ## The long runs themselves, resumable
 	cd backend && SHARE_OF_EXAMPLES=4 .venv/bin/pytest --timeout 0 -m 'not heavy' -n auto --dist worksteal
 	cd backend && SHARE_OF_EXAMPLES=4 .venv/bin/pytest --timeout 0 -m heavy -n 2 --dist loadfile --no-loadscope-reorder
+	cd frontend && EXAMPLES=5000 npm test
 	cd e2e && LONG=yes FAULTS=10 npx playwright test --project light --grep '@long|alarm to production'
 	cd e2e && LONG=yes npx playwright test --project dark --grep-invert @long
 	cd backend && for each in campaigns/*.py; do echo "$$each" && PYTHONPATH=tests .venv/bin/python "$$each" || exit 1; done

@@ -61,5 +61,5 @@ export default defineConfig({
 	server: { proxy: { '/api': { target: server, ws: true, changeOrigin: true } } },
 	// What is tested keeps nothing to itself, so one process does for all files: that takes a fraction of the time. Laws are
 	// tried with many examples, which takes some seconds where others have the processors.
-	test: { include: ['src/**/*.test.ts'], setupFiles: ['src/lib/testing/texts.ts'], isolate: false, testTimeout: 60_000 }
+	test: { include: ['src/**/*.test.ts'], setupFiles: ['src/lib/testing/texts.ts', 'src/lib/testing/laws.ts'], isolate: false, testTimeout: 60_000 }
 });

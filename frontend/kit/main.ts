@@ -3,6 +3,7 @@ import { mount } from 'svelte';
 import '#lib/style/fonts.css';
 import '#lib/style/tokens.css';
 import '#lib/style/base.css';
+import type { StreamMessage } from '#lib/contract.ts';
 import { view } from '#lib/testing/view.ts';
 import { en } from '#lib/text/en.ts';
 import { sv } from '#lib/text/sv.ts';
@@ -22,9 +23,9 @@ class Stream extends EventTarget {
 	#tell(): void {
 		const time = 1000 + this.#sequence / 5;
 		if (this.#sequence === 0) this.onopen?.();
-		const message =
+		const message: StreamMessage =
 			this.#sequence === 0
-				? { kind: 'snapshot', sequence: 0, view: view({ time }) }
+				? { kind: 'snapshot', sequence: 0, age: null, view: view({ time }) }
 				: { kind: 'delta', sequence: this.#sequence, changed: { time }, removed: {} };
 		this.onmessage?.({ data: JSON.stringify(message) });
 		this.#sequence += 1;

@@ -5,9 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 
-import pytest
-
-from sequence_planner.editor import processes
 from sequence_planner.editor.processes import DraftProcess
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
@@ -20,10 +17,7 @@ def living() -> list[Child]:
     return [child for child in children() if child.name == "editing_worker"]
 
 
-def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_question(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(processes, "RESTS_AFTER", 0.2)
+def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_question() -> None:
     files = read_files(BOLT_TIGHTENING)
 
     async def shown(editing: DraftProcess) -> object:
@@ -32,7 +26,7 @@ def test_it_ends_when_nobody_asks_and_is_told_everything_again_with_the_next_que
         return json.loads(answer)
 
     async def scenario() -> None:
-        editing = DraftProcess("editing_worker")
+        editing = DraftProcess("editing_worker", rests_after=2.0)
         try:
             first = await shown(editing)
             (before,) = living()

@@ -19,6 +19,7 @@ from sequence_planner.server.api import (
     webhooks,
     what_if,
 )
+from sequence_planner.server.api.drafting import attachments, outlines
 from sequence_planner.server.stream import endpoints
 
 ROUTERS: Final = (
@@ -27,7 +28,7 @@ ROUTERS: Final = (
     station.router,
     station.instructions_router,
     declared.router,
-    model.attachments_router,
+    attachments.attachments_router,
     station.ros_router,
     endpoints.stream_router,
     users.people_router,
@@ -52,6 +53,7 @@ ROUTERS: Final = (
     job_orders.capabilities_router,
     model.model_router,
     model.examples_router,
+    outlines.router,
     model.language_router,
     model.draft_pipelines_router,
     revisions.router,

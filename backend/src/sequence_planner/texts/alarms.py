@@ -161,10 +161,9 @@ ALARMS: Final[dict[str, str]] = {
         "{title}, which {by} has taken, does not go on, and operations wait.",
         "See to what it waits for, or stop it and look at the ways back again.",
     ),
-    "errand-waits.start": "“{ability}” has not started for {seconds} s: it waits for {conditions}",
-    "errand-waits.end": "What was taken has not come to its end for {seconds} s: it waits for {conditions}",
+    "errand-waits.start": "“{ability}” has not started for {seconds} s: it {waits}",
+    "errand-waits.end": "What was taken has not come to its end for {seconds} s: it {waits}",
     "errand-waits.nothing-known": "nothing that is known",
-    "errand-waits.safe": "the station to be back in its safe states",
     **_kind(
         "errand",
         "{title} was not carried out to its end: {why}",

@@ -212,7 +212,7 @@ def all_titles(titles: Iterable[str]) -> str:
 
 # All that is waited for in one sentence: things that come, and what is to be so.
 
-_CLAUSES = frozenset(("waits.sake",))
+_CLAUSES = frozenset(("waits.sake", "waits.nearest"))
 
 
 def waits_in_one(conditions: Iterable[Message]) -> Message | None:
@@ -232,6 +232,11 @@ def waits_in_one(conditions: Iterable[Message]) -> Message | None:
     if until:
         return message("sentence.until", conditions=until)
     return message("sentence.for", what=things) if things else None
+
+
+def awaiting(conditions: Collection[Message]) -> Message:
+    """Say in one clause what something waits for, as in `which {waits}`; of which there has to be one."""
+    return waits_in_one(conditions) or message("sentence.for", what=list(conditions))
 
 
 def _sent(argument: Argument) -> object:

@@ -29,6 +29,7 @@ describe('what is shown', () => {
 		['the connection is closed', stream, hearing, false, 'closed'],
 		['the controller is lost', { ...stream, controller: 'lost' } as const, hearing, true, 'controller'],
 		['a message is missing', { ...stream, gap: true }, hearing, true, 'gap'],
+		['its time is no number', stream, hear(hearing, 200, NaN), true, 'silent'],
 		['only one document came', stream, hear(SILENCE, 100, 100), true, 'connecting'],
 		['the only document was old when it came', stream, hear(SILENCE, 100, 100, OLD_AFTER + 1), true, 'silent'],
 		[

@@ -28,6 +28,6 @@ export function judge(stream: Told, hearing: Hearing, open: boolean, now: number
 	if (stream.view === null || age === null) return { live: false, age, cause: 'connecting' };
 	if (!hearing.proven && age <= OLD_AFTER) return { live: false, age, cause: 'connecting' };
 	if (stream.gap) return { live: false, age, cause: 'gap' };
-	if (age > OLD_AFTER) return { live: false, age, cause: 'silent' };
-	return { live: true, age };
+	// What cannot be compared is no sign of life.
+	return age <= OLD_AFTER ? { live: true, age } : { live: false, age, cause: 'silent' };
 }

@@ -9,11 +9,11 @@ from sequence_planner.controller.commands.command import handles
 from sequence_planner.controller.commands.recovery import StopOperatorPlan
 from sequence_planner.controller.recovery.explain import idle_since, waits_for
 from sequence_planner.controller.views.execution import last_operator_plan_view, operator_plan_view
-from sequence_planner.controller.views.wording import end_sentence, ended_text, title_text
+from sequence_planner.controller.views.wording import end_message, ended_text, title_text
 from sequence_planner.core.clock import Timestamp
 from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.vocabulary import Mode
-from sequence_planner.texts.message import Argument, message
+from sequence_planner.texts.message import awaiting, message
 
 START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
 END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
@@ -57,14 +57,14 @@ class OperatorPlans:
             return
         if ahead:
             title = execution.automaton.abilities[ahead[0].ability].title
-            waits = waits_for(execution, ahead[0].ability, self._feeds)
-            conditions: Argument = waits or message("errand-waits.nothing-known")
-            what = message("errand-waits.start", ability=title, seconds=START_WITHIN, conditions=conditions)
+            known = waits_for(execution, ahead[0].ability, self._feeds)
+            waits = awaiting(known or [message("errand-waits.nothing-known")])
+            what = message("errand-waits.start", ability=title, seconds=START_WITHIN, waits=waits)
         else:
-            condition = end_sentence(execution.automaton, operator_plan.goal, operator_plan.into_safe)
-            inside = [message("errand-waits.safe")] if operator_plan.into_safe else []
+            inside = [message("waits.safe")] if operator_plan.into_safe else []
+            goal = end_message(execution.automaton, operator_plan.goal, operator_plan.into_safe)
             what = message(
-                "errand-waits.end", seconds=END_WITHIN, conditions=[*inside, *([condition] if condition else [])]
+                "errand-waits.end", seconds=END_WITHIN, waits=awaiting(inside if goal is None else [*inside, goal])
             )
         yield ERRAND_WAITS.cause(
             "",

@@ -19,7 +19,7 @@ from sequence_planner.execution.plan_tracker import PlannedStart
 from sequence_planner.execution.timeouts import Late, overdue
 from sequence_planner.execution.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.language.syntax import Expression
-from sequence_planner.texts.message import Argument, Item, Message, Sentence, as_it_was, message, waits_in_one
+from sequence_planner.texts.message import Argument, Item, Message, Sentence, as_it_was, awaiting, message, waits_in_one
 
 # In words, what keeps a job that is worked from going on: the one place where that is said.
 #
@@ -184,7 +184,7 @@ class _Running:
         order = self._execution.plan.order
         if self._active and order.ahead and not order.running and self._around.next_waits:
             title = self._automaton.abilities[order.ahead[0].ability].title
-            yield message("waits.start", ability=title, conditions=self._around.next_waits)
+            yield message("waits.start", ability=title, waits=awaiting(self._around.next_waits))
 
     def _goals(self) -> Iterator[Message]:
         """Yield what is still to come true, where nothing is to be started for it."""
@@ -243,7 +243,7 @@ def why_idle(execution: Executor, operation: str) -> Message | None:
         return message("waits.job-resumed", job=job.title)
     if job.state is JobState.WAITING:
         conditions = waits_for(execution, job) or [message("waits.next-tick")]
-        return message("waits.job-begins", job=job.title, conditions=conditions)
+        return message("waits.job-begins", job=job.title, waits=awaiting(conditions))
     before = [_titled(execution, each) for each in _awaited(jobs, job, operation, automaton)]
     return message("waits.job-before", job=job.title, operations=before)
 

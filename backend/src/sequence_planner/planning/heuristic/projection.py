@@ -332,7 +332,7 @@ _LONGER, _MORE = 2, 4
 _MOST, _FEW = 0.7, 50
 
 
-class Outline(Immutable):
+class SketchedPlan(Immutable):
     """A relaxed plan of `task`, its layers, and the variables that it writes."""
 
     task: PlanningTask
@@ -383,7 +383,7 @@ class Projection:
         self._work = None
         return Finding(plan)
 
-    def outline(self, task: PlanningTask) -> Outline | None:
+    def outline(self, task: PlanningTask) -> SketchedPlan | None:
         """None if there is no relaxed plan of `task`, or this is no engine for it.
 
         The plan is made of what seems to matter if possible.
@@ -393,10 +393,10 @@ class Projection:
             guess = RelaxedPlan(self._automaton, task.state, moves)
             relaxed = guess.towards(goals)
             if relaxed is not None:
-                return Outline(task, relaxed, guess.layers, self._written(relaxed))
+                return SketchedPlan(task, relaxed, guess.layers, self._written(relaxed))
         return None
 
-    def take_up(self, outline: Outline) -> None:
+    def take_up(self, outline: SketchedPlan) -> None:
         """Begin to work on its task, which is asked for next."""
         longest = min(outline.task.bound, _LONGER * outline.layers + _MORE)
         self._work = _Work(outline.task, longest, self._parts(outline))
@@ -423,7 +423,7 @@ class Projection:
         inside = self._supervisor.safe.includes(state)
         return Unrolling(part, self._supervisor, order, unknown, inside, frozen, oracles=frozenset(), budget=budget)
 
-    def _parts(self, outline: Outline) -> Iterator[Automaton]:
+    def _parts(self, outline: SketchedPlan) -> Iterator[Automaton]:
         """The parts to be tried, from the smallest on: of the first only what serves the relaxed plan."""
         task = outline.task
         serving: list[str] | None = [_unit(move) for move in outline.relaxed]
@@ -439,7 +439,7 @@ class Projection:
         yield self._relevance.towards(goals, task.state, task.circumstances)
         yield self._relevance.counted_on(task.state, task.circumstances)
 
-    def _loosened(self, outline: Outline) -> Iterator[frozenset[str]]:
+    def _loosened(self, outline: SketchedPlan) -> Iterator[frozenset[str]]:
         """Sets of variables to be let loose, each larger than the one before.
 
         First those that the relaxed plan writes, then those that it reads, and at last all that transitions touch which
@@ -500,7 +500,7 @@ class _GoalWork:
     """The work done on a task, from where its runs begin: the plans up to now for its goals, in their order."""
 
     def __init__(
-        self, first: Outline, task: PlanningTask, goals: Goals, begun: ReferenceRun, order: CausalOrder
+        self, first: SketchedPlan, task: PlanningTask, goals: Goals, begun: ReferenceRun, order: CausalOrder
     ) -> None:
         self.task = task
         self.goals = goals  # still missing
@@ -547,7 +547,7 @@ class GoalByGoal:
 
     def _begun(self, task: PlanningTask) -> _GoalWork | None:
         """Nothing done yet, goals that seem to take longest first; None if they seem to have too much in common."""
-        outlines: list[Outline] = []
+        outlines: list[SketchedPlan] = []
         for goal in task.goals:
             outline = self._projection.outline(replace(task, goals=(goal,)))
             if outline is None:

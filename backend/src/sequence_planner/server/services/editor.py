@@ -69,6 +69,7 @@ class Workshop(ReadableWorkshop):
         self._revisions = revisions
         self._stepping = DraftProcess("stepping.worker")
         self._simulating = DraftProcess("simulating.worker", rests_after=TRIED_FOR)
+        self._outlining = DraftProcess("outline.worker")
         self._spaces = DraftProcess("state_space.worker", rests_after=TRIED_FOR)
         self._comparing = ComparisonDesk(model)
         self._marks: tuple[Draft, dict[str, FileMark], int] | None = None  # and in how many places it differs
@@ -89,7 +90,7 @@ class Workshop(ReadableWorkshop):
         """End what is being checked and answered."""
         await super().close()
         await self._comparing.close()
-        for each in (self._stepping, self._simulating, self._spaces):
+        for each in (self._stepping, self._simulating, self._outlining, self._spaces):
             each.close()
 
     async def _opened(self) -> Draft:
@@ -160,6 +161,15 @@ class Workshop(ReadableWorkshop):
             return await self._proposed(draft, "edited", edits, f"{part.partition(':')[2]} is called {name}")
 
         return (await self._changed(propose, by))[1]
+
+    async def outlined(self, outline: object) -> str:
+        """Return what an `Outline` becomes, for a station that is called as this one, as JSON of an `OutlineView`.
+
+        Raises `WorkerError`.
+        """
+        found = await self._outlining.ask((await self.open()).files, "outlined", outline)
+        assert isinstance(found, str)
+        return found
 
     async def stepped(
         self, present: Mapping[str, object], steps: Sequence[object], *, follow: bool, until: str | None

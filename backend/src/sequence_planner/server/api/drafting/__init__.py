@@ -1,0 +1,1 @@
+"""Routes by which something new comes to the draft: topics of the network, and stations from outlines."""
