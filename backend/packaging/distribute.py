@@ -1,4 +1,6 @@
-"""Makes an sdist and, of that, a wheel, both with the built page: python packaging/distribute.py PAGE FOLDER."""
+"""Makes an sdist and, of that, a wheel, both with the built page and the example stations:
+python packaging/distribute.py PAGE FOLDER.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from setuptools import build_meta
 
 BACKEND = Path(__file__).resolve().parents[1]
 README = '[project]\nreadme = "README.md"\n'  # which lies beside the project only where it is distributed
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "page")
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "page", "models")
 
 
 def distribute(page: Path, to: Path) -> list[Path]:
@@ -26,6 +28,7 @@ def distribute(page: Path, to: Path) -> list[Path]:
         staged = Path(folder) / "staged"
         shutil.copytree(BACKEND / "src", staged / "src", ignore=LEFT_OUT)
         shutil.copytree(page, staged / "src" / "sequence_planner" / "page")
+        shutil.copytree(BACKEND.parent / "models", staged / "src" / "sequence_planner" / "models", ignore=LEFT_OUT)
         project = (BACKEND / "pyproject.toml").read_text(encoding="utf-8")
         (staged / "pyproject.toml").write_text(project.replace("[project]\n", README, 1), encoding="utf-8")
         shutil.copy(BACKEND.parent / "README.md", staged)

@@ -96,6 +96,11 @@ def test_nobody_is_told_where_nobody_asks() -> None:
     ServiceManager({}).ready()
 
 
+def _files_below(folder: Path) -> list[str]:
+    found = (each.relative_to(folder) for each in folder.rglob("*") if each.is_file())
+    return [each.as_posix() for each in found if "__pycache__" not in each.parts]
+
+
 @pytest.mark.skipif(not (PAGE / "index.html").is_file(), reason="the page is not built: make page")
 def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
     script = BACKEND / "packaging" / "distribute.py"
@@ -114,16 +119,19 @@ def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
     built = {f"sequence_planner/page/{each.relative_to(page).as_posix()}" for each in page.rglob("*") if each.is_file()}
     templates = source / "sequence_planner" / "cli" / "templates"
     shown = {each.relative_to(source).as_posix() for each in templates.rglob("*") if each.is_file()}
-    assert {"sequence_planner/py.typed"} | modules | built | shown <= names
+    models = REPOSITORY / "models"
+    examples = {f"sequence_planner/models/{path}" for path in _files_below(models)}
+    assert {"sequence_planner/py.typed"} | modules | built | shown | examples <= names
     assert any("migrations/versions/v0001" in name for name in modules)
     with tarfile.open(sdist) as archive_of_sources:
         inside = {name.partition("/")[2].removeprefix("src/") for name in archive_of_sources.getnames()}
-    assert built | modules | shown <= inside
-    # What was installed finds its own page and schemas, and not those of the repository.
+    assert built | modules | shown | examples <= inside
+    # What was installed finds its own page, schemas and examples, and not those of the repository.
     code = (
         "from pathlib import Path; import sys; from sequence_planner import launcher; "
         "from sequence_planner.model.json_schema import write_schemas; "
-        "write_schemas(Path(sys.argv[1])); print(launcher.PAGE)"
+        "from sequence_planner.model.examples.library import example_folders; "
+        "write_schemas(Path(sys.argv[1])); print(launcher.PAGE, *example_folders().values(), sep='\\n')"
     )
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "installed")}
     printed = subprocess.run(
@@ -135,5 +143,8 @@ def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
         text=True,
         timeout=60,
     ).stdout
-    assert Path(printed.strip()) == tmp_path / "installed" / "sequence_planner" / "page"
+    found, *folders = map(Path, printed.split("\n")[:-1])
+    assert found == tmp_path / "installed" / "sequence_planner" / "page"
+    installed = tmp_path / "installed" / "sequence_planner" / "models"
+    assert folders == [installed / path.parent.name for path in sorted(models.glob("*/station.yaml"))]
     assert sorted(each.name for each in (tmp_path / "schemas").iterdir())

@@ -16,8 +16,10 @@ import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
+from sequence_planner.model.files import read_files
 from support.commands import as_json, command
 from support.network import DOMAIN
+from support.places import MODELS
 from support.station import signed_in
 
 
@@ -78,6 +80,34 @@ def test_an_empty_station_is_there_to_be_built(tmp_path: Path) -> None:
     code, document = as_json("check", folder)
     assert (code, document["findings"]) == (0, [])
     assert command("new", folder, "--empty")[0] == 2
+
+
+@pytest.mark.parametrize("name", sorted(path.parent.name for path in MODELS.glob("*/station.yaml")))
+def test_an_example_is_copied_under_the_name_of_the_folder(tmp_path: Path, name: str) -> None:
+    folder = tmp_path / "north gate"
+    code, out, err = command("new", folder, "--example", name)
+    assert (code, err) == (0, "")
+    assert f"{folder}/station.yaml" in out.splitlines()
+    copied, example = read_files(folder), read_files(MODELS / name)
+    assert copied.keys() == example.keys()
+    assert "\nname: north_gate\n" in copied["station.yaml"]
+    for path, text in copied.items():
+        first, _, rest = text.partition("\n")
+        if "$schema=" in first:  # an editor finds what it completes by
+            assert ((folder / path).parent / first.partition("$schema=")[2]).is_file(), path
+        if path != "station.yaml":
+            assert rest == example[path].partition("\n")[2], path
+    code, document = as_json("check", folder)
+    assert [each for each in document["findings"] if each["severity"] == "error"] == []
+
+
+def test_an_unknown_example_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
+    code, out, err = command("new", tmp_path / "gate", "--example", "nowhere")
+    assert (code, out) == (2, "")
+    assert "there is no example 'nowhere': take one of bolt_tightening, docking_agv" in err
+    assert not (tmp_path / "gate").exists()
+    assert command("new", tmp_path / "gate", "--example", "../models/single_bolt")[0] == 2
+    assert command("new", tmp_path / "gate", "--example", "single_bolt", "--empty")[0] == 2
 
 
 def test_nothing_is_overwritten(gate: Path) -> None:

@@ -102,6 +102,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/model/folds": ("viewer", "read"),
     "GET /api/v1/model/mimic": ("viewer", "read"),
     "GET /api/v1/model/operations": ("viewer", "read"),
+    "POST /api/v1/model/begin": ("engineer", None),
+    "GET /api/v1/examples": ("viewer", "read"),
     "GET /api/v1/model/outlines": ("viewer", "read"),
     "POST /api/v1/model/undo": ("engineer", None),
     "POST /api/v1/model/redo": ("engineer", None),

@@ -16,6 +16,7 @@ export type Address = Filled<keyof paths & string> | `${Filled<keyof paths & str
 type Schemas = components['schemas'];
 
 export type DraftChanges = Schemas['DraftChangesView'];
+export type ExampleStations = Schemas['ExamplesView'];
 export type StationView = Schemas['StationView'];
 export type Resource = Schemas['ResourceView'];
 export type Variable = Schemas['VariableView'];

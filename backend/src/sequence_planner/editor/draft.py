@@ -373,6 +373,15 @@ def editing(draft: Draft, edits: Sequence[Edit], title: str) -> DraftProposal:
     return DraftProposal(_changed(draft.files, applied(draft.files, edits)), ChangeKind.EDIT, None, title)
 
 
+def replacing(draft: Draft, files: Files, title: str) -> DraftProposal:
+    """Let these be all files of the draft. Raises `EditError`."""
+    for path, text in files.items():
+        check_path(path)
+        check_text(path, text)
+    check_size(files)
+    return DraftProposal(_changed(draft.files, files), ChangeKind.EDIT, None, title)
+
+
 def undoing(draft: Draft, of: DraftChange, differences: Differences) -> DraftProposal:
     """Take a change back, wherever others have not changed the same lines since. Raises `EditError`."""
     edits = [WriteText(file=path, was=after, text=before) for path, (before, after) in differences.items()]

@@ -15,6 +15,7 @@ from sequence_planner.editor.processes import encoded, read_body
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.revisions import Revisions, tree_of
 from sequence_planner.editor.schemas.draft import FileReader
+from sequence_planner.model.examples.library import renamed_station, station_name
 from sequence_planner.model.files import Files
 from sequence_planner.process.budget import Budget
 
@@ -47,6 +48,11 @@ class EditingBench:
     def edited(self, edits: Sequence[Edit], title: str) -> DraftProposal:
         """Return what becomes of it by edits."""
         return drafts.editing(self._draft, edits, title)
+
+    def begun_with(self, example: Files, title: str) -> DraftProposal:
+        """Return what becomes of it where it is begun with an example: the name of the station stays."""
+        name = station_name(self._files)
+        return drafts.replacing(self._draft, example if name is None else renamed_station(example, name), title)
 
     def undone(self, of: DraftChange, differences: Differences) -> DraftProposal:
         """Return what becomes of it without a change."""
@@ -87,6 +93,7 @@ _ANSWERS: Mapping[str, Callable[..., object]] = {
     for each in (
         EditingBench.requested,
         EditingBench.edited,
+        EditingBench.begun_with,
         EditingBench.undone,
         EditingBench.redone,
         EditingBench.taken_up,

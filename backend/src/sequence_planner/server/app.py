@@ -44,7 +44,7 @@ from sequence_planner.server.openapi_document import describe
 from sequence_planner.server.routers import ROUTERS
 from sequence_planner.server.services.backups import BackupService
 from sequence_planner.server.services.deployments import DeploymentService
-from sequence_planner.server.services.editor import Workshop
+from sequence_planner.server.services.drafts import furnish
 from sequence_planner.server.services.identity import IdentityService, Sweeper
 from sequence_planner.server.services.orders import OrderService
 from sequence_planner.server.services.retention import RetentionService
@@ -113,7 +113,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.history = looking_back = (
             None if folder is None else HistoryProcess(folder, settings.database, archives)
         )
-        app.state.workshop = shop = Workshop.for_model(office, settings)
+        shop, examples = furnish(office, settings)
+        app.state.workshop, app.state.examples = shop, examples
         app.state.deployments = deployments = None if shop is None else DeploymentService(shop, controller)
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
@@ -134,6 +135,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
             await asyncio.gather(*running, return_exceptions=True)
             if looking_back is not None:
                 looking_back.close()
+            await examples.close()
             if deployments is not None:
                 await deployments.close()
             await run_in_threadpool(office.close)

@@ -52,6 +52,7 @@ ROUTERS: Final = (
     history.events_router,
     job_orders.capabilities_router,
     model.model_router,
+    model.examples_router,
     outlines.router,
     model.language_router,
     model.draft_pipelines_router,

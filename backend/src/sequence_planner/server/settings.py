@@ -116,7 +116,8 @@ class Settings(Endpoint):
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
     is the URL of where identity and journal are kept; `start` is how the station is run. With `demonstration` one may
     be opened without signing in, with `provider` people may sign in there. `webhooks` is where events may be sent to,
-    `backups` how they are kept, and `retention` how long all else is.
+    `backups` how they are kept, and `retention` how long all else is. `examples` is a folder of example stations in
+    place of those that come with the program.
     """
 
     controller_socket: Path
@@ -131,6 +132,7 @@ class Settings(Endpoint):
     webhooks: Targets = field(default_factory=Targets)
     backups: Keeping = field(default_factory=Keeping)
     retention: Retention = field(default_factory=Retention)
+    examples: Path | None = None
 
     @property
     def revisions(self) -> Path | None:

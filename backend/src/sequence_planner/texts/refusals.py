@@ -335,6 +335,12 @@ REFUSALS: Final[dict[str, str]] = {
     "refused.not-folded": "The state space cannot be shown like that",
     "refused.no-revision": "There is no such revision",
     "refused.no-revision.look": "Look at the revisions that there are.",
+    "refused.no-example": "There is no such example",
+    "refused.no-example.look": "There is no example station “{name}”. Look at those that there are.",
+    "refused.example-unchanged": "An example is only looked at",
+    "refused.example-unchanged.begin": (
+        "This cannot be done with an example station. Begin with it: then it is your own draft."
+    ),
     # The draft, what is kept, backups and the past.
     "refused.no-model": "The model is not known",
     "refused.no-model.start": (

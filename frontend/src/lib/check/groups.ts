@@ -1,5 +1,6 @@
 /** Findings as they are listed: the gravest first, or in groups of one kind, or of one file. */
 import type { Finding, ModelCheck } from '#lib/contract.ts';
+import { placeIn } from '#lib/model/address.ts';
 import { isError } from '#lib/workshop/verdict.ts';
 
 export type By = 'severity' | 'kind' | 'file';
@@ -55,14 +56,15 @@ export function placeOf({ file, line, column }: Pick<Finding, 'file' | 'line' | 
 	return `${file}:${line}:${column}`;
 }
 
-/** Where the model is edited at that place. */
-export function addressOf({ file, line }: Pick<Finding, 'file' | 'line'>): string {
-	return `/model?${new URLSearchParams({ file, line: String(line) })}`;
+/** Where the model, or that of an example, is shown at that place. */
+export function addressOf({ file, line }: Pick<Finding, 'file' | 'line'>, example: string | null = null): string {
+	return placeIn(example, { file, line });
 }
 
 export type RunAddress = `/api/v1/model/check/findings/${string}/run?${string}`;
 
-/** Where the server tells of the run that shows a finding of this check. */
-export function runOf({ number, findings }: Pick<ModelCheck, 'number' | 'findings'>, finding: Finding): RunAddress {
-	return `/api/v1/model/check/findings/${findings.indexOf(finding)}/run?number=${number}`;
+/** Where the server tells of the run that shows a finding of this check, which may be that of an example. */
+export function runOf({ number, findings }: Pick<ModelCheck, 'number' | 'findings'>, finding: Finding, example: string | null = null): RunAddress {
+	const more = example === null ? '' : `&${new URLSearchParams({ example })}`;
+	return `/api/v1/model/check/findings/${findings.indexOf(finding)}/run?number=${number}${more}`;
 }

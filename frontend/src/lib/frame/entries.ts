@@ -63,6 +63,7 @@ export function entriesOf(known: Known): Entry[] {
 	return [
 		...acts(known),
 		...pages.map(({ title, address }): Entry => ({ group: 'page', text: say().pages[title], name: title, page: title, does: { to: address } })),
+		{ group: 'page', text: say().frame.palette.examples, name: 'examples', page: 'model', does: { to: '/model?examples=on' } },
 		...byUrgency(view?.alarms ?? {}).map(
 			([key, alarm]): Entry => ({ group: 'alarm', text: wordsOf(alarm).text, name: key, does: { to: '/alarms' } })
 		),

@@ -12,6 +12,9 @@ import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';
 import { holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 
+/** What of the station a picture shows. */
+export type Pictured = Pick<StationView, 'abilities' | 'alarms' | 'operations' | 'resources' | 'tasks' | 'variables'>;
+
 export interface Now {
 	readonly text: string;
 	/** `doubt`: it is not known. */
@@ -46,7 +49,7 @@ export interface Found {
 }
 
 /** What a thing does or is. */
-export function nowOf(symbol: MimicSymbol, view: StationView, found: Found, language: string): Now {
+export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, language: string): Now {
 	const texts = say().mimic;
 	const { variables, tasks } = view;
 	const resource = symbol.resource;
@@ -72,7 +75,7 @@ export function nowOf(symbol: MimicSymbol, view: StationView, found: Found, lang
 	return { text: capital(texts.is(nameOfVariable(key, resource), told)), tone: value === null ? 'doubt' : tone };
 }
 
-function whereNow(track: MimicTrack, view: StationView, active: boolean, language: string): Now {
+function whereNow(track: MimicTrack, view: Pictured, active: boolean, language: string): Now {
 	const texts = say().mimic;
 	const { variables } = view;
 	const at = whereabouts(track, variables, null);
@@ -88,7 +91,7 @@ function whereNow(track: MimicTrack, view: StationView, active: boolean, languag
 }
 
 /** What is done at a stop: by a device there, or for the operation that is about it while a device works. */
-function workAt(stop: string, { abilities, operations }: StationView): string | null {
+function workAt(stop: string, { abilities, operations }: Pictured): string | null {
 	const working = Object.entries(abilities).filter(([, ability]) => !ability.human && runs(ability));
 	const own = working.find(([name]) => valuesIn(name).includes(stop));
 	if (own !== undefined) return own[1].title;
@@ -109,7 +112,7 @@ export function keysOf(variables: Variables): ReadonlyMap<string, string> {
 }
 
 /** The values in brackets behind the names of what runs: what is being worked on, by a person or by a device. */
-export function inWork(view: StationView): ReadonlyMap<string, 'person' | 'device'> {
+export function inWork(view: Pick<Pictured, 'abilities'>): ReadonlyMap<string, 'person' | 'device'> {
 	const found = new Map<string, 'person' | 'device'>();
 	for (const [name, ability] of Object.entries(view.abilities))
 		if (ability.executing === true || ability.running_since !== null)

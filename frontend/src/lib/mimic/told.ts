@@ -1,9 +1,9 @@
 /** All that the picture tells of its things, once for the drawing, the rows and the table. */
-import type { Mimic, MimicSymbol, Priority, StationView } from '#lib/contract.ts';
+import type { Mimic, MimicSymbol, Priority } from '#lib/contract.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
-import { keysOf, nameOf, nowOf, partValue, type Now } from './describe.ts';
+import { keysOf, nameOf, nowOf, partValue, type Now, type Pictured } from './describe.ts';
 import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
 
 export interface Told {
@@ -15,7 +15,7 @@ export interface Told {
 	readonly alarm: Priority | null;
 }
 
-export function toldOf(mimic: Mimic, view: StationView, language: string): Told[] {
+export function toldOf(mimic: Mimic, view: Pictured, language: string): Told[] {
 	const found = { doing: doingOf(view.abilities), keys: keysOf(view.variables) };
 	return mimic.symbols.map((symbol) => {
 		const now = nowOf(symbol, view, found, language);
@@ -29,7 +29,7 @@ export function toldOf(mimic: Mimic, view: StationView, language: string): Told[
 	});
 }
 
-function details(symbol: MimicSymbol, view: StationView, language: string): string[] {
+function details(symbol: MimicSymbol, view: Pictured, language: string): string[] {
 	const texts = say().mimic;
 	const { variables } = view;
 	const level = levelOf(symbol, variables);

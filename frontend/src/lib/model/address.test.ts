@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest';
-import { addressOf, besideText, lookedAt } from './address.ts';
+import { addressOf, besideExamples, besideText, lookedAt } from './address.ts';
 
 const at = (query: string) => lookedAt(new URLSearchParams(query));
-const USUAL = { entry: 'station.yaml', place: null, ability: null, graph: false, text: true, panel: null };
+const USUAL = { example: null, entry: 'station.yaml', place: null, ability: null, graph: false, text: true, panel: null, examples: false };
 
 test('what is looked at stands in the address', () => {
 	expect(at('')).toEqual(USUAL);
@@ -27,4 +27,10 @@ test('an address can ask for one of those below the form', () => {
 test('the file is shown or hidden whatever is looked at', () => {
 	expect(besideText(new URLSearchParams('ability=robot.stop'), false)).toBe('/model?ability=robot.stop&text=off');
 	expect(besideText(new URLSearchParams('ability=robot.stop&text=off'), true)).toBe('/model?ability=robot.stop');
+});
+
+test('the example stations are asked for and put away whatever is looked at', () => {
+	expect(besideExamples(new URLSearchParams('entry=a'), true)).toBe('/model?entry=a&examples=on');
+	expect(at('entry=a&examples=on').examples).toBe(true);
+	expect(besideExamples(new URLSearchParams('examples=on'), false)).toBe('/model');
 });

@@ -8,7 +8,7 @@ import type { Draft } from './draft.svelte.ts';
 import { fixed } from './fixing.ts';
 import { countsOf, foundIn } from './found.ts';
 import type { Spot } from './language.ts';
-import type { PanelName } from './panels.ts';
+import { PANELS, type PanelName } from './panels.ts';
 import { pathAt, placesOf } from './places.ts';
 import { inherited, layersOf } from './types.ts';
 import { lookupOf, nodeAt, partOf, STATION, treeOf, type Node } from './tree.ts';
@@ -126,8 +126,14 @@ export class Bench {
 		return null;
 	}
 
+	/** What can be told below the form: an example is not run, and nobody changes it. */
+	get panels(): readonly PanelName[] {
+		return this.draft.example === null ? PANELS : PANELS.filter((panel) => panel !== 'tests' && panel !== 'changes');
+	}
+
 	/** Shows something of the draft below the form, with room to see it. */
 	show(panel: PanelName): void {
+		if (!this.panels.includes(panel)) return;
 		this.panel = panel;
 		this.asked += 1;
 		this.below = Math.max(this.below, LEAST);

@@ -1,16 +1,18 @@
 /**
- * The draft of the model as this page knows it: one for all engineers of the station.
+ * The draft of the model as this page knows it: one for all engineers of the station; or an example, which is read in the
+ * same way and never changes.
  *
  * The stream says what is new; a file is read again when its digest is another one. What this page does itself comes back
  * with the answer, and counts at once.
  */
-import type { Address, DraftChange,
+import type { DraftChange,
 	DraftView,
 	Edit,
 	FileMark,
 	FilesView,
 	FileView,
 	ModelCheck } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { ENDED } from '#lib/stream/connection.ts';
@@ -33,8 +35,10 @@ function notLast(): Refusal {
 }
 
 export class Draft {
+	/** The example station that it is; null for the draft of the station. */
+	readonly example: string | null;
 	/** What the stream says. */
-	readonly seen = new WorkshopSeen();
+	readonly seen: WorkshopSeen;
 	files = $state.raw<Readonly<Record<string, FileView>>>({});
 	/** What was last read of each file, also where its text cannot be read now. */
 	contents = $state.raw<Readonly<Record<string, Json | undefined>>>({});
@@ -51,6 +55,11 @@ export class Draft {
 	readonly #read = new Map<string, number>();
 	#reading = false;
 	#asked = 0;
+
+	constructor(example: string | null = null) {
+		this.example = example;
+		this.seen = new WorkshopSeen(example);
+	}
 
 	/** Connects to the server's stream; the result disconnects. `ended` is called where the session has. */
 	attach(ended: () => void): () => void {
@@ -202,9 +211,8 @@ export class Draft {
 	}
 
 	async #load(paths: readonly string[] | null): Promise<boolean> {
-		const query = new URLSearchParams((paths ?? []).map((path) => ['path', path]));
-		const address: Address = paths === null ? `${ADDRESS}/files` : `${ADDRESS}/files?${query}`;
-		const answer = await request<FilesView>('GET', address, { patience: PATIENCE });
+		const named = (paths ?? []).map((path): [string, string] => ['path', path]);
+		const answer = await request<FilesView>('GET', askedOf(`${ADDRESS}/files`, this.example, named), { patience: PATIENCE });
 		if (answer.ok) this.#take(answer.value);
 		else this.#refusal = answer.refusal;
 		return answer.ok;
@@ -231,7 +239,7 @@ export class Draft {
 	/** Who did what, and what can be undone. */
 	async #describe(): Promise<void> {
 		const asked = ++this.#asked;
-		const answer = await request<DraftView>('GET', ADDRESS);
+		const answer = await request<DraftView>('GET', askedOf(ADDRESS, this.example));
 		if (asked !== this.#asked) return;
 		if (!answer.ok) {
 			this.#refusal = answer.refusal;

@@ -4,12 +4,15 @@
  * It counts the characters of a text, where this page counts units of UTF-16.
  */
 import type { Message, Value } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import { request } from '#lib/rest/request.ts';
 import { told } from '#lib/text/message.ts';
 import type { Path } from './content.ts';
 
 /** Where an expression stands. */
 export interface Spot {
+	/** The example that it stands in; nothing for the draft. */
+	readonly example?: string | null;
 	readonly file: string;
 	readonly path: Path;
 }
@@ -70,30 +73,31 @@ interface Problem extends Wrong {
 /** Milliseconds in which a text is looked at, the first time after a change of a large model. */
 const PATIENCE = 20_000;
 
-async function ask<Value>(what: 'check' | 'completion' | 'format' | 'hover', body: object): Promise<Value | null> {
-	const answer = await request<Value>('POST', `/api/v1/model/language/${what}`, { body, patience: PATIENCE });
+async function ask<Value>(what: 'check' | 'completion' | 'format' | 'hover', { example = null, file, path }: Spot, asked: object): Promise<Value | null> {
+	const body = { file, path, ...asked };
+	const answer = await request<Value>('POST', askedOf(`/api/v1/model/language/${what}`, example), { body, patience: PATIENCE });
 	return answer.ok ? answer.value : null;
 }
 
 /** What is wrong with it; null where the server did not say. */
-export async function wrongIn({ file, path }: Spot, text: string): Promise<readonly Wrong[] | null> {
-	const answer = await ask<{ problems: readonly Problem[] }>('check', { file, path, text });
+export async function wrongIn(spot: Spot, text: string): Promise<readonly Wrong[] | null> {
+	const answer = await ask<{ problems: readonly Problem[] }>('check', spot, { text });
 	return answer === null ? null : answer.problems.map((each) => ({ ...here(text, each), message: told(each.said, each.message) }));
 }
 
 /** What could stand at `offset`; null where nothing is known. */
-export async function completionOf({ file, path }: Spot, text: string, offset: number): Promise<Completion | null> {
-	const answer = await ask<Completion>('completion', { file, path, text, offset: counted(text, offset) });
+export async function completionOf(spot: Spot, text: string, offset: number): Promise<Completion | null> {
+	const answer = await ask<Completion>('completion', spot, { text, offset: counted(text, offset) });
 	return answer === null ? null : here(text, answer);
 }
 
 /** What is named at `offset`; null where nothing is. */
-export async function hoverOf({ file, path }: Spot, text: string, offset: number): Promise<Hover | null> {
-	const answer = await ask<{ hover: Hover | null }>('hover', { file, path, text, offset: counted(text, offset) });
+export async function hoverOf(spot: Spot, text: string, offset: number): Promise<Hover | null> {
+	const answer = await ask<{ hover: Hover | null }>('hover', spot, { text, offset: counted(text, offset) });
 	return answer === null || answer.hover === null ? null : here(text, answer.hover);
 }
 
 /** The same in its usual form; null where the server did not say. */
-export async function formatted({ file, path }: Spot, text: string): Promise<string | null> {
-	return (await ask<{ text: string }>('format', { file, path, text }))?.text ?? null;
+export async function formatted(spot: Spot, text: string): Promise<string | null> {
+	return (await ask<{ text: string }>('format', spot, { text }))?.text ?? null;
 }

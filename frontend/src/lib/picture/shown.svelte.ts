@@ -3,6 +3,7 @@
  * has drawn it anew.
  */
 import type { DraftPicture, Mimic } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import type { Draft } from '#lib/model/draft.svelte.ts';
 import { PICTURE } from '#lib/model/tree.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
@@ -60,7 +61,7 @@ export class ShownPicture {
 	/** Asks for it. One of another file than the page knows is left: its news is on its way. */
 	async again(): Promise<void> {
 		const asked = ++this.#asked;
-		const answer = await request<DraftPicture>('GET', '/api/v1/model/mimic', { patience: PATIENCE });
+		const answer = await request<DraftPicture>('GET', askedOf('/api/v1/model/mimic', this.#draft.example), { patience: PATIENCE });
 		if (asked !== this.#asked) return;
 		this.refusal = answer.ok ? null : answer.refusal;
 		if (!answer.ok) return;

@@ -10,7 +10,7 @@ const part = fc.oneof(
 
 test('an address leads to what it was made for', () => {
 	fc.assert(
-		fc.property(fc.record({ pipeline: fc.string({ minLength: 1 }), part }), (looked: Looked) => {
+		fc.property(fc.record({ pipeline: fc.string({ minLength: 1 }), part, example: fc.option(fc.string({ minLength: 1 })) }), (looked: Looked) => {
 			const address = addressOf(looked);
 			expect(lookedAt(new URL(address, 'http://station').searchParams)).toEqual(looked);
 		})
@@ -18,7 +18,7 @@ test('an address leads to what it was made for', () => {
 });
 
 test.each(['?at=stage.1', '?of=&at=stage.1'])('without a pipeline, %s means all of them', (query) => {
-	expect(lookedAt(new URLSearchParams(query))).toEqual({ pipeline: null, part: null });
+	expect(lookedAt(new URLSearchParams(query))).toEqual({ pipeline: null, part: null, example: null });
 });
 
 test.each(['stage.x', 'stage', 'edge.-1', 'stage.1.5', 'else.1'])('%s is no part', (at) => {

@@ -1,4 +1,5 @@
 /** What a person looks at on the page Pipelines, as it stands in its address. */
+import { exampleIn, shownAt } from '#lib/examples/address.ts';
 
 /** A part of a pipeline: a stage or an edge by its place, or a variable. */
 export type PartAt =
@@ -10,6 +11,8 @@ export interface Looked {
 	readonly pipeline: string | null;
 	/** What of it is chosen; null for the pipeline as a whole. */
 	readonly part: PartAt | null;
+	/** The example station that is looked at; null for the draft. */
+	readonly example: string | null;
 }
 
 function partOf(written: string | null): PartAt | null {
@@ -21,12 +24,17 @@ function partOf(written: string | null): PartAt | null {
 
 export function lookedAt(query: Pick<URLSearchParams, 'get'>): Looked {
 	const pipeline = query.get('of') || null;
-	return { pipeline, part: pipeline === null ? null : partOf(query.get('at')) };
+	return { pipeline, part: pipeline === null ? null : partOf(query.get('at')), example: exampleIn(query) };
 }
 
-export function addressOf({ pipeline, part = null }: { readonly pipeline: string | null; readonly part?: PartAt | null }): string {
-	if (pipeline === null) return '/pipelines';
-	const query = new URLSearchParams({ of: pipeline });
-	if (part) query.set('at', part.kind === 'variable' ? `variable.${part.name}` : `${part.kind}.${part.at}`);
-	return `/pipelines?${query}`;
+interface Wanted {
+	readonly pipeline: string | null;
+	readonly part?: PartAt | null;
+	readonly example?: string | null;
+}
+
+export function addressOf({ pipeline, part = null, example = null }: Wanted): string {
+	if (pipeline === null) return shownAt('/pipelines', example);
+	const at = part && (part.kind === 'variable' ? `variable.${part.name}` : `${part.kind}.${part.at}`);
+	return shownAt('/pipelines', example, { of: pipeline, ...(at !== null && { at }) });
 }

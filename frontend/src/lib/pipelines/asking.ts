@@ -1,5 +1,6 @@
-/** What the server is asked about the pipelines of the draft. */
+/** What the server is asked about the pipelines of the draft, or of an example. */
 import type { PipelineFits, PipelinePreview, PipelineRuns, RecordedExample } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import { request, type Answer } from '#lib/rest/request.ts';
 
 const ADDRESS = '/api/v1/model/pipelines';
@@ -18,13 +19,13 @@ export function previewed(edits: readonly object[]): Promise<Answer<PipelinePrev
 }
 
 /** How the examples of a pipeline end. */
-export function examplesOf(pipeline: string): Promise<Answer<PipelineRuns>> {
-	return request('POST', `${ADDRESS}/examples`, { body: { pipeline }, patience: PATIENCE });
+export function examplesOf(pipeline: string, example: string | null): Promise<Answer<PipelineRuns>> {
+	return request('POST', askedOf(`${ADDRESS}/examples`, example), { body: { pipeline }, patience: PATIENCE });
 }
 
 /** What comes of one message, or of what stands for it. */
-export function triedWith(pipeline: string, given: object): Promise<Answer<PipelineRuns>> {
-	return request('POST', `${ADDRESS}/test-runs`, { body: { pipeline, steps: [{ at: 0, given }] }, patience: PATIENCE });
+export function triedWith(pipeline: string, given: object, example: string | null): Promise<Answer<PipelineRuns>> {
+	return request('POST', askedOf(`${ADDRESS}/test-runs`, example), { body: { pipeline, steps: [{ at: 0, given }] }, patience: PATIENCE });
 }
 
 /** Makes an example of what the station has heard or said last. */

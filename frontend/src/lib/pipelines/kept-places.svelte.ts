@@ -6,13 +6,13 @@ const MOST = 100;
 
 type Kept = Record<string, Record<string, readonly [x: number, y: number]>>;
 
-/** Places in rem, by box and picture, of one person. */
+/** Places in rem, by box and picture, of one person, in the pipelines of the draft or of an example. */
 export class KeptPlaces {
 	readonly #key: string;
 	#kept = $state.raw<Kept>({});
 
-	constructor(person: string) {
-		this.#key = `pipelines-places:${person}`;
+	constructor(person: string, example: string | null = null) {
+		this.#key = `pipelines-places:${person}${example === null ? '' : `:${example}`}`;
 		try {
 			const kept: unknown = JSON.parse(localStorage.getItem(this.#key) ?? '{}');
 			if (typeof kept === 'object' && kept !== null && !Array.isArray(kept)) this.#kept = kept as Kept;

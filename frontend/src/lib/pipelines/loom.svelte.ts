@@ -1,6 +1,7 @@
 /** The pipelines of the draft as this page knows them, what is chosen of them, and what is shown on their edges. */
 import { createContext } from 'svelte';
 import type { DraftPipeline, DraftPipelines, Edit, Finding, PipelineRun, RunStep } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import type { Bench } from '#lib/model/bench.svelte.ts';
 import { titleAt } from '#lib/model/content.ts';
 import { idOf } from '#lib/model/tree.ts';
@@ -67,7 +68,7 @@ export class Loom {
 	}
 
 	choose(pipeline: string | null, part: PartAt | null = null): void {
-		this.#look({ pipeline, part });
+		this.#look({ ...this.looked, pipeline, part });
 	}
 
 	/** The step of the run that is shown of a pipeline; null where what passes now is. */
@@ -130,7 +131,7 @@ export class Loom {
 		let asked = -1;
 		while (asked < this.#wanted) {
 			asked = this.#wanted;
-			const answer = await request<DraftPipelines>('GET', ADDRESS, { patience: PATIENCE });
+			const answer = await request<DraftPipelines>('GET', askedOf(ADDRESS, this.bench.draft.example), { patience: PATIENCE });
 			this.refusal = answer.ok ? null : answer.refusal;
 			if (answer.ok) this.view = answer.value;
 		}

@@ -1,6 +1,7 @@
 /** What the parts of the page Operations share: the operations of the draft, what is chosen, and how an order is written. */
 import { createContext } from 'svelte';
 import type { DraftOperation, DraftOperations, OperationLink } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import type { Draft } from '#lib/model/draft.svelte.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
@@ -88,7 +89,7 @@ export class Board {
 	/** Reads them as they are after the last change. Of several answers that are on their way only the newest counts. */
 	async read(): Promise<void> {
 		const asked = ++this.#asked;
-		const answer = await request<DraftOperations>('GET', '/api/v1/model/operations', { patience: PATIENCE });
+		const answer = await request<DraftOperations>('GET', askedOf('/api/v1/model/operations', this.draft.example), { patience: PATIENCE });
 		if (asked !== this.#asked) return;
 		if (answer.ok) this.view = answer.value;
 		this.#refusal = answer.ok ? null : answer.refusal;

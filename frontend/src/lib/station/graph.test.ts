@@ -135,7 +135,7 @@ test('things are found by the words of their names, the likeliest first', () => 
 });
 
 test('what is looked at is in the address', () => {
-	const looked = { thing: 'topic:/a b', steps: Infinity, loose: true, resource: 'r', kind: 'ability' };
+	const looked = { example: 'single_bolt', thing: 'topic:/a b', steps: Infinity, loose: true, resource: 'r', kind: 'ability' };
 	expect(lookedAt(new URL(addressOf(looked), 'http://h').searchParams)).toEqual(looked);
 	expect(addressOf(lookedAt(new URLSearchParams('steps=17')))).toBe('/model?view=graph');
 });

@@ -1,6 +1,7 @@
 /** What the parts of the graph of Model share: the model as a whole, what is chosen in it, and what is tied to that. */
 import { createContext } from 'svelte';
 import type { Finding, ModelGraph } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { addressOf, type Looked } from './address.ts';
@@ -50,7 +51,7 @@ export class StationView {
 	/** Asks for the draft as it is now. Of several answers that are on their way only the newest counts. */
 	async read(): Promise<void> {
 		const asked = ++this.#asked;
-		const answer = await request<ModelGraph>('GET', '/api/v1/model/graph', { patience: PATIENCE });
+		const answer = await request<ModelGraph>('GET', askedOf('/api/v1/model/graph', this.looked.example), { patience: PATIENCE });
 		if (asked !== this.#asked) return;
 		if (answer.ok) this.#graph = answer.value;
 		this.refusal = answer.ok ? null : answer.refusal;

@@ -4,6 +4,7 @@ import { ability } from './en/ability.ts';
 import { backups } from './en/backups.ts';
 import { begin } from './en/begin.ts';
 import { check } from './en/check.ts';
+import { examples } from './en/examples.ts';
 import { review } from './en/review.ts';
 import { model } from './en/model.ts';
 import { picture } from './en/picture.ts';
@@ -16,4 +17,4 @@ import { tryOut } from './en/try-out.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...ofStation, ability, backups, begin, check, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };
+export const en = { ...ofStation, ability, backups, begin, check, examples, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };

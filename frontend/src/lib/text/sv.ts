@@ -4,6 +4,7 @@ import { ability } from './sv/ability.ts';
 import { backups } from './sv/backups.ts';
 import { begin } from './sv/begin.ts';
 import { check } from './sv/check.ts';
+import { examples } from './sv/examples.ts';
 import { review } from './sv/review.ts';
 import { model } from './sv/model.ts';
 import { picture } from './sv/picture.ts';
@@ -17,4 +18,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...ofStation, ability, backups, begin, check, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };
+export const sv: Text = { ...ofStation, ability, backups, begin, check, examples, model, picture, pipelines, ros, review, sequence, station, storage, tryOut, webhooks, whatIf };

@@ -1,10 +1,12 @@
 /**
- * The draft of the model as the server tells it: its files, its last change, and what its check has found so far.
+ * The draft of the model as the server tells it: its files, its last change, and what its check has found so far. The same is
+ * told of an example station.
  *
  * It is told only when it changes, so it is asked for again from time to time: what is not answered is not live.
  */
 import { createContext } from 'svelte';
 import type { ModelCheck, Workshop, WorkshopMessage } from '#lib/contract.ts';
+import { askedOf } from '#lib/examples/address.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { connect } from '#lib/stream/connection.ts';
@@ -23,6 +25,12 @@ export class WorkshopSeen {
 	refusal = $state.raw<Refusal | null>(null);
 	/** When the check was seen to be done, in seconds; null where it was done before, or is not. */
 	checked = $state<number | null>(null);
+	/** The example station that it is; null for the draft. */
+	readonly example: string | null;
+
+	constructor(example: string | null = null) {
+		this.example = example;
+	}
 
 	/**
 	 * Connects to the stream; the result disconnects. `told` is called with each message, and whether the draft is
@@ -31,7 +39,7 @@ export class WorkshopSeen {
 	attach(told: (isNew: boolean) => void, closed: (code: number) => void): () => void {
 		let attached = true;
 		const connection = connect<WorkshopMessage>(
-			'/api/v1/model/stream',
+			askedOf('/api/v1/model/stream', this.example),
 			{
 				opened: () => undefined,
 				heard: (message) => {
@@ -41,7 +49,7 @@ export class WorkshopSeen {
 					this.view = message.workshop;
 					this.live = true;
 					this.refusal = null;
-					undeployed.changes = message.workshop.changes;
+					if (this.example === null) undeployed.changes = message.workshop.changes;
 					told(before !== message.workshop.number);
 				},
 				closed: (code) => {
@@ -69,7 +77,7 @@ export class WorkshopSeen {
 
 	/** A handshake that is refused does not say why. */
 	async #ask(): Promise<void> {
-		const answer = await request<ModelCheck>('GET', '/api/v1/model/check');
+		const answer = await request<ModelCheck>('GET', askedOf('/api/v1/model/check', this.example));
 		if (this.view === null) this.refusal = answer.ok ? null : answer.refusal;
 	}
 }

@@ -1,4 +1,4 @@
-"""`new`: a small station to begin from."""
+"""`new`: a small station to begin from, or a copy of one of the examples."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ import typer
 
 from sequence_planner.cli.options import AsJson, print_json, refuse
 from sequence_planner.language.lexer import KEYWORDS
+from sequence_planner.model.examples.library import example_files, example_folders, renamed_station
+from sequence_planner.model.files import write_files
 from sequence_planner.model.json_schema import write_schemas
 
 _NAME = "my_station"
@@ -20,16 +22,25 @@ _NAME = "my_station"
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to write it: a new folder, or an empty one.")],
     empty: Annotated[bool, typer.Option("--empty", help="Nothing but its name: to be built in the browser.")] = False,
+    example: Annotated[
+        str | None, typer.Option("--example", metavar="NAME", help="A copy of the example station of this name.")
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Write a small station that can be checked and run at once, with comments that say what is what.
 
+    With --example it is one of those that the program comes with, such as truck_engine_station.
+
     JSON Schemas go to FOLDER/.schemas, so that an editor completes and checks while you type.
     """
+    if empty and example is not None:
+        refuse("an example is not empty: leave --empty or --example out")
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             refuse(f"{folder} is not empty: name a folder that is new or empty")
-        if empty:
+        if example is not None:
+            _write_example(example, folder)
+        elif empty:
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "station.yaml").write_text(f"name: {_named_after(folder)}\n", encoding="utf-8")
         else:
@@ -52,6 +63,15 @@ def new(
         return
     run = f"sequence-planner run {folder} --emulator --demonstration"
     typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner test {folder}\n     {run}")
+
+
+def _write_example(name: str, folder: Path) -> None:
+    """Write a copy. Raises `OSError`."""
+    folders = example_folders()
+    if (found := folders.get(name)) is None:
+        known = f"take one of {', '.join(folders)}" if folders else "the program was installed without any"
+        refuse(f"there is no example {name!r}: {known}")
+    write_files(renamed_station(example_files(found), _named_after(folder)), folder, found)
 
 
 def _named_after(folder: Path) -> str:

@@ -7,12 +7,10 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
-from sequence_planner.controller.views.details import AutomatonView
 from sequence_planner.controller.views.pipelines import RecordView
 from sequence_planner.controller.views.station import DeploymentState, StationView
 from sequence_planner.core.actor import Actor
@@ -27,25 +25,10 @@ from sequence_planner.editor.draft import (
     PartChangedError,
     WriteText,
 )
-from sequence_planner.editor.pipelines.schemas import (
-    DraftQuestion,
-    Examples,
-    PipelineQuestion,
-    RecordedView,
-    Recording,
-)
-from sequence_planner.editor.processes import (
-    Changed,
-    CheckDesk,
-    ComparisonDesk,
-    DraftAnswering,
-    DraftProcess,
-    LanguageQuestionKind,
-    TextAt,
-    worked,
-)
+from sequence_planner.editor.pipelines.schemas import Examples, RecordedView, Recording
+from sequence_planner.editor.processes import ComparisonDesk, DraftProcess
 from sequence_planner.editor.revision import Revision
-from sequence_planner.editor.schemas.check import CheckView, waiting
+from sequence_planner.editor.schemas.check import waiting
 from sequence_planner.editor.schemas.draft import (
     DraftChangesView,
     DraftView,
@@ -63,52 +46,37 @@ from sequence_planner.model.files import Files, FolderReader
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.services.identity import IdentityService
+from sequence_planner.server.services.reading import ReadableWorkshop
 from sequence_planner.server.settings import Settings, StreamLimits
-from sequence_planner.server.stream.broadcast import LatestValue
-from sequence_planner.server.stream.messages import WorkshopSnapshot
 from sequence_planner.texts.message import message
+from sequence_planner.texts.refused import Refused
 
 MOST_SHOWN = 50  # changes
 MOST_TOLD = 12  # changes of which it is told what they did: as many as the page shows
-ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
-RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
 FOLDED_WITHIN = 110.0  # seconds, for the states that a station can come to
 TRIED_FOR = 900.0  # seconds for which a simulation is kept that nobody asks for
 
 
-class Workshop:
-    """The draft of the station in the folder `model`, which is run as `start` says, and its `revisions`. Used from one
-    event loop.
-    """
+class Workshop(ReadableWorkshop):
+    """The draft of the station in the folder `model`, and its `revisions`."""
 
     def __init__(
         self, identity: IdentityService, model: Path, revisions: Path, limits: StreamLimits, start: StartNeeds
     ) -> None:
-        self.latest = LatestValue(self._present, limits)
-        self.folder = model
+        super().__init__(model, limits, start)
         self._files = FolderReader(model)
         self._identity = identity
         self._revisions = revisions
-        self._editing = DraftProcess("editing_worker")
-        self._process = DraftProcess()
-        self._folding = DraftProcess("folds.folding_worker")
         self._stepping = DraftProcess("stepping.worker")
         self._simulating = DraftProcess("simulating.worker", rests_after=TRIED_FOR)
         self._outlining = DraftProcess("outline.worker")
         self._spaces = DraftProcess("state_space.worker", rests_after=TRIED_FOR)
-        self._desk = CheckDesk(model, start, self._process, self._found)
         self._comparing = ComparisonDesk(model)
-        self._pipelines = DraftAnswering("pipelines.worker", 2)  # the draft, and what runs
-        self._check: CheckView | None = None
-        self._shown: WorkshopView | None = None
-        self._encoded: str | None = None
         self._marks: tuple[Draft, dict[str, FileMark], int] | None = None  # and in how many places it differs
         self._opening = asyncio.Lock()
         self._planned: PlannedDeploymentView | None = None
         self._comment = 0
         self._deployed_over: tuple[float, Files] | None = None  # when, and what: until it is seen what became of it
-        self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
-        self._tying = asyncio.Lock()
 
     @classmethod
     def for_model(cls, identity: IdentityService, settings: Settings) -> Workshop | None:
@@ -120,17 +88,13 @@ class Workshop:
 
     async def close(self) -> None:
         """End what is being checked and answered."""
-        await self._desk.close()
+        await super().close()
         await self._comparing.close()
-        asked = self._editing, self._process, self._folding, self._stepping, self._simulating, self._spaces
-        for each in (*asked, self._outlining, self._pipelines):
+        for each in (self._stepping, self._simulating, self._outlining, self._spaces):
             each.close()
 
-    async def open(self) -> Draft:
-        """The draft, begun if there is none yet, with what has happened to the files of the station since.
-
-        Raises `WorkerError`.
-        """
+    async def _opened(self) -> Draft:
+        """The draft, begun if there is none yet, with what has happened to the files of the station since."""
         async with self._opening:
             files = await run_in_threadpool(self._files.read)
             draft = await self._identity.read(drafts.read)
@@ -173,10 +137,6 @@ class Workshop:
         places = (await self._marked(draft))[1] if draft.number else 0
         return DraftChangesView(number=draft.number, changes=places)
 
-    async def files(self, paths: Sequence[str] | None = None) -> str:
-        """JSON of a `FilesView` of the draft; all its files where none are named. Raises `WorkerError`."""
-        return await self._files_of(await self.open(), paths)
-
     async def request(self, body: bytes, by: Actor) -> str:
         """Carry out the edits of a `ChangeBody`; the files that are others now, as JSON of a `FilesView`.
 
@@ -202,53 +162,12 @@ class Workshop:
 
         return (await self._changed(propose, by))[1]
 
-    async def usages(self, part: str) -> str:
-        """Return where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkerError`."""
-        found = await self._process.ask((await self.open()).files, "used", part)
-        assert isinstance(found, str)
-        return found
-
-    async def tied(self) -> str:
-        """Return what is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkerError`."""
-        async with self._tying:
-            draft = await self.open()
-            if self._tied is None or self._tied[0] != draft.number:
-                found = await self._process.ask(draft.files, "tied", draft.number)
-                assert isinstance(found, str)
-                self._tied = draft.number, found
-            return self._tied[1]
-
-    async def sequenced(self) -> str:
-        """Return the operations and their order, as JSON of a `DraftOperationsView`. Raises `WorkerError`."""
-        draft = await self.open()
-        found = await self._process.ask(draft.files, "sequenced", draft.number)
-        assert isinstance(found, str)
-        return found
-
-    async def pictured(self) -> str:
-        """Return the picture of the draft, as JSON of a `DraftPictureView`. Raises `WorkerError`."""
-        draft = await self.open()
-        found = await self._process.ask(draft.files, "pictured", draft.number)
-        assert isinstance(found, str)
-        return found
-
     async def outlined(self, outline: object) -> str:
         """Return what an `Outline` becomes, for a station that is called as this one, as JSON of an `OutlineView`.
 
         Raises `WorkerError`.
         """
         found = await self._outlining.ask((await self.open()).files, "outlined", outline)
-        assert isinstance(found, str)
-        return found
-
-    async def folded(self, wanted: str | None, name: str | None) -> str:
-        """Return what could be said shorter, or one of that with another name for what it adds, as JSON of a
-        `FoldsView`.
-
-        Raises `EditError` where there is no such fold, and `WorkerError`.
-        """
-        draft = await self.open()
-        found = await self._folding.ask(draft.files, "folded", draft.number, wanted, name)
         assert isinstance(found, str)
         return found
 
@@ -299,23 +218,6 @@ class Workshop:
         assert isinstance(found, str)
         return found
 
-    async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
-        """Return how an ability goes through the run that shows a finding of the check of change `number`.
-
-        Raises `EditError` where there is no such run or ability, and `WorkerError`.
-        """
-        check, draft = await self.checked(), await self.open()
-        if number != check.number or number != draft.number:
-            raise EditError(message("edit.draft-changed"))
-        trace = check.findings[finding].trace if finding < len(check.findings) else None
-        if trace is None:
-            raise EditError(message("edit.no-run"))
-        found = await worked("drawn", draft.files, self.folder, ability, trace)
-        if isinstance(found, str):
-            raise EditError(found)
-        assert isinstance(found, list)
-        return found
-
     async def undo(self, by: Actor) -> str:
         """Take back what somebody did last; JSON of a `FilesView`. Raises `EditError` and `WorkerError`."""
         return (await self._changed(lambda draft: self._again(draft, by, undo=True), by))[1]
@@ -323,11 +225,6 @@ class Workshop:
     async def redo(self, by: Actor) -> str:
         """Do again what somebody took back last; JSON of a `FilesView`. Raises `EditError` and `WorkerError`."""
         return (await self._changed(lambda draft: self._again(draft, by, undo=False), by))[1]
-
-    async def checked(self) -> CheckView:
-        """Return what is known of the draft."""
-        draft = await self.open()
-        return self._check or waiting(draft.number)
 
     async def revised(self) -> RevisionsView:
         """All revisions. Raises `WorkerError`."""
@@ -404,21 +301,19 @@ class Workshop:
         title = f"Back to “{name}”"
         return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
 
-    async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> str:
-        """Return what is answered to a question about a text, as JSON. Raises `WorkerError`."""
-        draft = await self.open()
-        answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
-        assert isinstance(answer, str)
-        return answer
+    async def begin_with(self, number: int, example: Files, title: str, by: Actor) -> str:
+        """Let the draft, after its change `number`, become an example with the name that the station has; JSON of a
+        `FilesView` of what is other now.
 
-    async def ask_pipelines(self, question: PipelineQuestion | bytes) -> str:
-        """Return what is answered to a question about the pipelines, as JSON; bytes are the body of a `Preview`.
-
-        Raises `EditError`, `BodyError` and `WorkerError`.
+        Raises `Refused` where it is another draft by now, `EditError` and `WorkerError`.
         """
-        answer = await self._asked(question, as_json=True)
-        assert isinstance(answer, str)
-        return answer
+
+        async def propose(draft: Draft) -> DraftProposal:
+            if draft.number != number:
+                raise Refused("stale-draft", message("refused.stale-draft.look"))
+            return await self._proposed(draft, "begun_with", example, title)
+
+        return (await self._changed(propose, by))[1]
 
     async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
         """Add an example to the draft. Raises `EditError` and `WorkerError`."""
@@ -428,14 +323,6 @@ class Workshop:
         number = await self.change([edit], by, f"An example of {pipeline}: {name}")
         (runs,) = await self._asked(Examples(pipeline=pipeline, name=name), as_json=False)
         return RecordedView(number=number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
-
-    async def _asked(self, question: PipelineQuestion | bytes, *, as_json: bool) -> Any:  # noqa: ANN401 - one or the other
-        draft = await self.open()
-
-        def asked(changed: Changed, running: Changed) -> DraftQuestion:
-            return DraftQuestion(draft.number, changed, running, self.folder, question, as_json)
-
-        return await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
 
     async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> DraftProposal:
         def last(connection: Connection) -> tuple[DraftChange, Differences]:
@@ -450,11 +337,6 @@ class Workshop:
         proposal = await self._editing.ask(draft.files, name, *asked)
         assert isinstance(proposal, DraftProposal)
         return proposal
-
-    async def _files_of(self, draft: Draft, paths: Sequence[str] | None) -> str:
-        found = await self._editing.ask(draft.files, "shown", draft.number, paths)
-        assert isinstance(found, str)
-        return found
 
     async def _changed(self, propose: Callable[[Draft], Awaitable[DraftProposal]], by: Actor) -> tuple[int, str]:
         """Let the draft be what is proposed, which is thought of again where somebody else was quicker; the number of
@@ -507,22 +389,6 @@ class Workshop:
         if self._marks is None or self._marks[0] != draft:
             self._marks = draft, *await run_in_threadpool(lambda: (marks(draft), places_changed(draft)))
         return self._marks[1:]
-
-    def _found(self, check: CheckView) -> None:
-        self._check = check
-        if self._shown is not None:
-            self._show(self._shown.model_copy(update={"check": check}))
-
-    def _show(self, shown: WorkshopView) -> None:
-        self._shown = shown
-        self._encoded = None
-        self.latest.tell()
-
-    def _present(self) -> str:
-        if self._encoded is None:
-            assert self._shown is not None  # nobody listens before it was opened
-            self._encoded = WorkshopSnapshot(kind="workshop", workshop=self._shown).model_dump_json()
-        return self._encoded
 
 
 def _taken_up(draft: Draft, files: Files, proposal: DraftProposal, now: float, connection: Connection) -> Draft | None:

@@ -130,6 +130,7 @@ export const frame = {
 		missing: 'It could not be loaded. Load this page again.',
 		hint: 'A page, variable, ability, operation or act',
 		nothing: (typed: string): string => `Nothing is called “${typed}”.`,
+		examples: 'Example stations',
 		why: (operation: string): string => `Why does “${operation}” wait?`,
 		groups: { act: 'Possible now', page: 'Pages', alarm: 'Alarms', operation: 'Operations', ability: 'Abilities', variable: 'Variables' }
 	}

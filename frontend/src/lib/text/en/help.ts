@@ -96,7 +96,8 @@ export const help: Helped = {
 				'The draft is checked by itself whenever it changes; errors keep it from being used.',
 				'An ability shows how it stands in the station that runs, and what it waits for. Try it alone among the runs: the station must be paused.',
 				'Beside the problems are the usages of the chosen part, the guards that the supervisor adds, and runs. Shift and F12 lead to the usages.',
-				'Graph shows the model in four layers, and what is tied to what. Open leads from there to the form.'
+				'Graph shows the model in four layers, and what is tied to what. Open leads from there to the form.',
+				'Examples… has stations to look at, to copy parts from, and to begin with.'
 			]
 		},
 		operations: {

@@ -47,7 +47,8 @@ export const model = {
 	runs: {
 		none: 'Choose an ability to try it alone',
 		how: 'It runs once in the station, which has to have it and to be paused.',
-		found: 'Runs that show what the check found'
+		found: 'Runs that show what the check found',
+		noneFound: 'The check found nothing that a run would show'
 	},
 	size: { tree: 'Width of the parts', file: 'Width of the file', panel: 'Height of what is below' },
 	unrun: (n: number): string => `${count(n, 'file', 'files')} the station does not run as here`,

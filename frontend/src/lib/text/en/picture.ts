@@ -2,6 +2,7 @@
 export const picture = {
 	title: 'Live picture',
 	about: 'The picture of the station on Operate, with the values of the station as it is. It is drawn as mimic.yaml says.',
+	aboutExample: 'The picture that the station would have on Operate, drawn as mimic.yaml says. The example runs nowhere, so no value is known.',
 	fromModel: 'The station has no mimic.yaml: its picture is made from the model.',
 	drawIt: 'Draw the picture yourself',
 	drawItAbout: 'A mimic.yaml is written that draws what you see here. From there on things are moved, added and taken away.',

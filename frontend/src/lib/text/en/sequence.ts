@@ -43,6 +43,7 @@ export const sequence = {
 		drawn: (before: string, after: string): string => `In the draft “${after}” comes after “${before}” now`,
 		erased: (before: string, after: string): string => `In the draft “${after}” no longer comes after “${before}”`,
 		inModel: 'Change it on Model',
+		seeInModel: 'See it on Model',
 		erase: (before: string, after: string): string => `Take out: “${after}” comes after “${before}”`,
 		putBehind: 'Let it come after',
 		put: 'Add',

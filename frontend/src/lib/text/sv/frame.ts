@@ -122,6 +122,7 @@ export const frame: Text['frame'] = {
 		missing: 'Det gick inte att läsa in. Ladda sidan igen.',
 		hint: 'En sida, variabel, förmåga, operation eller åtgärd',
 		nothing: (typed) => `Inget heter ”${typed}”.`,
+		examples: 'Exempelstationer',
 		why: (operation) => `Varför väntar ”${operation}”?`,
 		groups: { act: 'Möjligt nu', page: 'Sidor', alarm: 'Larm', operation: 'Operationer', ability: 'Förmågor', variable: 'Variabler' }
 	}

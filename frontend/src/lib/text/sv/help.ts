@@ -95,7 +95,8 @@ export const help: Helped = {
 				'Utkastet kontrolleras av sig självt så fort det ändras; fel gör att det inte kan användas.',
 				'En förmåga visar hur den står i stationen som kör, och vad den väntar på. Prova den ensam bland körningarna: stationen måste vara pausad.',
 				'Bredvid problemen finns var den valda delen används, villkoren som övervakaren lägger till, och körningar. Skift och F12 leder till användningarna.',
-				'Graf visar modellen i fyra lager, och vad som hör ihop med vad. Öppna leder därifrån till formuläret.'
+				'Graf visar modellen i fyra lager, och vad som hör ihop med vad. Öppna leder därifrån till formuläret.',
+				'Exempel… har stationer att se på, att kopiera delar från och att börja med.'
 			]
 		},
 		operations: {

@@ -46,7 +46,8 @@ export const model: Text['model'] = {
 	runs: {
 		none: 'Välj en förmåga för att prova den ensam',
 		how: 'Den körs en gång i stationen, som måste ha den och vara pausad.',
-		found: 'Körningar som visar vad kontrollen hittade'
+		found: 'Körningar som visar vad kontrollen hittade',
+		noneFound: 'Kontrollen hittade inget som en körning skulle visa'
 	},
 	size: { tree: 'Delarnas bredd', file: 'Filens bredd', panel: 'Höjden på det nedanför' },
 	unrun: (n) => `${count(n, 'fil', 'filer')} som stationen inte kör som här`,

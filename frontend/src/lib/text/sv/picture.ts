@@ -4,6 +4,7 @@ import type { Text } from '../text.svelte.ts';
 export const picture: Text['picture'] = {
 	title: 'Levande bild',
 	about: 'Bilden av stationen på Drift, med stationens värden som de är nu. Den ritas som mimic.yaml säger.',
+	aboutExample: 'Den bild som stationen skulle ha på Drift, ritad som mimic.yaml säger. Exemplet körs ingenstans, så inget värde är känt.',
 	fromModel: 'Stationen har ingen mimic.yaml: bilden görs av modellen.',
 	drawIt: 'Rita bilden själv',
 	drawItAbout: 'En mimic.yaml skrivs som ritar det du ser här. Sedan flyttas, läggs till och tas bort saker därifrån.',

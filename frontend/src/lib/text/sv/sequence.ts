@@ -44,6 +44,7 @@ export const sequence: Text['sequence'] = {
 		drawn: (before, after) => `I utkastet kommer ”${after}” nu efter ”${before}”`,
 		erased: (before, after) => `I utkastet kommer ”${after}” inte längre efter ”${before}”`,
 		inModel: 'Ändra det på Modell',
+		seeInModel: 'Se det på Modell',
 		erase: (before, after) => `Ta bort: ”${after}” kommer efter ”${before}”`,
 		putBehind: 'Låt den komma efter',
 		put: 'Lägg till',

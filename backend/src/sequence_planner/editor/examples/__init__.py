@@ -1,0 +1,1 @@
+"""The example stations, as they are chosen and begun with."""

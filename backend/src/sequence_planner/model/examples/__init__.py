@@ -1,0 +1,1 @@
+"""The example stations that come with the program."""
