@@ -1,8 +1,8 @@
 /** Where the focus goes when something that lay over the page is put away. */
 
-/** Gives it back to what had it. Where the page has become another one meanwhile, to what is called the same, or to the page. */
+/** Gives it back to what had it. Where the page has become another one meanwhile, to what is called the same; else nobody has it. */
 export function giveBack(before: Element | null): void {
-	const to = before?.isConnected ? before : (namesake(before) ?? document.getElementById('page-content'));
+	const to = before?.isConnected ? before : namesake(before);
 	if (to instanceof HTMLElement || to instanceof SVGElement) to.focus({ preventScroll: to !== before });
 }
 
