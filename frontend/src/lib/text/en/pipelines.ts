@@ -7,7 +7,7 @@ export const pipelines = {
 	unread: (files: string): string => `Cannot be read now, and shown as before: ${files}.`,
 	list: 'Pipelines by resource',
 	whole: 'Whole station',
-	wholeAbout: (n: number): string => `${count(n, 'box', 'boxes')}. Choose a pipeline from the list, or a box, to see it closely and to edit it.`,
+	wholeAbout: (n: number): string => `${count(n, 'box', 'boxes')}. Choose a pipeline from the list, or a box, to see it closely.`,
 	roles: { incoming: 'in', outgoing: 'out', flow: 'flow' },
 	parts: {
 		topic: 'Topic',
@@ -30,7 +30,7 @@ export const pipelines = {
 	listSize: 'Width of the list and the stages',
 	partSize: 'Width of the chosen part',
 	cannotStand: (kind: string, where: string, reason: string): string => `A stage ${kind} cannot stand at ${where}: ${reason || 'it is not known here'}.`.replace(/\.\.$/, '.'),
-	wholeList: 'Choose a pipeline from the list, to see its steps and to edit it.',
+	wholeList: 'Choose a pipeline from the list, to see its steps.',
 	onlyWithin: (pipeline: string): string => `A stage is moved within its pipeline ${pipeline}. Copy it by Ctrl C, and paste it by Ctrl V where another one is chosen.`,
 	doesNotFit: (pipeline: string, why: string): string => `Nothing was changed in ${pipeline}, as it would not fit: ${why}`,
 	joinsNothing: 'From there nothing can lead to where you have drawn it. Draw from a message or its last stage to a variable, from a variable to an outgoing message, or from a topic to a flow.',

@@ -9,7 +9,7 @@ export const pipelines: Text['pipelines'] = {
 	unread: (files) => `Kan inte läsas nu och visas som förut: ${files}.`,
 	list: 'Pipelines per resurs',
 	whole: 'Hela stationen',
-	wholeAbout: (n) => `${antal(n, 'ruta', 'rutor')}. Välj en pipeline i listan, eller en ruta, för att se den nära och redigera den.`,
+	wholeAbout: (n) => `${antal(n, 'ruta', 'rutor')}. Välj en pipeline i listan, eller en ruta, för att se den nära.`,
 	roles: { incoming: 'in', outgoing: 'ut', flow: 'flöde' },
 	parts: {
 		topic: 'Topic',
@@ -32,7 +32,7 @@ export const pipelines: Text['pipelines'] = {
 	listSize: 'Bredd på listan och stegen',
 	partSize: 'Bredd på den valda delen',
 	cannotStand: (kind, where, reason) => `Ett steg ${kind} kan inte stå vid ${where}: ${reason || 'det är inte känt här'}.`.replace(/\.\.$/, '.'),
-	wholeList: 'Välj en pipeline i listan för att se dess steg och redigera den.',
+	wholeList: 'Välj en pipeline i listan för att se dess steg.',
 	onlyWithin: (pipeline) => `Ett steg flyttas inom sin pipeline ${pipeline}. Kopiera det med Ctrl C, och klistra in det med Ctrl V där en annan är vald.`,
 	doesNotFit: (pipeline, why) => `Inget ändrades i ${pipeline}, eftersom det inte skulle passa: ${why}`,
 	joinsNothing: 'Därifrån kan inget leda dit du har dragit. Dra från ett meddelande eller dess sista steg till en variabel, från en variabel till ett utgående meddelande, eller från en topic till ett flöde.',
