@@ -96,7 +96,7 @@ def test_an_ability_says_all_that_is_in_its_way_and_who_could_change_it() -> Non
             (at,) = place.involved
             assert (at.name, at.value, at.wanted, at.since, at.topic) == ("at", "home", ["work"], 7.0, "/cart/state")
             assert who(place, "at") == [("effect", "go"), ("device", "station")]
-            assert at.changers[1].title == "somebody at station"
+            assert at.changers[1].title == "somebody at “station”"
             assert who(loaded, "loaded") == [("start", "load"), ("correction", "loaded")]
             execution.start_production()
             execution.set_service(ServiceKind.ABILITY, "unload", False, "Eva", "a test", desk.now)

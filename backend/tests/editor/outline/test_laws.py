@@ -38,7 +38,6 @@ TITLES = st.one_of(
     ),
     st.text(st.characters(exclude_categories=["Cs"]), max_size=12),
 )
-ACTIONS: st.SearchStrategy[Literal["open", "close"]] = st.sampled_from(["open", "close"])
 # Surrogates are in no JSON that is sent.
 SOUND = TITLES.filter(lambda title: "{" not in title and "}" not in title)
 
@@ -64,20 +63,20 @@ def outlines(draw: st.DrawFn) -> Outline:
     )
     called = draw(st.lists(SOUND, min_size=2, max_size=4, unique_by=spoken))
     states = [OutlineItem(name=f"state_{at}", title=title) for at, title in enumerate(called)]
-    steps = []
+    steps, closed = list[OutlineStep](), dict[str, bool]()
     for at in range(len(states) - 1):
         by = draw(st.sampled_from(able))
         where = [Stand(robot=each.name, pose=draw(st.sampled_from(each.poses)).name) for each in robots]
-        action = draw(ACTIONS) if isinstance(by, Clamp) else None
-        steps.append(
-            OutlineStep(
-                name=f"step_{at}",
-                title=draw(SOUND),
-                by=by.name,
-                action=action,
-                where=tuple(where if draw(st.booleans()) else ()),
-            )
-        )
+        action: Literal["open", "close"] | None = None
+        if isinstance(by, Clamp):
+            action = "open" if closed.get(by.name) else "close"
+            closed[by.name] = action == "close"
+        stands = tuple(where if draw(st.booleans()) else ())
+        name, title = f"step_{at}", draw(SOUND)
+        steps.append(OutlineStep(name=name, title=title, by=by.name, action=action, where=stands))
+    for name in (each for each, is_closed in closed.items() if is_closed):
+        states.append(OutlineItem(name=f"{name}_opened", title=f"{name} opened"))
+        steps.append(OutlineStep(name=f"open_{name}", by=name, action="open"))
     product = Product(
         name="part",
         title=draw(SOUND),
@@ -155,6 +154,19 @@ def broken(**changes: object) -> list[tuple[list[str | int], str]]:
         ({"devices__1__name": "bolt"}, ["devices", 1, "name"], "already"),
         ({"product__states__1__title": "tight"}, ["product", "states", 2, "title"], "called “tight” already"),
         ({"devices__1__title": "{x}"}, ["devices", 1, "title"], "braces"),
+        ({"product__name": "request"}, ["product", "name"], "is called `request` already"),
+        ({"product__steps__0__name": "next_bolt"}, ["product", "steps", 0, "name"], "is called `next_bolt` already"),
+        ({"devices__2__kind": "clamp"}, ["product", "steps", 1, "action"], "opens or closes"),
+        (
+            {"devices__2__kind": "clamp", "product__steps__1__action": "close"},
+            ["product", "steps", 1, "action"],
+            "nothing opens Nutrunner after this",
+        ),
+        (
+            {"devices__2__kind": "clamp", "product__steps__1__action": "open"},
+            ["product", "steps", 1, "action"],
+            "is open then",
+        ),
         ({"devices__1__poses": []}, ["devices", 1, "poses"], "no poses"),
         ({"devices__1__poses__2__joints": [1.0]}, ["devices", 1, "poses", 2, "joints"], "has 6 joints, this one has 1"),
         ({"devices__1__poses__2__name": "between"}, ["devices", 1, "poses", 2, "name"], "already"),
@@ -198,6 +210,49 @@ def broken(**changes: object) -> list[tuple[list[str | int], str]]:
 def test_what_is_wrong_is_told_with_its_place(changes: dict[str, object], place: list[str | int], why: str) -> None:
     found = broken(**changes)
     assert any(each == place and why in said for each, said in found), found
+
+
+WORDS = [
+    "request",
+    "place",
+    "run",
+    "bolt",
+    "next",
+    "supply",
+    "home",
+    "open",
+    "close",
+    "part",
+    "x",
+    "nothing",
+    "between",
+]
+NAMES = st.sampled_from(
+    [*WORDS, "next_part", "part_state", "station", "true", "pose", "stop", "operator", "mode", "order"]
+)
+
+
+@examples(300)
+@given(st.data())
+def test_names_that_are_taken_make_documents_that_can_be_used(data: st.DataObject) -> None:
+    """What the documents call things themselves is told at the name that would be in its way."""
+    one, other, product, first, last, step, pose = (data.draw(NAMES) for _ in range(7))
+    robot = Robot(name=one, poses=(Pose(name=pose),))
+    kind = data.draw(st.sampled_from([Tool, PersonDevice]))
+    outline = Outline(
+        devices=(robot, kind(name=other)),
+        product=Product(
+            name=product,
+            states=(OutlineItem(name=first), OutlineItem(name=last)),
+            steps=(OutlineStep(name=step, by=other, where=(Stand(robot=one, pose=pose),)),),
+        ),
+    )
+    view = outlined(outline, "made")
+    if not view.problems:
+        with TemporaryDirectory() as folder:
+            draft = LanguageDraft(Path(folder) / "made")
+            draft.take(view.files)
+            assert draft.errors() == []
 
 
 @examples(200)

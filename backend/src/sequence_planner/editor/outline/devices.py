@@ -65,7 +65,7 @@ def files_of(device: Device, product: Product, messages: str) -> Mapping[str, st
         case Tool():
             return _tool(device, works, messages)
         case Clamp():
-            return _clamp(device, works, product, messages)
+            return _clamp(device, works, messages)
         case PersonDevice():
             return _person(device, works)
         case FoundDevice():
@@ -251,16 +251,14 @@ def _run(work: Work, *, first: bool) -> str:
 {always if first else ""}"""
 
 
-def _clamp(clamp: Clamp, works: list[Work], product: Product, messages: str) -> dict[str, str]:
+def _clamp(clamp: Clamp, works: list[Work], messages: str) -> dict[str, str]:
     title = titled(clamp)
     closing = [each for each in works if each.step.action != "open"]
     opening = [each for each in works if each.step.action == "open"]
     plain = OutlineItem(name="close", title=title), OutlineItem(name="open", title=title)
-    first = product.states[0].name
-    # What was closed by a step stays closed, unless another step opens it, until the product is done.
-    free = [f"({product.name} == {first} or {product.name} == {product.states[-1].name})"] if closing else []
+    # As `problems_of` has it, what is closed by a step is opened by one too.
     abilities = [_turned(each, close=True) for each in closing] or [_turning(plain[0], [], close=True)]
-    abilities += [_turned(each, close=False) for each in opening] or [_turning(plain[1], free, close=False)]
+    abilities += [_turned(each, close=False) for each in opening] or [_turning(plain[1], [], close=False)]
     document = f"""{_topics(clamp, messages)}
 measured:
   is_open: {{type: bool, initial: true, title: {in_both(f"{title} is open", f"{title} är öppen")}}}

@@ -124,7 +124,9 @@ def _specifications(outline: Outline) -> str:
 
 def _test(outline: Outline) -> str:
     product = outline.product
-    wanted = [each for each, _ in _wanted(outline)] + ([f"next_{product.name}"] if product.then == "next" else [])
+    wanted = [each for each, _ in _wanted(outline)]
+    if product.then == "next":  # what was left behind by the one is met by the other
+        wanted = [*wanted, f"next_{product.name}", *wanted]
     steps = "".join(f"    - completes: {each}\n      within: 120\n" for each in wanted)
     return (
         "# `sequence-planner test`, and Tests in the browser, carry this out in simulated time with emulated devices.\n"

@@ -24,6 +24,11 @@ from sequence_planner.model.fields import fault_of_name
 from sequence_planner.texts.message import Message, message
 
 SUPPLY = "supply"  # the resource that brings the next product
+# What resources call their own variables: within them the product could not be named otherwise.
+_OWN = {
+    *("place", "target", "beside", "run", "is_running", "is_done", "is_open", "is_closed", "close_it"),
+    *("request", "is_acknowledged", "pose"),
+}
 
 Place = tuple[str | int, ...]
 _Found = tuple[Place, str]
@@ -45,15 +50,32 @@ def _all(outline: Outline) -> Iterator[_Found]:
     yield from _named(outline.devices, ("devices",), "resource", [product.name, *known])
     for at, device in enumerate(outline.devices):
         if isinstance(device, Robot):
-            yield from _poses(device, ("devices", at, "poses"))
-    yield from _name(product, ("product",), "variable", known)
+            yield from _poses(device, ("devices", at, "poses"), _not_values(outline))
+    yield from _name(product, ("product",), "variable", [*known, *_OWN])
     if len(product.states) < 2:
         yield ("product", "states"), message("outline.too-few-states")
-    yield from _named(product.states, ("product", "states"), "value", [NOTHING, BETWEEN])
+    yield from _named(product.states, ("product", "states"), "value", _not_values(outline))
     if len(product.steps) != max(len(product.states) - 1, 0):
         yield ("product", "steps"), message("outline.steps-missing", states=len(product.states))
     yield from _steps(outline)
+    for each in outline.devices:
+        if isinstance(each, Clamp):
+            yield from _turns(each, outline)
     yield from _nevers(outline)
+
+
+def _turns(clamp: Clamp, outline: Outline) -> Iterator[_Found]:
+    """What is wrong with the steps of a clamp: it rests open, and closes and opens in turns."""
+    closed: int | None = None  # by this step
+    for at, step in enumerate(outline.product.steps):
+        if step.by != clamp.name or step.action is None:
+            continue
+        if (step.action == "close") == (closed is not None):
+            which = "outline.closed-already" if step.action == "close" else "outline.open-already"
+            yield ("product", "steps", at, "action"), message(which, device=titled(clamp))
+        closed = at if step.action == "close" else None
+    if closed is not None:
+        yield ("product", "steps", closed, "action"), message("outline.stays-closed", device=titled(clamp))
 
 
 def _named(all_: Sequence[OutlineItem], place: Place, kind: str, taken: Sequence[str]) -> Iterator[_Found]:
@@ -78,11 +100,16 @@ def _name(named: OutlineItem, place: Place, kind: str, taken: Sequence[str]) -> 
         yield (*place, "title"), message("outline.braces")
 
 
-def _poses(robot: Robot, place: Place) -> Iterator[_Found]:
+def _not_values(outline: Outline) -> list[str]:
+    """Names that are those of variables wherever values are spoken of, or of values that all such have."""
+    return [NOTHING, BETWEEN, outline.product.name, *_OWN]
+
+
+def _poses(robot: Robot, place: Place, taken: Sequence[str]) -> Iterator[_Found]:
     if not robot.poses:
         yield place, message("outline.no-poses", robot=titled(robot))
         return
-    yield from _named(robot.poses, place, "value", [BETWEEN])
+    yield from _named(robot.poses, place, "value", taken)
     count = len(robot.poses[0].joints)
     for at, pose in enumerate(robot.poses):
         if len(pose.joints) != count:
@@ -104,6 +131,8 @@ def _steps(outline: Outline) -> Iterator[_Found]:
         place = ("product", "steps", at)
         device = devices.get(step.by)
         taken = [name for by, name in called if by == step.by] + _own(device, outline)
+        if outline.product.then == "next":
+            taken.append(f"next_{outline.product.name}")
         yield from _name(step, place, "ability", taken)
         called.add((step.by, step.name))
         if device is None or isinstance(device, Robot | FoundDevice):
@@ -118,9 +147,8 @@ def _own(device: Device | None, outline: Outline) -> list[str]:
     if isinstance(device, Clamp):
         used = {each.action for each in outline.product.steps if each.by == device.name}
         return ["is_open", "is_closed", "close_it", *(each for each in ("close", "open") if each not in used)]
-    if isinstance(device, PersonDevice):
-        return ["request", "is_acknowledged", NOTHING]
-    return ["run", "is_running", "is_done"]
+    # What a person is asked for are values.
+    return _not_values(outline) if isinstance(device, PersonDevice) else ["run", "is_running", "is_done"]
 
 
 def _stands(step: OutlineStep, devices: dict[str, Device], place: Place) -> Iterator[_Found]:
