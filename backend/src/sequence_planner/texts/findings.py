@@ -314,6 +314,7 @@ FINDINGS: Final[dict[str, str]] = {
     "outline.twice-robot": "{robot} cannot be in two poses: take one of them away",
     "outline.no-facts": "say what must never be, or take this away",
     "outline.at-first": "it is so at the beginning already: say more exactly what must never be",
+    "outline.on-the-way": "the product comes through this when it is made: say more exactly what must never be",
     "outline.no-thing": "this is not there any more: choose something else, or take it away",
     "outline.no-value": "{thing} has no such value any more: choose another one",
     # Why no station may run a draft.

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sequence_planner.editor.language.draft import LanguageDraft
 from sequence_planner.editor.outline.beginning import outlined, templates
-from sequence_planner.editor.outline.facts import is_so_at_first
+from sequence_planner.editor.outline.facts import is_on_the_way, is_so_at_first
 from sequence_planner.editor.outline.outline import (
     Clamp,
     Fact,
@@ -95,7 +95,8 @@ def outlines(draw: st.DrawFn) -> Outline:
         )
 
     never = [Never(title=draw(SOUND), facts=facts(1), during=facts(0)) for _ in range(draw(st.integers(0, 2)))]
-    sound = [each for each in never if not is_so_at_first((*each.facts, *each.during), outline)]
+    said = [(each, (*each.facts, *each.during)) for each in never]
+    sound = [each for each, facts in said if not is_so_at_first(facts, outline) and not is_on_the_way(facts, outline)]
     return outline.model_copy(update={"never": tuple(sound)})
 
 
@@ -166,6 +167,11 @@ def broken(**changes: object) -> list[tuple[list[str | int], str]]:
             {"devices__2__kind": "clamp", "product__steps__1__action": "open"},
             ["product", "steps", 1, "action"],
             "is open then",
+        ),
+        (
+            {"never__0__facts": [{"thing": "bolt", "value": "tight"}], "never__0__during": []},
+            ["never", 0],
+            "comes through this",
         ),
         ({"devices__1__poses": []}, ["devices", 1, "poses"], "no poses"),
         ({"devices__1__poses__2__joints": [1.0]}, ["devices", 1, "poses", 2, "joints"], "has 6 joints, this one has 1"),

@@ -14,10 +14,9 @@ export function remove(parts: { readonly id: number }[], id: number): void {
 	if (at >= 0) parts.splice(at, 1);
 }
 
-/** Takes a device away; a robot stands nowhere any more. */
+/** Takes a device away. Where it does something, or stands, that is to be put right. */
 export function removeDevice(sketch: Sketch, id: number): void {
 	remove(sketch.devices, id);
-	for (const step of sketch.product.steps) step.where = step.where.filter(({ robot }) => robot !== id);
 }
 
 /** Takes a state away, and the step that leads to it; with the first state the one that leads on. */

@@ -164,11 +164,6 @@ export class Begin {
 		this.#kept.keep(null);
 	}
 
-	/** It is in the draft: nothing of it is kept here. */
-	done(): void {
-		this.#kept.keep(null);
-	}
-
 	#start(sketch: Sketch): void {
 		this.sketch = sketch;
 		this.device = null;

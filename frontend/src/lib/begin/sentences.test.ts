@@ -12,9 +12,10 @@ test('what was said is read as sentences, in the order of the steps', () => {
 	expect(told(BOLT)).toEqual([
 		'The station is called “Bolt”.',
 		'Operator is asked for tasks on a watch.',
-		'Robot goes along a row: home, above the bolt and at the bolt.',
+		'Robot goes to named poses.',
 		'Nutrunner runs until it is done.',
 		'Lamp is on the network, with 1 topic.',
+		'Robot goes along a row: home, above the bolt and at the bolt.',
 		'At first bolt is missing.',
 		'Place the bolt: Operator brings it from missing to placed.',
 		'Tighten the bolt: Nutrunner brings it from placed to tight. Meanwhile Robot is in the pose “at the bolt”.',
@@ -26,7 +27,7 @@ test('what was said is read as sentences, in the order of the steps', () => {
 test('what has no title is called by its name', () => {
 	expect(told(DOOR)).toContain('At first part is raw.');
 	expect(told(DOOR)).toContain('Never Left robot in the pose “at the table” and Right robot in the pose “At the table”.');
-	expect(told(DOOR)).toContain('When part is done the next one comes with an order.');
+	expect(told(DOOR)).toContain('When part is done the next one comes with an order. For that press By order on Orders.');
 });
 
 test('of nothing nothing is said', () => {

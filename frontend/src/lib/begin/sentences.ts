@@ -44,7 +44,7 @@ function stepText(step: StepSketch, at: number, sketch: Sketch, text: Text): str
 		return found && there ? [words.stands(titled(found), titled(there))] : [];
 	});
 	const state = (number: number): string => titled(sketch.product.states[number] ?? { title: '', name: '' });
-	const done = words.step(titled(step), by ? titled(by) : text.begin.blank, state(at), state(at + 1));
+	const done = words.step(titled(step), by ? titled(by) : text.begin.blank, state(at), state(at + 1), by?.kind === 'clamp' && step.action ? words.how[step.action] : '');
 	return where.length > 0 ? words.meanwhile(done, all(where, text)) : done;
 }
 
@@ -54,7 +54,8 @@ export function sentences(sketch: Sketch, text: Text): Sentence[] {
 	const { title, devices, product, never } = sketch;
 	const found: Sentence[] = [];
 	if (title.trim() !== '') found.push({ step: 'station', text: words.station(title.trim()) });
-	for (const device of devices) found.push({ step: device.kind === 'robot' ? 'poses' : 'devices', text: deviceText(device, text) });
+	for (const device of devices) found.push({ step: 'devices', text: device.kind === 'robot' ? words.arm(titled(device)) : deviceText(device, text) });
+	for (const device of devices) if (device.kind === 'robot') found.push({ step: 'poses', text: deviceText(device, text) });
 	const [first] = product.states;
 	if (first) found.push({ step: 'product', text: words.first(titled(product), titled(first)) });
 	found.push(...product.steps.map((step, at): Sentence => ({ step: 'product', text: stepText(step, at, sketch, text) })));

@@ -31,7 +31,7 @@ describe('an outline that is gone on with', () => {
 		const sketch = sketchOf(BOLT);
 		removeDevice(sketch, sketch.devices[1]!.id);
 		const { product, never } = outlineOf(sketch);
-		expect(product.steps[1]!.where).toEqual([]);
+		expect(product.steps[1]!.where).toEqual([{ robot: '', pose: '' }]);
 		expect(never[0]!.facts).toEqual([{ thing: '', value: '', holds: true }]);
 	});
 });

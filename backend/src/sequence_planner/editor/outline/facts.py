@@ -66,6 +66,14 @@ def is_so_at_first(facts: Sequence[Fact], outline: Outline) -> bool:
     return all((initial(things[each.thing].view) == each.value) == each.holds for each in facts)
 
 
+def is_on_the_way(facts: Sequence[Fact], outline: Outline) -> bool:
+    """Return whether all facts are about the product alone, and are so in one of its states."""
+    product = outline.product
+    if any(each.thing != product.name for each in facts):
+        return False
+    return any(all((state.name == each.value) == each.holds for each in facts) for state in product.states)
+
+
 def _condition(thing: _Thing, fact: Fact) -> str:
     if fact.value not in thing.view.values:
         raise KeyError(fact.value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from sequence_planner.editor.outline.devices import BETWEEN, NOTHING
-from sequence_planner.editor.outline.facts import is_so_at_first, things_of
+from sequence_planner.editor.outline.facts import is_on_the_way, is_so_at_first, things_of
 from sequence_planner.editor.outline.outline import (
     Clamp,
     Device,
@@ -180,6 +180,8 @@ def _nevers(outline: Outline) -> Iterator[_Found]:
                     yield ("never", at, where, number, "value"), message("outline.no-value", thing=thing.title)
         if never.facts and not wrong and is_so_at_first((*never.facts, *never.during), outline):
             yield ("never", at), message("outline.at-first")
+        elif never.facts and not wrong and is_on_the_way((*never.facts, *never.during), outline):
+            yield ("never", at), message("outline.on-the-way")
 
 
 def _parts(never: Never) -> Iterator[tuple[str, Sequence[Fact]]]:

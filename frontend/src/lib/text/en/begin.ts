@@ -3,7 +3,7 @@ import { count } from '../count.ts';
 /** First station: few answers become the documents of a station. */
 export const begin = {
 	title: 'First station',
-	kept: 'Kept in this browser until it is in the draft.',
+	kept: 'Kept in this browser.',
 	stepsLabel: 'Steps',
 	steps: { station: 'Station', devices: 'Devices', poses: 'Poses', product: 'Product', never: 'Never', look: 'Look and begin' },
 	about: {
@@ -130,7 +130,7 @@ export const begin = {
 		addStand: 'A robot stands in a pose meanwhile',
 		removeStand: 'Take away: where the robot stands',
 		then: 'When it is done',
-		thens: { next: 'The next one comes by itself', order: 'The next one comes with an order', once: 'Nothing follows' }
+		thens: { next: 'The next one comes by itself', order: 'The next one comes with an order, where the station works by order', once: 'Nothing follows' }
 	},
 	never: {
 		nothing: 'Say first which devices there are and what is made.',
@@ -168,17 +168,19 @@ export const begin = {
 		station: (title: string): string => `The station is called “${title}”.`,
 		robot: (title: string, poses: string, row: boolean): string =>
 			poses === '' ? `${title} has no pose yet.` : row ? `${title} goes along a row: ${poses}.` : `${title} goes between ${poses}, any way.`,
+		arm: (title: string): string => `${title} goes to named poses.`,
 		tool: (title: string): string => `${title} runs until it is done.`,
 		clamp: (title: string): string => `${title} opens and closes.`,
 		person: (title: string): string => `${title} is asked for tasks on a watch.`,
 		found: (title: string, n: number): string => `${title} is on the network, with ${count(n, 'topic', 'topics')}.`,
 		first: (product: string, state: string): string => `At first ${product} is ${state}.`,
-		step: (step: string, by: string, from: string, to: string): string => `${step}: ${by} brings it from ${from} to ${to}.`,
+		step: (step: string, by: string, from: string, to: string, how: string): string => `${step}: ${by} brings it from ${from} to ${to}${how}.`,
+		how: { close: ' by closing', open: ' by opening' },
 		stands: (robot: string, pose: string): string => `${robot} is in the pose “${pose}”`,
 		meanwhile: (done: string, where: string): string => `${done} Meanwhile ${where}.`,
 		then: {
 			next: (product: string): string => `When ${product} is done the next one comes by itself.`,
-			order: (product: string): string => `When ${product} is done the next one comes with an order.`,
+			order: (product: string): string => `When ${product} is done the next one comes with an order. For that press By order on Orders.`,
 			once: (product: string): string => `When ${product} is done nothing follows.`
 		},
 		fact: (thing: string, value: string, holds: boolean): string => `${thing} ${holds ? '' : 'not '}${value}`,
@@ -191,7 +193,7 @@ export const begin = {
 		nothing: 'Nothing was said yet. Begin with Station.',
 		errors: 'The documents cannot be used as they are',
 		do: 'Put it into the draft',
-		next: 'It opens in Model: see what the check finds, try it in simulation, then review the changes. Nothing runs before that.',
+		next: 'It opens in Model: see what the check finds, try it in simulation, then review the changes. What runs goes on as it is until you deploy.',
 		wrong: (n: number): string => `Not yet: ${count(n, 'thing is', 'things are')} still to put right.`,
 		asking: 'The documents are being made.',
 		unknown: 'The server cannot be reached. What you wrote is kept here.',

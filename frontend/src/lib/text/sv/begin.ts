@@ -3,7 +3,7 @@ import type { Text } from '../text.svelte.ts';
 
 export const begin: Text['begin'] = {
 	title: 'Första stationen',
-	kept: 'Behålls i den här webbläsaren tills det är i utkastet.',
+	kept: 'Behålls i den här webbläsaren.',
 	stepsLabel: 'Steg',
 	steps: { station: 'Station', devices: 'Enheter', poses: 'Lägen', product: 'Produkt', never: 'Aldrig', look: 'Titta och börja' },
 	about: {
@@ -129,7 +129,7 @@ export const begin: Text['begin'] = {
 		addStand: 'En robot står i ett läge under tiden',
 		removeStand: 'Ta bort: var roboten står',
 		then: 'När den är klar',
-		thens: { next: 'Nästa kommer av sig själv', order: 'Nästa kommer med en order', once: 'Inget följer' }
+		thens: { next: 'Nästa kommer av sig själv', order: 'Nästa kommer med en order, när stationen arbetar efter order', once: 'Inget följer' }
 	},
 	never: {
 		nothing: 'Säg först vilka enheter som finns och vad som tillverkas.',
@@ -166,17 +166,19 @@ export const begin: Text['begin'] = {
 		station: (title) => `Stationen heter ”${title}”.`,
 		robot: (title, poses, row) =>
 			poses === '' ? `${title} har inget läge än.` : row ? `${title} går längs en rad: ${poses}.` : `${title} går mellan ${poses}, hur som helst.`,
+		arm: (title) => `${title} går till namngivna lägen.`,
 		tool: (title) => `${title} går tills det är klart.`,
 		clamp: (title) => `${title} öppnar och stänger.`,
 		person: (title) => `${title} får uppgifter på en klocka.`,
 		found: (title, n) => `${title} finns på nätet, med ${count(n, 'topic', 'topics')}.`,
 		first: (product, state) => `Från början är ${product} ${state}.`,
-		step: (step, by, from, to) => `${step}: ${by} för den från ${from} till ${to}.`,
+		step: (step, by, from, to, how) => `${step}: ${by} för den från ${from} till ${to}${how}.`,
+		how: { close: ' genom att stänga', open: ' genom att öppna' },
 		stands: (robot, pose) => `${robot} är i läget ”${pose}”`,
 		meanwhile: (done, where) => `${done} Under tiden: ${where}.`,
 		then: {
 			next: (product) => `När ${product} är klar kommer nästa av sig själv.`,
-			order: (product) => `När ${product} är klar kommer nästa med en order.`,
+			order: (product) => `När ${product} är klar kommer nästa med en order. Tryck för det på På order på sidan Order.`,
 			once: (product) => `När ${product} är klar följer inget.`
 		},
 		fact: (thing, value, holds) => `${thing} ${holds ? '' : 'inte '}${value}`,
@@ -189,7 +191,7 @@ export const begin: Text['begin'] = {
 		nothing: 'Inget är sagt än. Börja med Station.',
 		errors: 'Dokumenten kan inte användas som de är',
 		do: 'Lägg det i utkastet',
-		next: 'Det öppnas i Modell: se vad kontrollen hittar, prova i simulering, granska sedan ändringarna. Inget körs före det.',
+		next: 'Det öppnas i Modell: se vad kontrollen hittar, prova i simulering, granska sedan ändringarna. Det som körs fortsätter som det är tills du driftsätter.',
 		wrong: (n) => `Inte än: ${count(n, 'sak är', 'saker är')} kvar att rätta.`,
 		asking: 'Dokumenten görs.',
 		unknown: 'Servern kan inte nås. Det du har skrivit behålls här.',
