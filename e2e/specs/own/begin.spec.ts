@@ -10,7 +10,7 @@ import { ADA, ERIK, EXECUTABLE, Station, VERA } from '../../station/station.ts';
 import { expect, test as base } from '../../station/test.ts';
 
 /** A station that has nothing but its name; `beside` runs on its network. */
-const test = base.extend<{ model: string; beside: readonly [string, readonly string[]] | null }>({
+const test = base.extend<{ model: string; beside: { readonly program: string; readonly given: readonly string[] } | null }>({
 	actionTimeout: 20_000,
 	beside: [null, { option: true }],
 	model: async ({}, use) => {
@@ -24,7 +24,7 @@ const test = base.extend<{ model: string; beside: readonly [string, readonly str
 	station: async ({ model, beside }, use, info) => {
 		const logs = join(import.meta.dirname, '../../artefacts/logs', `begin-${info.testId}`);
 		const given = { byItself: false, devices: false, people: [ADA, ERIK, VERA], logs, model };
-		const station = await Station.start(beside === null ? given : { ...given, beside });
+		const station = await Station.start(beside === null ? given : { ...given, beside: [beside.program, beside.given] });
 		await use(station);
 		await station.stop();
 	}
@@ -245,7 +245,7 @@ test('what is wrong is said at its field once that was left, and leads there; no
 });
 
 test.describe('with a node on the network', () => {
-	test.use({ beside: [[EXECUTABLE, ['emulate', 'models/single_bolt']], { option: true }] });
+	test.use({ beside: { program: EXECUTABLE, given: ['emulate', 'models/single_bolt'] } });
 
 	test('it becomes a device, whose topics are taken in; what is in the draft is replaced after a question', async ({ browse, station, complaints }) => {
 		test.setTimeout(300_000);
