@@ -25,6 +25,7 @@ from sequence_planner.model.yaml.editor import in_brackets
 
 BETWEEN = "between"
 NOTHING = "nothing"
+SUPPLY = "supply"  # the resource that brings the next product
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sequence_planner.editor.outline.devices import BETWEEN, enumerations_of, files_of, rest_of
+from sequence_planner.editor.outline.devices import BETWEEN, SUPPLY, enumerations_of, files_of, rest_of
 from sequence_planner.editor.outline.facts import condition_of, sentence_of
 from sequence_planner.editor.outline.outline import Outline, OutlineStep, Robot
 from sequence_planner.editor.outline.writing import enumeration, in_both, in_one_line, spoken, titled
-from sequence_planner.editor.outline.wrong import SUPPLY, problems_of
+from sequence_planner.editor.outline.wrong import problems_of
 from sequence_planner.model.yaml.editor import in_brackets
 
 # Not finished outlines are none of its concern: `problems_of` tells what is missing.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from sequence_planner.editor.outline.devices import BETWEEN, NOTHING
+from sequence_planner.editor.outline.devices import BETWEEN, NOTHING, SUPPLY
 from sequence_planner.editor.outline.facts import is_on_the_way, is_so_at_first, things_of
 from sequence_planner.editor.outline.outline import (
     Clamp,
@@ -23,7 +23,6 @@ from sequence_planner.editor.outline.writing import titled
 from sequence_planner.model.fields import fault_of_name
 from sequence_planner.texts.message import Message, message
 
-SUPPLY = "supply"  # the resource that brings the next product
 # What resources call their own variables: within them the product could not be named otherwise.
 _OWN = {
     *("place", "target", "beside", "run", "is_running", "is_done", "is_open", "is_closed", "close_it"),
