@@ -25,7 +25,7 @@ from sequence_planner.planning.problem import Contract, PlanAnswer, PlanRequest,
 from sequence_planner.process.budget import Budget
 from sequence_planner.synthesis.supervisor import synthesise
 from support.examples import examples
-from support.waiting import patience, until
+from support.waiting import PATIENCE, patience, until
 
 from .choices import made_by
 from .random_problems import Problem, problem
@@ -41,10 +41,14 @@ class Spinning(Engine):
 
 
 class Unproven(Engine):
-    """Has a plan at once, and says nothing of a better one."""
+    """Has a plan in its first turn, however long that takes, and says nothing of a better one."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        super().__init__(automaton, supervisor)
+        self._projection = FACTORIES["projection"](automaton, supervisor)
 
     def solve(self, task: PlanningTask, budget: Budget) -> Finding:
-        return FACTORIES["projection"](self.automaton, synthesise(self.automaton)).solve(task, budget)
+        return self._projection.solve(task, Budget.seconds(PATIENCE))
 
 
 HERE = {**FACTORIES, **OWN, "Spinning": Spinning, "Unproven": Unproven}
