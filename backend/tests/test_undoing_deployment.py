@@ -215,7 +215,7 @@ def test_only_an_accepted_deployment_keeps_others_from_commanding(model: Path, b
     command = Deploy(actor=EVA, reason="better", revision="1" * 40, name="Titled", staged=f"deploy-{'0' * 16}")
 
     async def scenario() -> None:
-        deploying = Deploying(model, beside / "socket", emulated=True)
+        deploying = Deploying(model, beside / "socket", emulated=True, dual=False)
         assert deploying.refusal() is None
         with pytest.raises(CommandRefused, match="Try once more to deploy"):
             await deploying.carry_out(command, None, 1.0)
@@ -281,7 +281,7 @@ def deployed_and_killed(model: Path, beside: Path, writes: int) -> None:
     staged = f"deploy-{'0' * 16}"
     write_files({**read_files(model), **NEW}, beside / staged)
     command = Deploy(actor=EVA, reason="better", revision="1" * 40, name="New", staged=staged)
-    deploying = Deploying(model, beside / "socket", emulated=True)
+    deploying = Deploying(model, beside / "socket", emulated=True, dual=False)
     killed(lambda: asyncio.run(deploying.carry_out(command, None, 1.0)), writes)
 
 

@@ -46,6 +46,11 @@ class ReadyStation:
     written: Station | None = None
 
     @property
+    def approval_is_dual(self) -> bool:
+        """Return whether a second person approves what takes the place of this model."""
+        return self.written is not None and self.written.station.deployment_approval == "dual"
+
+    @property
     def connections(self) -> Connections:
         """The connections that topics, services and actions feed and carry."""
         return Connections(frozenset(self.pipelines.feeds), self.pipelines.carried)

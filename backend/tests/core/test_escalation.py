@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.automaton.automaton import Automaton
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.forking.starting import start
 from sequence_planner.planning.planner import Planner, PlanningAttempt

@@ -17,7 +17,7 @@ from sequence_planner.ros.qos import QualityOfService
 from sequence_planner.startup.station_process import UNUSABLE
 from support.network import free_port
 from support.places import REPOSITORY
-from support.station import finished, foreign_node
+from support.station import finished, foreign_node, signed_in
 from support.waiting import PATIENCE, until
 
 TITLED = (STATION, "title: A single bolt", "title: Another title")
@@ -323,3 +323,39 @@ def test_what_is_planned_is_not_deployed_where_somebody_pauses_before_and_says_s
         assert title(station) == "AGV with a docking station"
         station.asked("DELETE", "model/deployments/planned")
         assert station.asked("GET", "model/deployments/planned") is None
+
+
+DUAL = (STATION, "name: single_bolt\n", "name: single_bolt\ndeployment_approval: dual\n")
+
+
+def test_where_the_model_asks_for_it_only_what_somebody_else_has_approved_is_deployed(tmp_path: Path) -> None:
+    """Also by who speaks to the controller itself; and what was approved is on record with who did it."""
+    with edited(tmp_path, "--emulator") as station:
+        until(station.up)
+        station.control()
+        first = deployed(station, DUAL, name="Two people")  # the model of before asks nobody
+        assert station.outcome(first)["state"] == "runs"
+        until(station.up)
+        assert station.get("station", "station")["deployment_approval"] == "dual"
+        station.change((STATION, DUAL[2], DUAL[1]))
+        assert station.checked()["state"] == "done"
+        revision = station.save("One again")
+        refused = station.deploy(revision)
+        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-approved")
+        assert "“One again”" in refused.json()["detail"]
+        with signed_in(station.model, station.port) as maria:
+            name = maria.get("session").json()["person"]["name"]
+            verdict = f"model/revisions/{revision}/reviews"
+            wanted = maria.post(verdict, json={"verdict": "changes-wanted", "text": "Why?"})
+            assert wanted.is_success, wanted.text
+            refused = station.deploy(revision)
+            assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-approved")
+            assert name in refused.json()["detail"]
+            assert maria.post(verdict, json={"verdict": "approved"}).is_success
+        assert station.deploy(revision).status_code == 204
+        assert station.outcome(revision)["state"] == "runs"
+        until(station.up)
+        assert station.get("station", "station")["deployment_approval"] == "single"
+        records = station.asked("GET", "audit?limit=50")["records"]
+        approved = [each["entry"]["details"]["approved_by"] for each in records if each["entry"]["action"] == "deploy"]
+        assert [name] in approved

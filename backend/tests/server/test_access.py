@@ -93,6 +93,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/model/deployments": ("engineer", None),
     "GET /api/v1/model/comments": ("viewer", "read"),
     "POST /api/v1/model/comments": ("engineer", None),
+    "POST /api/v1/model/revisions/{id}/reviews": ("engineer", None),
     "GET /api/v1/model/deployments/planned": ("viewer", "read"),
     "PUT /api/v1/model/deployments/planned": ("engineer", None),
     "DELETE /api/v1/model/deployments/planned": ("engineer", None),

@@ -494,6 +494,47 @@ def test_engineers_comment_on_the_draft_and_everybody_reads_it(server: Server, e
         problem(vera.post(f"{MODEL}/comments", json={"text": "I, too"}), 403, "role-too-low")
 
 
+def test_a_revision_is_approved_by_somebody_else_than_who_saved_it(
+    server: Server, eva: httpx.Client, adam: httpx.Client
+) -> None:
+    made(eva, TITLE)
+    saved = eva.post(f"{MODEL}/revisions", json={"number": read(eva)["number"], "name": "Bolts"}).json()
+    address = f"{MODEL}/revisions/{saved['id']}/reviews"
+
+    def judged(client: httpx.Client, verdict: str, text: str = "") -> httpx.Response:
+        return client.post(address, json={"verdict": verdict, "text": text})
+
+    def known() -> tuple[list[str], list[str]]:
+        (found,) = [each for each in read(eva, "/revisions")["revisions"] if each["id"] == saved["id"]]
+        return found["approved_by"], found["changes_wanted_by"]
+
+    assert known() == ([], [])
+    assert "“Bolts”" in problem(judged(eva, "approved"), 403, "same-person")["detail"]
+    problem(judged(adam, "withdrawn"), 409, "no-review")
+    problem(judged(adam, "changes-wanted", "  "), 422, "invalid-request")
+    problem(judged(adam, "perhaps"), 422, "invalid-request")
+    said = judged(adam, "changes-wanted", "Say which bolts.")
+    assert said.status_code == 201
+    name = said.json()["by"]
+    assert known() == ([], [name])
+    assert judged(adam, "approved").status_code == 201
+    assert known() == ([name], [])
+    assert judged(adam, "withdrawn", "I had not seen the second page.").status_code == 201
+    assert known() == ([], [])
+    problem(judged(adam, "withdrawn"), 409, "no-review")
+    told = read(eva, "/comments")["comments"]
+    assert [(each["verdict"], each["text"]) for each in told] == [
+        ("changes-wanted", "Say which bolts."),
+        ("approved", ""),
+        ("withdrawn", "I had not seen the second page."),
+    ]
+    assert {each["revision"] for each in told} == {saved["id"]}
+    unknown = adam.post(f"{MODEL}/revisions/{'0' * 40}/reviews", json={"verdict": "approved"})
+    problem(unknown, 404, "no-revision")
+    with server.client(Role.OPERATOR) as otto:
+        problem(judged(otto, "approved"), 403, "role-too-low")
+
+
 def test_the_state_space_of_the_draft_is_told_folded(eva: httpx.Client) -> None:
     """From the first look, where a choice is made, to a plan on it; and what cannot be shown is refused with why."""
     address, present = f"{MODEL}/what-if/state-space", {"bolts[bolt_pair_1]": "placed"}

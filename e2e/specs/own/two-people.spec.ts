@@ -5,15 +5,16 @@ import { join } from 'node:path';
 import { examine } from '../../station/barriers.ts';
 import { CLIENT, Providing, SECRET } from '../../station/providing.ts';
 import { signOut, takeControl, variable } from '../../station/seen.ts';
-import { ADA, ADAM, EVA, ROOT, Station, freePort } from '../../station/station.ts';
+import { ADA, ADAM, ERIK, EVA, INA, ROOT, Station, freePort } from '../../station/station.ts';
 import { test as base, expect } from '../../station/test.ts';
-import type { Page } from '@playwright/test';
+import type { Locator, Page } from '@playwright/test';
 
 const OTTO = { preferred_username: 'Otto', groups: ['station-operators'] };
 const NILS = { preferred_username: 'Nils', groups: ['sales'] };
 const DUAL = ['    type: bolt_state\n', '    type: bolt_state\n    approval: dual\n'] as const;
+const APPROVED = ['\nenumerations:', '\ndeployment_approval: dual\n\nenumerations:'] as const;
 
-/** One station for all: to start it takes longer than the tests. Its bolts ask for two people. */
+/** One station for all: to start it takes longer than the tests. Its bolts ask for two people, and so does each deployment. */
 const test = base.extend<object, { provided: { station: Station } }>({
 	provided: [
 		async ({}, use, info) => {
@@ -22,13 +23,13 @@ const test = base.extend<object, { provided: { station: Station } }>({
 			cpSync(join(ROOT, 'models/bolt_tightening'), model, { recursive: true });
 			const file = join(model, 'station.yaml');
 			const text = readFileSync(file, 'utf8');
-			expect(text).toContain(DUAL[0]);
-			writeFileSync(file, text.replace(...DUAL));
+			for (const [before] of [DUAL, APPROVED]) expect(text).toContain(before);
+			writeFileSync(file, text.replace(...DUAL).replace(...APPROVED));
 			const port = await freePort();
 			const station = await Station.start({
 				byItself: false,
 				devices: true,
-				people: [ADA, EVA, ADAM],
+				people: [ADA, EVA, ADAM, ERIK, INA],
 				model,
 				logs: join(import.meta.dirname, `../../artefacts/logs/two-people-${info.workerIndex}`),
 				environment: {
@@ -127,4 +128,58 @@ test('what asks for two people is asked for by one and done by another', async (
 	await adam.getByRole('button', { name: 'Approve', exact: true }).click();
 	await expect(eva.locator('[data-approval="approved"]')).toContainText('approved and done');
 	await expect(variable(eva, bolts)).toHaveAttribute('data-value', 'placed');
+});
+
+test('what is deployed was approved by somebody else than who saved it, and who wants changes is heard', async ({
+	drafting,
+	browse
+}) => {
+	test.slow();
+	const [erik, ina] = [await browse(ERIK, '/review'), await browse(INA, '/review')];
+	await drafting.change('Another title', ['station.yaml', 'title: {en: Bolt tightening station,', 'title: {en: Bolt cell,']);
+	const need = (page: Page, name: string): Locator => page.locator(`[data-need="${name}"]`);
+	await expect(need(erik, 'approved')).toContainText('It can be approved once it is saved.');
+	await erik.getByTestId('draft').getByRole('button', { name: 'Save revision…' }).click();
+	const saving = erik.getByRole('dialog', { name: 'Save the draft as a revision' });
+	await saving.getByLabel('Name').fill('Bolt cell');
+	await saving.getByRole('button', { name: 'Save', exact: true }).click();
+	await expect(need(erik, 'approved')).toContainText('You have saved it: somebody else has to approve it on this page.');
+	await expect(need(erik, 'approved').getByRole('button')).toHaveCount(0);
+
+	await need(ina, 'approved').getByRole('button', { name: 'Approve, or ask for changes' }).click();
+	const field = ina.getByLabel('Say something to the other engineers');
+	await expect(field).toBeFocused();
+	await expect(ina.getByRole('button', { name: 'Ask for changes', exact: true })).toHaveAttribute('aria-disabled', 'true');
+	await ina.keyboard.type('Why is it no station any more?');
+	await ina.getByRole('button', { name: 'Ask for changes', exact: true }).click();
+	await expect(ina.getByText('Wants changes in “Bolt cell”')).toBeVisible();
+	await expect(field).toHaveValue('');
+	await expect(need(erik, 'approved')).toContainText('Ina wants changes.');
+	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'false');
+	await erik.getByRole('tab', { name: /^Talk/ }).click();
+	await expect(erik.getByText('Why is it no station any more?')).toBeVisible();
+	await expect(erik.getByRole('button', { name: 'Approve', exact: true })).toHaveCount(0);
+	await examine(ina, 'review-talk');
+	await ina.setViewportSize({ width: 1440, height: 900 });
+
+	await ina.getByRole('button', { name: 'Approve', exact: true }).click();
+	await expect(ina.getByText('Approves “Bolt cell”')).toBeVisible();
+	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'true');
+	await expect(need(erik, 'approved')).toContainText('Approved by Ina.');
+	await expect(erik.locator('[data-revision="Bolt cell"]')).toContainText('Approved by Ina.');
+	await ina.getByRole('button', { name: 'Withdraw what I said of it' }).click();
+	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'false');
+	await ina.getByRole('button', { name: 'Approve', exact: true }).click();
+	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'true');
+
+	await need(erik, 'control').getByRole('button', { name: 'Take control' }).click();
+	await erik.getByRole('dialog').getByRole('button', { name: 'Take over' }).click();
+	await expect(need(erik, 'control')).toHaveCount(0);
+	await erik.getByRole('button', { name: 'Deploy…' }).click();
+	const dialog = erik.getByRole('dialog', { name: 'Deploy “Bolt cell”' });
+	await dialog.getByLabel('I want “Bolt cell” to take the place of what runs.').check({ timeout: 30_000 });
+	await dialog.getByLabel('Reason').fill('It is called so on the plan of the hall');
+	await dialog.getByRole('button', { name: 'Deploy' }).click();
+	await expect(erik.getByTestId('deployment')).toHaveAttribute('data-phase', 'runs', { timeout: 60_000 });
+	await expect(erik.locator('[data-revision="Bolt cell"]')).toHaveAttribute('data-running', 'true');
 });

@@ -194,6 +194,7 @@ export type TraceStep = Schemas['StepDocument'];
 export type Revision = Schemas['RevisionView'];
 export type Revisions = Schemas['RevisionsView'];
 export type PlannedDeployment = Schemas['PlannedDeploymentView'];
+export type Verdict = Schemas['Verdict'];
 export type Comments = Schemas['CommentsView'];
 export type Comparison = Schemas['ComparisonView'];
 export type PartDifference = Schemas['PartDifference'];

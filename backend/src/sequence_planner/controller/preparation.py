@@ -57,12 +57,15 @@ class DeployedError(Exception):
 
 
 class Deploying:
-    """Puts what is staged beside the `socket` into the folder `model`."""
+    """Puts what is staged beside the `socket` into the folder `model`. With `dual` approval, only what a second person
+    has approved.
+    """
 
-    def __init__(self, model: Path, socket: Path, emulated: bool) -> None:
+    def __init__(self, model: Path, socket: Path, *, emulated: bool, dual: bool) -> None:
         self._model = model
         self._beside = socket.parent
         self._emulated = emulated
+        self._dual = dual
         self._in_place = asyncio.Event()
         self._accepted: Deploy | None = None
 
@@ -70,6 +73,8 @@ class Deploying:
         """Raises `CommandRefused` for what can never be done here."""
         if command.reset and not self._emulated:
             raise CommandRefused("not-emulated", message("refused.not-emulated.reset"))
+        if self._dual and not command.approved_by:
+            raise CommandRefused("not-approved", message("refused.not-approved.nobody", name=command.name))
 
     def refusal(self) -> CommandRefused | None:
         """Return why nothing but a stop is carried out any more, once a deployment was accepted; None else.

@@ -156,7 +156,7 @@ class _Life:
         self._recording = recording
         self._database = database
         self._last_word, self._lasting = last_word, lasting
-        self._deploying = Deploying(running.model, running.socket, running.emulated)
+        self._deploying = Deploying(running.model, running.socket, emulated=running.emulated, dual=_is_dual(running))
         self._deployment = LastDeployment(running.socket)
         self._begins_in = begins_in
         self._at_rest_until = 0.0  # on the clock of `time.monotonic`: somebody wanted it before it could be done
@@ -447,6 +447,12 @@ def _follows(ended: LastEnding, keeper: LeaseKeeper) -> bool:
     return life.epoch is not None and keeper.epoch == life.epoch + 1
 
 
+def _is_dual(running: Running) -> bool:
+    """Return whether the model that runs asks for a second person's approval of what takes its place."""
+    station = running.station
+    return not isinstance(station, UnusableModel) and station.approval_is_dual
+
+
 def _identity(running: Running, transport: str) -> StationIdentity:
     station = running.station
     if isinstance(station, UnusableModel):
@@ -467,4 +473,5 @@ def _identity(running: Running, transport: str) -> StationIdentity:
         description=automaton.description,
         transport=transport,
         emulated=running.emulated,
+        deployment_approval="dual" if _is_dual(running) else "single",
     )

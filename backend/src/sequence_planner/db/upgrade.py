@@ -6,7 +6,7 @@ from typing import Final
 
 from sqlalchemy import Connection, inspect, text
 
-NEWEST: Final = "0011"
+NEWEST: Final = "0012"
 """The revision of the newest of `migrations`."""
 
 

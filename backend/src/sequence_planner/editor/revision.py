@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+
+_UNWRITABLE = re.compile(r"[<>\x00-\x1f]")
 
 
 @dataclass(frozen=True)
@@ -15,3 +18,13 @@ class Revision:
     by: str
     time: float
     tree: str
+    author: str  # the id of who saved it, as a commit has it
+
+    def is_by(self, id_: str) -> bool:
+        """Return whether an actor with this id has saved it."""
+        return self.author == in_commit(id_)
+
+
+def in_commit(text: str) -> str:
+    """Return the text as the author of a commit can have it."""
+    return _UNWRITABLE.sub(" ", text)

@@ -19,7 +19,7 @@ from dulwich.refs import Ref
 from dulwich.repo import Repo
 
 from sequence_planner.core.actor import SYSTEM, Actor
-from sequence_planner.editor.revision import Revision
+from sequence_planner.editor.revision import Revision, in_commit
 from sequence_planner.model.files import Files, content_of, text_of
 from sequence_planner.model.paths import EditError
 from sequence_planner.texts.message import message
@@ -28,7 +28,7 @@ BRANCH = Ref(b"refs/heads/main")
 LONGEST_NAME = 100  # characters
 BEFORE = "As the station was"
 _ID = re.compile("[0-9a-f]{40}")
-_UNWRITABLE = re.compile(r"[<>\x00-\x1f]")
+_AT = "@station"
 
 
 class Revisions:
@@ -105,7 +105,7 @@ def _commit(repository: Repo, files: Files, name: str, message: str, by: Actor, 
     commit = Commit()
     commit.tree = _tree(store, files)
     commit.parents = [repository.refs[BRANCH]] if BRANCH in repository.refs.allkeys() else []
-    who = f"{_UNWRITABLE.sub(' ', by.name)} <{_UNWRITABLE.sub(' ', by.id)}@station>".encode()
+    who = f"{in_commit(by.name)} <{in_commit(by.id)}{_AT}>".encode()
     commit.author = commit.committer = who
     commit.author_time = commit.commit_time = int(now)
     commit.author_timezone = commit.commit_timezone = 0
@@ -118,5 +118,13 @@ def _commit(repository: Repo, files: Files, name: str, message: str, by: Actor, 
 
 def _revision(commit: Commit) -> Revision:
     name, _, message = commit.message.decode(errors="replace").partition("\n")
-    author = commit.author.decode(errors="replace").rpartition(" <")[0]
-    return Revision(commit.id.decode(), name, message.strip(), author, float(commit.commit_time), commit.tree.decode())
+    by, _, author = commit.author.decode(errors="replace").removesuffix(">").rpartition(" <")
+    return Revision(
+        commit.id.decode(),
+        name,
+        message.strip(),
+        by,
+        float(commit.commit_time),
+        commit.tree.decode(),
+        author.removesuffix(_AT),
+    )

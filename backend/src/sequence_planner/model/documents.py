@@ -577,6 +577,8 @@ class StationDocument(DocumentPart):
     """Packages of types of resources, and where each is brought from."""
     takeover: Literal["confirm", "automatic"] = "confirm"
     """After a hot standby has taken command: with `true`, a person confirms that production goes on."""
+    deployment_approval: Literal["single", "dual"] = "single"
+    """With `dual`, a revision takes the place of this model only once a second person has approved it."""
 
     def enumeration_values(self) -> dict[SourceText, tuple[SourceText, ...]]:
         """The values of each enumeration, in order: its own, then those that it includes and does not have yet.

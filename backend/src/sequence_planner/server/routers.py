@@ -19,7 +19,7 @@ from sequence_planner.server.api import (
     webhooks,
     what_if,
 )
-from sequence_planner.server.api.drafting import attachments, outlines
+from sequence_planner.server.api.drafting import attachments, outlines, talk
 from sequence_planner.server.stream import endpoints
 
 ROUTERS: Final = (
@@ -54,6 +54,7 @@ ROUTERS: Final = (
     model.model_router,
     model.examples_router,
     outlines.router,
+    talk.router,
     model.language_router,
     model.draft_pipelines_router,
     revisions.router,

@@ -44,6 +44,16 @@ REFUSALS: Final[dict[str, str]] = {
     "refused.no-approval-needed.free": "None of these variables asks for a second person: it can be done at once.",
     "refused.same-person": "A second person is needed",
     "refused.same-person.yourself": "You have asked for it yourself: somebody else has to approve it.",
+    "refused.same-person.saved": "You have saved “{name}” yourself: somebody else has to look at it.",
+    "refused.not-approved": "Nobody else has approved it",
+    "refused.not-approved.nobody": (
+        "What is deployed here is approved by a second person. Somebody else than who saved “{name}” has to approve it."
+    ),
+    "refused.not-approved.changes": (
+        "Changes in “{name}” are still wanted by {people}. Save them as another revision, or ask again."
+    ),
+    "refused.no-review": "There is nothing to withdraw",
+    "refused.no-review.withdraw": "You have said nothing of “{name}” that still counts.",
     "refused.request-gone": "The request is gone",
     "refused.request-gone.gone": (
         "Nobody waits for this any more: it was answered, took too long, or the state has moved. Ask anew."

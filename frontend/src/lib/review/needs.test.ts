@@ -2,7 +2,8 @@ import { describe, expect, test } from 'vitest';
 import type { Revisions, StationView, Transfer, Workshop } from '#lib/contract.ts';
 import { differing, fateOf, isStanding, isUnrun, needsOf, onlyPauses, runningOf, savedAs, type Known } from './needs.ts';
 
-const VIEW: Known['view'] = { mode: 'paused', production: 'started', errand: null, analysis: null };
+const STATION = { name: 'cell', title: 'Cell', titles: {}, description: '', transport: 'dds', emulated: true, deployment_approval: 'single' } as const;
+const VIEW: Known['view'] = { mode: 'paused', production: 'started', errand: null, analysis: null, station: STATION };
 const UNMET: StationView['analysis'] = {
 	pending: null,
 	pending_message: null,
@@ -34,7 +35,7 @@ const WORKSHOP: Workshop = {
 	}
 };
 const REVISIONS: Revisions = {
-	revisions: [{ id: 'a'.repeat(40), name: 'New', message: '', by: 'Erik', time: 0, running: false, draft: true }],
+	revisions: [{ id: 'a'.repeat(40), name: 'New', message: '', by: 'Erik', time: 0, running: false, draft: true, approved_by: [], changes_wanted_by: [] }],
 	saved: true,
 	running: false
 };
@@ -69,6 +70,19 @@ describe('a deployment needs', () => {
 		expect(missing({ workshop: { ...WORKSHOP, check } })).toEqual(['checked']);
 	});
 
+	test('the approval of somebody else where the model that runs asks for it, as long as nobody wants changes', () => {
+		const view = { ...VIEW, station: { ...STATION, deployment_approval: 'dual' as const } };
+		const said = (approved_by: string[], changes_wanted_by: string[]): Revisions => ({
+			...REVISIONS,
+			revisions: REVISIONS.revisions.map((each) => ({ ...each, approved_by, changes_wanted_by }))
+		});
+		expect(missing({ view })).toEqual(['approved']);
+		expect(missing({ view, revisions: null })).toEqual(['saved', 'approved']);
+		expect(missing({ view, revisions: said(['Maria'], []) })).toEqual([]);
+		expect(missing({ view, revisions: said(['Maria'], ['Per']) })).toEqual(['approved']);
+		expect(missing({ revisions: said([], ['Per']) })).toEqual([]);
+	});
+
 	test('a station that stands, in a state that is legal, and control', () => {
 		expect(missing({ view: { ...VIEW, mode: 'automatic' } })).toEqual(['standing']);
 		expect(missing({ mine: false })).toEqual(['control']);
@@ -77,7 +91,7 @@ describe('a deployment needs', () => {
 	});
 
 	test('neither where what is there cannot run at all', () => {
-		const view: Known['view'] = { mode: 'automatic', production: 'preparing', errand: null, analysis: UNMET };
+		const view: Known['view'] = { mode: 'automatic', production: 'preparing', errand: null, analysis: UNMET, station: STATION };
 		expect(isUnrun(view)).toBe(true);
 		expect(missing({ view, mine: false })).toEqual([]);
 	});

@@ -2,10 +2,10 @@
 import type { FileMark, Revision, Revisions, StationView, Transfer, Workshop } from '#lib/contract.ts';
 import { verdictOf } from '#lib/workshop/verdict.ts';
 
-export type Need = 'saved' | 'other' | 'checked' | 'standing' | 'control' | 'fits';
+export type Need = 'saved' | 'other' | 'checked' | 'approved' | 'standing' | 'control' | 'fits';
 
 export interface Known {
-	readonly view: Pick<StationView, 'mode' | 'production' | 'errand' | 'analysis'>;
+	readonly view: Pick<StationView, 'mode' | 'production' | 'errand' | 'analysis' | 'station'>;
 	readonly workshop: Workshop;
 	/** The revisions as they are with this draft; null while they are not known. */
 	readonly revisions: Revisions | null;
@@ -25,13 +25,23 @@ export function savedAs(revisions: Revisions | null): Revision | null {
 	return revisions?.revisions.find((each) => each.draft) ?? null;
 }
 
+/** Somebody else than who saved it has approved it, and nobody wants changes. */
+export function isApproved({ approved_by, changes_wanted_by }: Pick<Revision, 'approved_by' | 'changes_wanted_by'>): boolean {
+	return approved_by.length > 0 && changes_wanted_by.length === 0;
+}
+
+/** Whether somebody else has a say in whether the draft, saved as `saved`, is deployed: as the model that runs asks for it, or as they have said something. */
+export function isReviewed(view: Pick<StationView, 'station'>, saved: Revision | null): boolean {
+	return view.station.deployment_approval === 'dual' || (saved !== null && saved.approved_by.length + saved.changes_wanted_by.length > 0);
+}
+
 /** Nothing of the model that is there can run, so nothing need be stopped, and nobody need be in control. */
 export function isUnrun({ production, analysis }: Pick<StationView, 'production' | 'analysis'>): boolean {
 	return production === 'preparing' && analysis?.supervised === false;
 }
 
 /** Nothing is started by itself. */
-export function isStanding(view: Known['view']): boolean {
+export function isStanding(view: Pick<StationView, 'mode' | 'production' | 'errand' | 'analysis'>): boolean {
 	if (isUnrun(view)) return true;
 	if (view.production === 'preparing' || view.errand !== null) return false;
 	return !(view.production === 'started' && view.mode === 'automatic');
@@ -47,10 +57,13 @@ export function runningOf({ abilities }: Pick<StationView, 'abilities'>, among?:
 /** All that is needed, in the order in which a person brings it about, and whether it is so. */
 export function needsOf({ view, workshop, revisions, transfer, mine }: Known): [need: Need, met: boolean][] {
 	const { check, number, files } = workshop;
+	const saved = savedAs(revisions);
+	const approval: [Need, boolean][] = view.station.deployment_approval === 'dual' ? [['approved', saved !== null && isApproved(saved)]] : [];
 	return [
 		['other', differing(files).length > 0],
-		['saved', savedAs(revisions) !== null],
+		['saved', saved !== null],
 		['checked', check.number === number && verdictOf(check) === 'good'],
+		...approval,
 		['fits', transfer?.legal === true],
 		['control', mine || isUnrun(view)],
 		['standing', isStanding(view)]

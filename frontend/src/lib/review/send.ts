@@ -1,5 +1,5 @@
 /** What is asked of the server about revisions, and what is done with them. */
-import type { Comments, Comparison, FilesView, Revision, Simulation, Transfer, Value, WhatIf, WhatIfBody } from '#lib/contract.ts';
+import type { Comments, Comparison, FilesView, Revision, Simulation, Transfer, Value, Verdict, WhatIf, WhatIfBody } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { command, request, type Answer } from '#lib/rest/request.ts';
 
@@ -63,4 +63,9 @@ export function cancelDeployment(): Promise<Refusal | null> {
 /** Says something of the draft. */
 export function addComment(text: string): Promise<Answer<Comments['comments'][number]>> {
 	return request('POST', `${ADDRESS}/comments`, { body: { text } });
+}
+
+/** Says what one thinks of a revision. 403: one has saved it oneself. */
+export function reviewRevision(id: string, verdict: Verdict, text: string): Promise<Answer<Comments['comments'][number]>> {
+	return request('POST', `${ADDRESS}/revisions/${id}/reviews`, { body: { verdict, text } });
 }

@@ -1,8 +1,8 @@
 /** What was said of the draft, read whenever somebody has said something. */
-import type { Comments } from '#lib/contract.ts';
+import type { Comments, Verdict } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { Reading } from '#lib/rest/reading.svelte.ts';
-import { addComment } from './send.ts';
+import { addComment, reviewRevision } from './send.ts';
 
 const EVERY = 60_000;
 
@@ -22,8 +22,17 @@ export class Talk {
 	}
 
 	/** Says something; null when it was taken. */
-	async say(text: string): Promise<Refusal | null> {
-		const answer = await addComment(text);
+	say(text: string): Promise<Refusal | null> {
+		return this.#add(addComment(text));
+	}
+
+	/** Says what one thinks of a revision; null when it was taken. */
+	judge(revision: string, verdict: Verdict, text: string): Promise<Refusal | null> {
+		return this.#add(reviewRevision(revision, verdict, text));
+	}
+
+	async #add(asked: ReturnType<typeof addComment>): Promise<Refusal | null> {
+		const answer = await asked;
 		if (!answer.ok) return answer.refusal;
 		await this.again();
 		return null;

@@ -113,7 +113,7 @@ export function estimate(rest: Partial<Variable> = {}): Variable {
 }
 
 export function view(rest: Partial<StationView> = {}): StationView {
-	const station = { name: 'station', title: 'Station', titles: { '': 'Station' }, description: '', transport: 'dds', emulated: true };
+	const station = { name: 'station', title: 'Station', titles: { '': 'Station' }, description: '', transport: 'dds', emulated: true, deployment_approval: 'single' as const };
 	return {
 		station,
 		tick: 0,

@@ -207,7 +207,8 @@ class RemoveBreakpoint(Command):
 class Deploy(Command):
     """Let another model take the place of the one that runs, and begin anew with it. Its files lie in the folder
     `staged` beside the controller's socket; `revision` and `name` are those it was saved under. With `reset` emulated
-    devices and the station begin as the new model says, else they go on as they are.
+    devices and the station begin as the new model says, else they go on as they are. `approved_by` are the names of
+    those who have approved the revision; the model that runs may ask for one at least.
     """
 
     kind: Literal["deploy"] = "deploy"
@@ -218,6 +219,7 @@ class Deploy(Command):
     name: str = Field(max_length=200)
     staged: str = Field(pattern=r"^deploy-[0-9a-f]{16}$")
     reset: bool = False
+    approved_by: tuple[Annotated[str, Field(max_length=200)], ...] = ()
 
 
 class SetOverride(Command):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -486,6 +486,7 @@ class StationIdentity(View):
     description: str
     transport: str
     emulated: bool
+    deployment_approval: Literal["single", "dual"] = "single"  # `dual`: a second person approves what is deployed
 
 
 class DeploymentState(StrEnum):

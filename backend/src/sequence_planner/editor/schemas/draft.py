@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import OrderedDict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from enum import StrEnum
 
 from pydantic import Field, JsonValue
@@ -17,6 +17,8 @@ from sequence_planner.editor.draft import ChangeKind, Differences, Draft, DraftC
 from sequence_planner.editor.merging import rewritten
 from sequence_planner.editor.revision import Revision
 from sequence_planner.editor.schemas.check import CheckView
+from sequence_planner.editor.talk.approval import standing_verdicts
+from sequence_planner.editor.talk.comments import Comment, Verdict
 from sequence_planner.mimic.views import MimicView
 from sequence_planner.model.files import is_binary
 from sequence_planner.model.source import ModelError
@@ -230,7 +232,7 @@ class DraftOperationsView(View):
 class RevisionView(View):
     """A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
 
-    Time is in seconds since the epoch.
+    `approved_by` and `changes_wanted_by` are the names of those who think so of it. Time is in seconds since the epoch.
     """
 
     id: str
@@ -240,6 +242,8 @@ class RevisionView(View):
     time: float
     running: bool
     draft: bool
+    approved_by: list[str]
+    changes_wanted_by: list[str]
 
 
 class RevisionsView(View):
@@ -276,13 +280,18 @@ class PlannedDeploymentView(View):
 
 
 class CommentView(View):
-    """What somebody has said of the draft, as it was after its change `draft`. Time is in seconds since the epoch."""
+    """What somebody has said of the draft, as it was after its change `draft`, or with a `verdict` of a `revision`.
+
+    Time is in seconds since the epoch.
+    """
 
     number: int
     time: float
     by: str
     draft: int
     text: str
+    revision: str | None
+    verdict: Verdict | None
 
 
 class CommentsView(View):
@@ -429,10 +438,14 @@ def _short(text: str | None) -> str | None:
     return text if text is None or len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
 
 
-def revisions_view(revisions: Iterable[Revision], running: str, edited: str) -> RevisionsView:
-    """Revisions, as people read them; the other two are the trees of what runs, and of the draft."""
-    views = [
-        RevisionView(
+def revisions_view(
+    revisions: Iterable[Revision], running: str, edited: str, verdicts: Sequence[Comment]
+) -> RevisionsView:
+    """Revisions, as people read them; `running` and `edited` are the trees of what runs, and of the draft."""
+
+    def view(each: Revision) -> RevisionView:
+        counting = standing_verdicts(each, verdicts)
+        return RevisionView(
             id=each.id,
             name=each.name,
             message=each.message,
@@ -440,9 +453,11 @@ def revisions_view(revisions: Iterable[Revision], running: str, edited: str) -> 
             time=each.time,
             running=each.tree == running,
             draft=each.tree == edited,
+            approved_by=[said.by_name for said in counting if said.verdict is Verdict.APPROVED],
+            changes_wanted_by=[said.by_name for said in counting if said.verdict is Verdict.CHANGES_WANTED],
         )
-        for each in revisions
-    ]
+
+    views = [view(each) for each in revisions]
     return RevisionsView(
         revisions=views, saved=any(each.draft for each in views), running=any(each.running for each in views)
     )

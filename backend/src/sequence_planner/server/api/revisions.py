@@ -13,15 +13,12 @@ from sequence_planner.core.actor import Actor as Acting
 from sequence_planner.editor.processes import PATIENCE, worked
 from sequence_planner.editor.schemas.diff import ComparisonView, TransferView
 from sequence_planner.editor.schemas.draft import (
-    CommentsView,
-    CommentView,
     FilesView,
     PlannedDeploymentView,
     RevisionsView,
     RevisionView,
 )
 from sequence_planner.editor.schemas.what_if import untransferred
-from sequence_planner.editor.talk.comments import Comment, append_comment, read_comments
 from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.auth import allowed
@@ -29,7 +26,6 @@ from sequence_planner.server.dependencies import (
     JSON_ONLY,
     Actor,
     Body,
-    Identity,
     LiveView,
     found,
 )
@@ -45,7 +41,6 @@ from sequence_planner.server.services.deployments import (
 )
 from sequence_planner.server.services.drafts import DRAFT, HASH, RUNNING, TheWorkshop, refusal, version_files
 
-MOST_COMMENTS = 200  # that are shown
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
 
@@ -98,12 +93,6 @@ class DeploymentBody(Body):
     simulation: Simulation = Simulation.KEEP
 
 
-class CommentBody(Body):
-    """What is said of the draft."""
-
-    text: Annotated[str, Field(min_length=1, max_length=5000)]
-
-
 @router.get("/revisions", dependencies=[VIEWER])
 async def revisions(shop: TheWorkshop) -> RevisionsView:
     """All revisions, and which of them run and are edited."""
@@ -128,30 +117,6 @@ async def restore_revision(id: Id, body: RestoreBody, shop: TheWorkshop, actor: 
     draft = await draft_after(shop, body.number)
     files = await version_files(shop, id)
     return found(await shop.restore(draft, files, (await revision_of(shop, id)).name, actor))
-
-
-@router.get("/comments", dependencies=[VIEWER])
-async def comments(identity: Identity) -> CommentsView:
-    """What was said of the draft, the newest 200 comments in the order in which they were made."""
-    known = await identity.read(lambda connection: read_comments(connection, MOST_COMMENTS))
-    return CommentsView(comments=[_comment_view(each) for each in known])
-
-
-@router.post("/comments", status_code=201, dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def add_comment(body: CommentBody, shop: TheWorkshop, identity: Identity, actor: Actor) -> CommentView:
-    """Say something of the draft to the other engineers; what was said stays."""
-    draft, now = await shop.open(), identity.now()
-    made = await identity.write(
-        lambda connection: append_comment(connection, actor, draft.number, body.text, now), by=actor
-    )
-    shop.tell_comment(made.number)
-    return _comment_view(made)
-
-
-def _comment_view(comment: Comment) -> CommentView:
-    return CommentView(
-        number=comment.number, time=comment.time, by=comment.by_name, draft=comment.draft, text=comment.text
-    )
 
 
 @router.get("/comparison", dependencies=[VIEWER], response_model=ComparisonView, responses=refused(404))
@@ -196,7 +161,8 @@ async def deploy(body: DeploymentBody, desk: Desk, actor: Actor, view: LiveView)
 
     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
     production. Where it cannot be started with it the model before comes back: `deployment` in `GET /station` says what
-    has become of it. 409 `not-checked` while the check of the draft has not ended, `check-found-errors` with the first
+    has become of it. 409 `not-approved` where the model that runs asks for a second person's approval that is missing,
+    `not-checked` while the check of the draft has not ended, `check-found-errors` with the first
     of the errors and its place, `no-supervisor` where nothing of it could be started.
     """
     await desk.deploy(_asked(body, actor), view)

@@ -87,6 +87,7 @@ class DeploymentService:
                     name=known.name,
                     staged=staged.name,
                     reset=asked.reset,
+                    approved_by=tuple(known.approved_by),
                 )
             )
         finally:
@@ -172,6 +173,8 @@ class DeploymentService:
             raise Refused("not-the-draft", message("refused.not-the-draft.take-back"))
         if (hindrance := (await self.shop.checked()).hindrance(draft.number)) is not None:
             raise Refused(hindrance.slug, message("hindrance.why", why=hindrance.why), title=hindrance.title)
+        if view.station.deployment_approval == "dual":
+            _require_approval(known)
         if asked.reset and not view.station.emulated:
             raise Refused("not-emulated", message("refused.not-emulated.reset"))
         return draft, known
@@ -191,6 +194,15 @@ async def revision_of(shop: Workshop, id: str) -> RevisionView:
     if found is None:
         raise Refused("no-revision", message("refused.no-revision.look"), 404)
     return found
+
+
+def _require_approval(revision: RevisionView) -> None:
+    """Raises `Refused` where nobody else than who saved it has approved it, or somebody wants changes in it."""
+    if wanting := revision.changes_wanted_by:
+        people = ", ".join(wanting)
+        raise Refused("not-approved", message("refused.not-approved.changes", name=revision.name, people=people))
+    if not revision.approved_by:
+        raise Refused("not-approved", message("refused.not-approved.nobody", name=revision.name))
 
 
 async def transfer_question(shop: Workshop, view: StationView, *, reset: bool) -> tuple[object, ...]:

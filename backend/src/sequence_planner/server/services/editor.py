@@ -42,6 +42,7 @@ from sequence_planner.editor.schemas.draft import (
     places_changed,
     revisions_view,
 )
+from sequence_planner.editor.talk.comments import read_verdicts
 from sequence_planner.model.files import Files, FolderReader
 from sequence_planner.model.launch_requirements import StartNeeds
 from sequence_planner.model.paths import EditError
@@ -228,10 +229,15 @@ class Workshop(ReadableWorkshop):
 
     async def revised(self) -> RevisionsView:
         """All revisions. Raises `WorkerError`."""
+        revisions, running, edited = await self.saved()
+        return revisions_view(revisions, running, edited, await self._identity.read(read_verdicts))
+
+    async def saved(self) -> tuple[list[Revision], str, str]:
+        """All revisions, newest first, and the trees of what runs and of the draft. Raises `WorkerError`."""
         draft = await self.open()
         found = await self._editing.ask(draft.files, "revised", self._revisions, draft.base)
         assert isinstance(found, tuple)
-        return revisions_view(*found)
+        return found
 
     async def files_of(self, revision: str) -> dict[str, str]:
         """The files of a revision. Raises `EditError` where there is none, and `WorkerError`."""

@@ -174,6 +174,7 @@ export const model = {
 		titles: 'Words for its values',
 		by_hand: 'What a person does for a value',
 		takeover: 'After a hot standby took over',
+		deployment_approval: 'Who approves a deployment',
 		for: 'One for each',
 		parameters: 'Parameters',
 		arguments: 'Arguments',

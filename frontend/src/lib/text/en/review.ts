@@ -42,7 +42,18 @@ export const review = {
 		none: 'Nobody has said anything of this draft yet.',
 		label: 'Say something to the other engineers',
 		send: 'Comment',
-		stays: 'What was said stays.'
+		stays: 'What was said stays.',
+		approve: 'Approve',
+		want: 'Ask for changes',
+		withdraw: 'Withdraw what I said of it',
+		unsaved: 'A revision is approved: it can be once the draft is saved.',
+		about: (name: string): string => `You approve “${name}” as it is now. To ask for changes, write which.`,
+		own: (name: string): string => `You have saved “${name}”: somebody else can approve it here.`,
+		verdict: {
+			approved: (name: string): string => `Approves “${name}”`,
+			'changes-wanted': (name: string): string => `Wants changes in “${name}”`,
+			withdrawn: (name: string): string => `Withdraws what they said of “${name}”`
+		}
 	},
 
 	/** A deployment when the product in work is done. */
@@ -220,9 +231,18 @@ export const review = {
 			other: 'Differs from what runs',
 			saved: 'Saved as a revision',
 			checked: 'Checked, with a supervisor',
+			approved: 'Approved by a second person',
 			fits: 'Fits the state the station is in',
 			standing: 'The station is paused',
 			control: 'You have control'
+		},
+		approval: {
+			by: (people: string): string => `Approved by ${people}.`,
+			wanted: (people: string, n: number): string => `${people} ${n === 1 ? 'wants' : 'want'} changes.`,
+			later: 'It can be approved once it is saved.',
+			own: 'You have saved it: somebody else has to approve it on this page.',
+			demonstration: 'In a demonstration there is no second person who could.',
+			give: 'Approve, or ask for changes'
 		},
 		savedAs: (name: string): string => `“${name}”`,
 		checkedIn: (seconds: string): string => `in ${seconds} s`,

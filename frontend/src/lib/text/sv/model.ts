@@ -170,6 +170,7 @@ export const model: Text['model'] = {
 		titles: 'Ord för dess värden',
 		by_hand: 'Vad en person gör för ett värde',
 		takeover: 'När en reserv har tagit över',
+		deployment_approval: 'Vem godkänner en driftsättning',
 		for: 'En för varje',
 		parameters: 'Parametrar',
 		arguments: 'Argument',

@@ -42,7 +42,18 @@ export const review: Text['review'] = {
 		none: 'Ingen har sagt något om utkastet än.',
 		label: 'Säg något till de andra teknikerna',
 		send: 'Kommentera',
-		stays: 'Det som har sagts står kvar.'
+		stays: 'Det som har sagts står kvar.',
+		approve: 'Godkänn',
+		want: 'Be om ändringar',
+		withdraw: 'Ta tillbaka det jag sagt om den',
+		unsaved: 'Det är en revision som godkänns: det går när utkastet är sparat.',
+		about: (name) => `Du godkänner ”${name}” som den är nu. Skriv vilka ändringar du vill ha för att be om dem.`,
+		own: (name) => `Du har sparat ”${name}”: någon annan kan godkänna den här.`,
+		verdict: {
+			approved: (name) => `Godkänner ”${name}”`,
+			'changes-wanted': (name) => `Vill ha ändringar i ”${name}”`,
+			withdrawn: (name) => `Tar tillbaka det som sagts om ”${name}”`
+		}
 	},
 
 	planned: {
@@ -218,9 +229,18 @@ export const review: Text['review'] = {
 			other: 'Skiljer sig från det som körs',
 			saved: 'Sparat som revision',
 			checked: 'Granskat, med övervakare',
+			approved: 'Godkänt av en andra person',
 			fits: 'Passar tillståndet som stationen är i',
 			standing: 'Stationen är pausad',
 			control: 'Du har kontrollen'
+		},
+		approval: {
+			by: (people) => `Godkänt av ${people}.`,
+			wanted: (people) => `${people} vill ha ändringar.`,
+			later: 'Det kan godkännas när det är sparat.',
+			own: 'Du har sparat det: någon annan måste godkänna det på den här sidan.',
+			demonstration: 'I en demonstration finns ingen andra person som kan göra det.',
+			give: 'Godkänn eller be om ändringar'
 		},
 		savedAs: (name) => `”${name}”`,
 		checkedIn: (seconds) => `på ${seconds} s`,

@@ -1,1 +1,1 @@
-"""Routes by which something new comes to the draft: topics of the network, and stations from outlines."""
+"""Routes by which something comes to the draft: topics of the network, stations from outlines, what is said of it."""
