@@ -182,7 +182,11 @@ def test_the_device_is_to_blame_that_does_not_say_what_another_one_has_brought_a
     assert still.devices(10.1) == {"gripper": {"felt"}}
     (told,) = alarms.causes(Timestamp(1010.1, 10.1))
     assert told.text == "Gripper has stalled. It still reports: not felt"
-    assert (told.key, told.action, told.resources) == ("still:gripper", "Check Gripper.", ("gripper",))
+    assert (told.key, told.action, told.resources) == (
+        "still:gripper",
+        "See what keeps Gripper from going on.",
+        ("gripper",),
+    )
 
 
 def test_all_are_to_blame_who_do_not_say_what_has_come_about() -> None:

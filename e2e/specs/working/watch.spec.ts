@@ -62,7 +62,7 @@ test('a problem told on the watch is an alarm until it is solved, and the next t
 	] as const) {
 		await operate.getByRole('button', { name: act, exact: true }).click();
 		await expect(watch.getByTestId('standing')).toHaveText(words);
-		await expect(watch.getByText('Nothing moves yet')).toBeVisible();
+		await expect(watch.getByText('Nothing starts yet')).toBeVisible();
 		await expect(watch.getByText('Moves next')).toHaveCount(0);
 		// Nobody waits for it, and it says that nothing comes of it but a record.
 		await expect(done(watch)).toHaveText('Record as done');

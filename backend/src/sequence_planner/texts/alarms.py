@@ -65,7 +65,7 @@ ALARMS: Final[dict[str, str]] = {
     "late.begun-past": "did not begin within {seconds} s",
     "late.finished-past": "did not finish within {seconds} s",
     "late.check-receives": "Check that {resource} receives its commands and is ready.",
-    "late.check": "Check {resources}.",
+    "late.check": "See what keeps {resources} from going on.",
     **_kind("still", "{what}", "{what_past}", "{consequence}", "{action}"),
     "still.stalled": "{resource} has stalled. It still reports: {values}",
     "still.stalled-past": "{resource} had stalled. It still reported: {values}",
@@ -191,8 +191,6 @@ ALARMS: Final[dict[str, str]] = {
     "unsafe.either": (
         "Nothing is violated yet, but that could come without any start, or rest can no longer be reached"
     ),
-    "unsafe.difference": "{safe} (now {now})",
-    "unsafe.nearest": "{consequence} In the nearest safe state: {differences}.",
     "unsafe.specification": "“{title}”",
     "unsafe.past": "The station was outside its safe states",
     "unsafe.past-violated": "The station was outside its safe states. Violated: {specifications}",
@@ -358,13 +356,13 @@ ALARMS: Final[dict[str, str]] = {
     "wait.standstill": "Nothing is started. {waiting}",
     "wait.nothing": "Nothing is started.",
     "wait.not-started": "Production is not started, so nothing waits for it.",
-    "wait.errand": "{title} waits{until}.",
+    "wait.errand": "{title} waits{what}.",
     "wait.paused": "Nothing waits for it while the station is paused.",
     "wait.hold": "Nothing waits for it while the station is held.",
     "wait.restart": "Nothing waits for it in restart mode.",
     "wait.none": "No active operation waits for it.",
-    "wait.operations": "{operations} {operations|waits|wait}{until}.",
-    "wait.until-it-does": " until it does",
+    "wait.operations": "{operations} {operations|waits|wait}{what}.",
+    "wait.for": " for {resource}",
     "wait.no-plan": "There is no plan without {count|it|them}. {rest}",
     "wait.looking": "A plan without {count|it|them} is being looked for. {rest}",
     "wait.goes-on": "The work goes on without {count|it|them}.",
@@ -377,5 +375,5 @@ ALARMS: Final[dict[str, str]] = {
     "mode.hold": "hold",
     "mode.restart": "restart",
     # What holds them together.
-    "over": "{past}. This is over, but not all that followed",
+    "over": "{past}. That is over, but something that came of it lasts",
 }

@@ -107,7 +107,7 @@ def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
     rig.run(3)
     (alarm,) = rig.shown.values()
     assert alarm.text.startswith("Robot UR10 had stalled")
-    assert alarm.text.endswith("This is over, but not all that followed")
+    assert alarm.text.endswith("That is over, but something that came of it lasts")
     assert any("outside its safe states" in part for part in alarm.parts)
 
 

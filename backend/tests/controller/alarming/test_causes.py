@@ -86,7 +86,7 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     assert late not in shown.current(Timestamp(rig.now + 4, rig.now + 4))
     told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
     assert told.text == "Smart nutrunner: “Run the nutrunner” has not begun within 5 s"
-    assert told.consequence == "“Tighten bolt pair 3” waits until it does."
+    assert told.consequence == "“Tighten bolt pair 3” waits for Smart nutrunner."
 
     assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
     told = shown.current(Timestamp(rig.now + 6, rig.now + 6))[late]
@@ -282,7 +282,9 @@ def test_a_problem_with_a_task_is_told_with_who_has_it_and_what_waits_for_it() -
     alarm = shown.current(now)[f"problem:{task.id}"]
     assert (alarm.priority, alarm.state) == (Priority.MEDIUM, AlarmState.UNACKNOWLEDGED)
     assert alarm.text == f"Eva has a problem with “{task.title}”: no bolts"
-    assert alarm.consequence.endswith("wait.") or alarm.consequence.endswith("waits.")
+    assert alarm.consequence.endswith("wait for Operator with watch.") or alarm.consequence.endswith(
+        "waits for Operator with watch."
+    )
     rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "", ProblemKind.MISSING)}
     assert shown.current(now)[f"problem:{task.id}"].text.endswith("”: a part is missing")
     rig.desk.problems = {task.id: TaskProblem("Eva", rig.now, "the left one", ProblemKind.DAMAGED)}

@@ -63,7 +63,7 @@ def test_what_outlasts_its_cause_for_long_is_an_alarm_of_its_own() -> None:
     )
     folding.fold([cause("a", priority=Priority.HIGH), part], (), 0)
     over = folding.fold([part], (), 5).alarms["a"]
-    assert str(over.text) == "a was wrong. This is over, but not all that followed"
+    assert str(over.text) == "a was wrong. That is over, but something that came of it lasts"
     assert (str(over.consequence), str(over.action)) == ("it waits", "look at b"), "of what is left"
     assert over.priority is Priority.LOW
     assert folding.fold([cause("b", "a")], (), 5 + LINGERS).alarms.keys() == {"b"}

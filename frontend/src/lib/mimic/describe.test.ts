@@ -33,6 +33,10 @@ test('what runs on a device that is not heard is told by nobody, held or not', (
 	expect(happening(view({ ...silent, abilities: { move: { ...move, executing: false, running_since: null } } }))).toBe('Nobody knows whether Robot moves');
 });
 
+test('what runs on a device that fails is told as that', () => {
+	expect(happening(view({ ...station, failing: ['Robot'] }))).toBe('Place a pair · Robot does not go on');
+});
+
 test('where an ability leads is called as the picture calls the stop, and nothing where it has no name', () => {
 	const stop = (value: string, title: Record<string, string>) => ({ value, title, x: 0, y: 0, label: 'none' as const, room: 0, branch: false });
 	const symbol = { track: { stops: [stop('pair_1', { en: 'Pair 1', sv: 'Par 1' }), stop('far', {})] } } as unknown as MimicSymbol;

@@ -165,15 +165,18 @@ function worded(value: string): string {
 /** What happens now and what comes then, in one sentence. */
 export function happening(view: StationView): string {
 	const texts = say().mimic;
-	const silent = new Set(view.silent);
+	// What such a device does is not what its ability says.
+	const wrong = new Set([...view.silent, ...view.failing]);
 	const running = Object.values(view.abilities)
-		.filter((ability) => runs(ability) && !silent.has(view.resources[ability.resource]?.title ?? ''))
+		.filter((ability) => runs(ability) && !wrong.has(view.resources[ability.resource]?.title ?? ''))
 		.sort((a, b) => Number(a.human) - Number(b.human))
 		.map(({ title }) => title);
 	const next = nextSteps(view.plan)[0];
 	const now = running.length > NAMED ? texts.andMore(running.slice(0, NAMED).join(' · '), running.length - NAMED) : running.join(' · ');
 	// What is begun on a device that is not heard may be so, or not; and so may what comes after it.
-	if (silent.size > 0) return [now, texts.unheard(listed(view.silent), view.silent.length)].filter((each) => each !== '').join(' · ');
+	const silent = view.silent.length > 0 ? texts.unheard(listed(view.silent), view.silent.length) : '';
+	const failing = view.failing.length > 0 ? texts.failing(listed(view.failing), view.failing.length) : '';
+	if (wrong.size > 0) return [now, failing, silent].filter((each) => each !== '').join(' · ');
 	if (running.length === 0) {
 		// What a condition is called is told, never how it is written.
 		const waits = next === undefined ? '' : told(next.sentence, '');

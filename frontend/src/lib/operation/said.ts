@@ -9,7 +9,7 @@ import type { OperationStanding } from './standing.ts';
 export function saidOf(operation: Operation, standing: OperationStanding, now: number, texts: Text['operate']['operations']): string {
 	const { active, active_since, goal, precondition, sentence } = operation;
 	const what = sentence ? told(sentence, active ? goal : precondition) : '';
-	if (!active) return what;
+	if (!active) return what === '' ? texts.soAlready : what;
 	const lasted = durationText(now - (active_since ?? now));
 	const parts = standing === 'stopped' ? [texts.stoppedFor(lasted), what] : [what, lasted];
 	return parts.filter((part) => part !== '').join(' · ');

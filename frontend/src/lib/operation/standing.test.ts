@@ -41,6 +41,9 @@ test('one of which a step comes to no end has stopped, until that is over', () =
 	expect(at({ ...overdue, ended: 150 })).toEqual({ tighten: 'active', place: 'active' });
 	expect(at({ ...overdue, since: 99 })).toEqual({ tighten: 'active', place: 'active' });
 	expect(at({ ...overdue, kind: 'silent' })).toEqual({ tighten: 'active', place: 'active' });
+	// A newer plan has other steps for what is worked on.
+	const worked = { ...operations, tighten: operation({ ...of, steps: ['8'], work: [{ began: 95, ended: null }] }) };
+	expect(standings({ operations: worked, plan: { ...PLAN, steps }, alarms: { overdue } })).toEqual({ tighten: 'stopped', place: 'active' });
 	// It is as urgent as the alarm that says so.
 	const tone = (priority: 'high' | 'medium'): string | null => stoppedTone(view({ plan: { ...PLAN, steps }, alarms: { overdue: { ...overdue, priority } } }));
 	expect([tone('medium'), tone('high'), stoppedTone(view())]).toEqual(['medium', 'high', null]);

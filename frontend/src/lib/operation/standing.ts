@@ -10,9 +10,15 @@ export type OperationStanding = 'done' | 'active' | 'stopped' | 'waits';
 export function standingsOf(view: StationView): Map<string, OperationStanding> {
 	const began = roundOf(view.operations);
 	const stopped = view.plan.steps.filter((step) => stoppedBy(step, view.plan.steps, view.alarms) !== null);
+	const running = view.plan.steps.filter(({ status }) => status === 'running');
+	/** Whatever runs has come to no end: what it is for stands still, also where a newer plan has other steps for that. */
+	const stands = running.length > 0 && running.every((step) => stopped.includes(step));
 	return new Map(
 		Object.entries(view.operations).map(([name, operation]) => {
-			if (operation.active) return [name, stepsOf(view.plan, operation).some((step) => stopped.includes(step)) ? 'stopped' : 'active'];
+			if (operation.active) {
+				const isStopped = stepsOf(view.plan, operation).some((step) => stopped.includes(step)) || (stands && isAtWork(operation));
+				return [name, isStopped ? 'stopped' : 'active'];
+			}
 			const asked = askedFor(view, name)?.how;
 			if (asked === 'done' || asked === 'skipped') return [name, 'done'];
 			const done = asked !== 'later' && asked !== 'now' && operation.ended !== null && operation.ended >= began;

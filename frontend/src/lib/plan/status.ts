@@ -53,10 +53,20 @@ export function isUnheard({ status, resource }: PlanStep, alarms: Alarms): boole
 	return status === 'running' && Object.values(alarms).some(tells);
 }
 
-/** How urgent it is that a run does not come to its end: it is the last of its resource, of which an alarm tells it since then. */
+/** How urgent it is that a run does not come to its end. */
 export function stoppedBy(step: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Priority | null {
-	const { started, resource } = step;
+	return stopOf(step, steps, alarms)?.priority ?? null;
+}
+
+/** Since when runs do not come to their end; null where all do. */
+export function stoppedSince({ steps }: Pick<Plan, 'steps'>, alarms: Alarms): number | null {
+	const since = steps.flatMap((step) => stopOf(step, steps, alarms)?.since ?? []);
+	return since.length === 0 ? null : Math.min(...since);
+}
+
+/** The alarm that tells of a run that it does not come to its end: it is the last of its resource, and it tells so since then. */
+function stopOf({ started, resource }: PlanStep, steps: readonly PlanStep[], alarms: Alarms): Alarm | null {
 	if (started === null || steps.some((other) => other.resource === resource && (other.started ?? -Infinity) > started)) return null;
 	const alarm = failing(resource, alarms);
-	return alarm !== undefined && STUCK.has(alarm.kind) && alarm.since >= started ? alarm.priority : null;
+	return alarm !== undefined && STUCK.has(alarm.kind) && alarm.since >= started ? alarm : null;
 }

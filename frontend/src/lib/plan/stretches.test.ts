@@ -34,7 +34,15 @@ test('names that have no room beside one another stand one below the other, as f
 		['d', 0]
 	]);
 	expect(Math.max(...found.map(({ row }) => row))).toBeLessThan(ROWS);
-	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-25, -24, -5]);
+	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-10, 0, 0]);
+});
+
+test('what is worked on goes on where a newer plan has only the rest of it', () => {
+	const rest = step('turn', 'nutrunner', 0, { id: '9', status: 'planned', expected_start: NOW + 3, expected_end: NOW + 8 });
+	const work = [{ began: NOW - 5, ended: null }];
+	const operations = { tighten: operation({ active: true, active_since: NOW - 20, first_step: '9', last_step: '9', work }) };
+	const found = stretchesOf(operations, [rest], NOW, 60, 1);
+	expect(found.map(({ from, to, standing }) => [from, to, standing])).toEqual([[-5, 8, 'now']]);
 });
 
 test('without a plan what is worked on goes on, and what is only active is not told', () => {
@@ -46,10 +54,10 @@ test('without a plan what is worked on goes on, and what is only active is not t
 	expect(roomOf(found, 0, 1)).toBe(Infinity);
 });
 
-test('the name of what is over ends where the next begins, if that is before its own end', () => {
+test('the name of what is over ends where the next of its row begins, and does not reach beyond the present', () => {
 	const began = (at: number): ReturnType<typeof operation> => operation({ began: NOW - at, ended: NOW - at + 20 });
 	const found = stretchesOf({ a: began(50), b: began(49), c: began(40) }, [], NOW, 60, 5);
-	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-40, -29, -20]);
+	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-40, 0, 0]);
 });
 
 test('what is too long ago is not told', () => {

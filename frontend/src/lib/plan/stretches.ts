@@ -37,11 +37,11 @@ export function stretchesOf(
 		if (!active || active_since === null) continue;
 		const running = isAtWork(each) ? each.work.at(-1) : undefined;
 		const to = last ? Math.max(0, timesOf(last, now, late).end) : 0;
-		if (first && !hasBegun(first)) found.push({ operation, title, from: timesOf(first, now, late).start, to, standing: 'ahead' });
+		if (first && hasBegun(first)) found.push({ operation, title, from: Math.max(active_since, first.started ?? active_since) - now, to, standing: 'now' });
+		// A plan that was made meanwhile has the rest of it alone, and without a plan what runs goes on.
+		else if (running) found.push({ operation, title, from: running.began - now, to, standing: 'now' });
 		// What is left out of the plan is served by none of its steps.
-		else if (first) found.push({ operation, title, from: Math.max(active_since, first.started ?? active_since) - now, to, standing: 'now' });
-		// Without a plan what runs goes on.
-		else if (running) found.push({ operation, title, from: running.began - now, to: 0, standing: 'now' });
+		else if (first) found.push({ operation, title, from: timesOf(first, now, late).start, to, standing: 'ahead' });
 	}
 	found.sort((a, b) => a.from - b.from || a.to - b.to);
 	const rows: number[] = [];
@@ -57,10 +57,10 @@ export function stretchesOf(
 
 /**
  * Where the name of a stretch must end: where the next of its row begins. That of one that is over, for which `words` are
- * needed, goes with it: it would be taken for what goes on.
+ * needed, does not reach beyond the present: it would be taken for what goes on.
  */
 export function roomOf(stretches: readonly Stretch[], index: number, words: number): number {
 	const stretch = stretches[index];
 	const next = stretches.slice(index + 1).find(({ row }) => row === stretch?.row)?.from ?? Infinity;
-	return stretch?.standing === 'past' ? Math.min(next, Math.max(stretch.to, stretch.from + words)) : next;
+	return stretch?.standing === 'past' ? Math.min(next, Math.max(0, stretch.from + words)) : next;
 }

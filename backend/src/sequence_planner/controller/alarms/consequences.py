@@ -36,25 +36,28 @@ class Consequences:
             return message("wait.nothing")
         return message("wait.standstill", waiting=self.waiting(execution.active))
 
-    def waiting(self, operations: Collection[str], until_it_does: bool = False) -> Message:
-        """That those of the operations that are active wait, or why none does just now."""
+    def waiting(self, operations: Collection[str], resource: str | None = None) -> Message:
+        """That those of the operations that are active wait, for the resource if there is one, or why none does just
+        now.
+        """
         execution = self._execution
-        until: Argument = message("wait.until-it-does") if until_it_does else ""
+        of = None if resource is None else execution.automaton.resources[resource]
+        what: Argument = "" if of is None else message("wait.for", resource=of)
         if execution.production is not Production.STARTED:
             return message("wait.not-started")
         if execution.operator_plan is not None:
             title = title_text(execution.operator_plan.title)
-            return message("wait.errand", title=message("quoted", title=title), until=until)
+            return message("wait.errand", title=message("quoted", title=title), what=what)
         if execution.mode is not Mode.AUTOMATIC:
             return message(f"wait.{execution.mode}")
         names = sorted(execution.active.intersection(operations))
         if not names:
             return message("wait.none")
-        return message("wait.operations", operations=self._quoted(names), until=until)
+        return message("wait.operations", operations=self._quoted(names), what=what)
 
     def waiting_for(self, resource: str) -> Message:
-        """That those of the active operations wait which cannot be completed without a resource."""
-        return self.waiting(self.held_up({resource}))
+        """That those of the active operations wait for a resource which cannot be completed without it."""
+        return self.waiting(self.held_up({resource}), resource)
 
     def without(self, resources: Collection[str]) -> Message:
         """Of resources that cannot be used: what the plan without them leaves out."""

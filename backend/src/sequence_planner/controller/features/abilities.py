@@ -18,7 +18,7 @@ from sequence_planner.execution.executor import Executor
 from sequence_planner.execution.timeouts import in_the_past, overdue
 from sequence_planner.execution.vocabulary import ServiceKind
 from sequence_planner.language.syntax import variables
-from sequence_planner.texts.message import Argument, Message, as_it_was, message
+from sequence_planner.texts.message import Argument, as_it_was, message
 
 
 class Abilities:
@@ -90,7 +90,7 @@ class Abilities:
                     "ability": ability.title,
                     "late": message(what, seconds=late.within),
                     "late_past": message(f"{what}-past", seconds=late.within),
-                    "consequence": self._until_it_does(ability.resource),
+                    "consequence": self._consequences.waiting_for(ability.resource),
                     "action": message("late.check", resources=[resource])
                     if late.begun
                     else message("late.check-receives", resource=resource),
@@ -100,9 +100,6 @@ class Abilities:
                 of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
             )
-
-    def _until_it_does(self, resource: str) -> Message:
-        return self._consequences.waiting(self._consequences.held_up({resource}), until_it_does=True)
 
     def _standing_still(self, monotonic: float) -> Iterator[Cause]:
         """Resources that do not do what they should, though nothing of them is overdue."""
@@ -135,7 +132,7 @@ class Abilities:
             {
                 "what": message(what, resource=resources[name], values=values),
                 "what_past": message(f"{what}-past", resource=resources[name], values=values),
-                "consequence": self._until_it_does(name),
+                "consequence": self._consequences.waiting_for(name),
                 "action": message("late.check", resources=sorted(resources[each] for each in because)),
             },
             follows=follows,

@@ -20,7 +20,7 @@ from sequence_planner.language.syntax import variables
 from sequence_planner.language.types import Value
 from sequence_planner.planning.problem import Circumstances, RecoveryPath, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.recovery_path import deciding, violated
-from sequence_planner.texts.message import Argument, Item, Message, message
+from sequence_planner.texts.message import Item, Message, message
 
 
 @dataclass(frozen=True)
@@ -141,21 +141,6 @@ class SafeStateMonitor:
         named = _named(self._execution.automaton, situation.violated)
         return message("unsafe.past-violated", specifications=named) if named else message("unsafe.past")
 
-    def _meaning(self, situation: SafetyStatus) -> Argument:
-        """Say what comes of it, and how the nearest safe state differs where that is known."""
-        consequence, automaton = self._consequences.standstill(), self._execution.automaton
-        differences = [
-            message(
-                "unsafe.difference",
-                safe=sentences_of(automaton).tell_value(each.name, each.safe),
-                now=sentences_of(automaton).call_value(each.name, each.now),
-            )
-            for each in situation.differences
-        ]
-        return (
-            message("unsafe.nearest", consequence=consequence, differences=differences) if differences else consequence
-        )
-
     def touched(self, situation: SafetyStatus) -> frozenset[str]:
         """The variables that make the state what it is: of what is violated, and those that would have to change."""
         automaton = self._execution.automaton
@@ -220,7 +205,7 @@ class SafeStateMonitor:
                 {
                     "what": self.describe(situation),
                     "what_past": self.past(situation),
-                    "waiting": self._meaning(situation),
+                    "waiting": self._consequences.standstill(),
                     "way": self.way(),
                 },
             )

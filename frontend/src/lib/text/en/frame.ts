@@ -26,7 +26,7 @@ export const frame = {
 	},
 	nothingSent: 'Devices get no commands before production starts.',
 	production: {
-		preparing: 'Getting ready. Nothing moves.',
+		preparing: 'Getting ready. Nothing is started.',
 		waiting: 'Ready. Production is not started.',
 		started: 'Production is started.'
 	},

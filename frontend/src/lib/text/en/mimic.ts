@@ -12,9 +12,10 @@ export const mimic = {
 	atWork: (stop: string, work: string): string => `${stop} · ${work}`,
 	/** Of a person whom nothing is asked of. */
 	free: 'Nothing to do',
-	nothingMoves: 'Nothing moves',
+	nothingMoves: 'Nothing is under way',
 	unheard: (names: string, n: number): string => `Nobody knows whether ${names} ${n === 1 ? 'moves' : 'move'}`,
-	nothingMovesAnd: (waits: string): string => `Nothing moves · ${waits}`,
+	failing: (names: string, n: number): string => `${names} ${n === 1 ? 'does' : 'do'} not go on`,
+	nothingMovesAnd: (waits: string): string => `Nothing is under way · ${waits}`,
 	then: (now: string, next: string): string => `${now}, then ${next}`,
 	andMore: (named: string, more: number): string => `${named} and ${more} more`,
 	unknownPlace: 'Nobody knows where it is',

@@ -18,7 +18,7 @@ export const operate = {
 		whole: 'All',
 		waiting: 'Waits',
 		plannedFor: (seconds: number): string => (seconds < 100 ? `planned for ${seconds} s` : `planned for ${Math.round(seconds / 60)} min`),
-		since: { broken: (at: string): string => `Broken at ${at}`, none: (at: string): string => `No plan since ${at}` },
+		since: { broken: (at: string): string => `Broken at ${at}`, none: (at: string): string => `No plan since ${at}`, stopped: (at: string): string => `Stopped at ${at}` },
 		stopped: 'stopped',
 		after: (title: string): string => `after ${title}`,
 		lanes: 'Plan as lanes',
@@ -127,6 +127,8 @@ export const operate = {
 		title: 'Operations',
 		/** Of a word, where several are counted. */
 		plural: (word: string): string => (word.endsWith('s') ? word : `${word}s`),
+		/** Of one that does not begin as its goal holds already. */
+		soAlready: 'What it is for is so already',
 		doneOf: (done: number, all: number): string => `${done} of ${all} done`,
 		of: (done: number, all: number): string => `${done} of ${all}`,
 		stoppedFor: (duration: string): string => `stopped for ${duration}`,

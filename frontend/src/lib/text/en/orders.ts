@@ -26,6 +26,7 @@ export const orders = {
 	columns: { stored: 'Not released', waiting: 'Waiting', worked: 'In work', made: 'Made today' },
 	noneYet: {
 		title: 'No orders yet',
+		unknown: 'Whether there are orders is not known',
 		freely: 'The station works freely: it goes on with the next product by itself. With an order you say what is made and when it is due; a MES can send orders too.',
 		byOrder: 'The station works by order: it makes nothing until there is one. Orders come from a MES, or are made here.'
 	},

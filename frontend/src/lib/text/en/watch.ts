@@ -16,9 +16,9 @@ export const watch = {
 	moreAfter: (n: number): string => `${n} more after this`,
 	waits: (duration: string): string => `Waits ${duration}`,
 	/** Instead of what moves next, where nothing does. */
-	nothingMoves: 'Nothing moves yet. Done is recorded.',
+	nothingMoves: 'Nothing starts yet. Done is recorded.',
 	/** The same in two parts, the second where there is room. */
-	still: 'Nothing moves yet.',
+	still: 'Nothing starts yet.',
 	recorded: 'Done is recorded.',
 	/** With nothing to do. */
 	progress: (done: number, all: number): string => `${done} of ${all} done`,

@@ -24,7 +24,7 @@ export const frame: Text['frame'] = {
 	},
 	nothingSent: 'Enheterna får inga kommandon innan produktionen startar.',
 	production: {
-		preparing: 'Förbereder. Inget rör sig.',
+		preparing: 'Förbereder. Inget startas.',
 		waiting: 'Redo. Produktionen är inte startad.',
 		started: 'Produktionen är startad.'
 	},

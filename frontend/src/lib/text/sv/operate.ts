@@ -18,7 +18,7 @@ export const operate: Text['operate'] = {
 		whole: 'Allt',
 		waiting: 'Väntar',
 		plannedFor: (seconds) => (seconds < 100 ? `planerat för ${seconds} s` : `planerat för ${Math.round(seconds / 60)} min`),
-		since: { broken: (at) => `Bröts ${at}`, none: (at) => `Ingen plan sedan ${at}` },
+		since: { broken: (at) => `Bröts ${at}`, none: (at) => `Ingen plan sedan ${at}`, stopped: (at) => `Stoppade ${at}` },
 		stopped: 'stoppat',
 		after: (title) => `efter ${title}`,
 		lanes: 'Planen som banor',
@@ -124,6 +124,7 @@ export const operate: Text['operate'] = {
 	operations: {
 		title: 'Operationer',
 		plural: (word) => word,
+		soAlready: 'Det den är till för är redan så',
 		doneOf: (done, all) => `${done} av ${all} klara`,
 		of: (done, all) => `${done} av ${all}`,
 		stoppedFor: (duration) => `stoppad i ${duration}`,

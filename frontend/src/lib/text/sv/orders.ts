@@ -26,6 +26,7 @@ export const orders: Text['orders'] = {
 	columns: { stored: 'Inte släppta', waiting: 'Väntar', worked: 'I arbete', made: 'Tillverkat i dag' },
 	noneYet: {
 		title: 'Inga order än',
+		unknown: 'Om det finns order är inte känt',
 		freely: 'Stationen arbetar fritt: den fortsätter själv med nästa produkt. Med en order säger du vad som ska göras och när det ska vara klart; ett MES kan också skicka order.',
 		byOrder: 'Stationen arbetar efter order: den gör inget förrän det finns en. Order kommer från ett MES, eller görs här.'
 	},
