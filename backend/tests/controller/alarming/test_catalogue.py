@@ -247,9 +247,9 @@ def test_a_message_is_a_string_that_other_processes_understand() -> None:
 
 
 def test_a_message_reads_as_its_language_has_it() -> None:
-    waiting = message("wait.operations", operations=[message("quoted", title="Paint")], until="")
+    waiting = message("wait.operations", operations=[message("quoted", title="Paint")], what="")
     assert str(message("wait.standstill", waiting=waiting)) == "Nothing is started. “Paint” waits."
-    several = Message("wait.operations", {"operations": ["a", "b", "c", "d", "e"], "until": ""})
+    several = Message("wait.operations", {"operations": ["a", "b", "c", "d", "e"], "what": ""})
     assert str(several) == "a, b, c and 2 more wait."
     assert str(Wording({"sv": "Låg", "en": "Low"})) == "Low"
     assert str(Wording({"sv": "Låg"})) == "Låg"

@@ -15,6 +15,8 @@ export function standingsOf(view: StationView): Map<string, OperationStanding> {
 	const stands = running.length > 0 && running.every((step) => stopped.includes(step));
 	return new Map(
 		Object.entries(view.operations).map(([name, operation]) => {
+			// What is active before production is started is begun by nobody.
+			if (operation.active && view.production !== 'started') return [name, 'waits'];
 			if (operation.active) {
 				const isStopped = stepsOf(view.plan, operation).some((step) => stopped.includes(step)) || (stands && isAtWork(operation));
 				return [name, isStopped ? 'stopped' : 'active'];
@@ -36,6 +38,18 @@ export function stoppedTone({ plan, alarms }: StationView): Priority | null {
 /** Whether somebody is at work for an active operation now: a step that serves it runs. */
 export function isAtWork({ active, work }: Operation): boolean {
 	return active && work.at(-1)?.ended === null;
+}
+
+/** Since when somebody has been at work for an active operation, with what lay between; null before that. */
+export function workedSince({ active, work }: Operation): number | null {
+	return active ? (work[0]?.began ?? null) : null;
+}
+
+/** How many seconds it took the last time, from the first step that served it, or else from when it could begin. */
+export function tookOf({ active, began, ended, work }: Operation): number | null {
+	if (began === null || ended === null) return null;
+	const first = active ? undefined : work[0]?.began;
+	return ended - Math.min(ended, Math.max(began, first ?? began));
 }
 
 /** What the plan does for an operation. */

@@ -15,7 +15,7 @@ const waiting = (...titles: string[]) => ({
 	arguments: {
 		waiting: {
 			id: 'wait.operations',
-			arguments: { operations: titles.map((title) => ({ id: 'quoted', arguments: { title } })), until: '' }
+			arguments: { operations: titles.map((title) => ({ id: 'quoted', arguments: { title } })), what: '' }
 		}
 	}
 });

@@ -128,6 +128,7 @@ export const operate = {
 		/** Of a word, where several are counted. */
 		plural: (word: string): string => (word.endsWith('s') ? word : `${word}s`),
 		/** Of one that does not begin as its goal holds already. */
+		startFirst: 'Begins once production is started',
 		soAlready: 'What it is for is so already',
 		doneOf: (done: number, all: number): string => `${done} of ${all} done`,
 		of: (done: number, all: number): string => `${done} of ${all}`,
@@ -196,6 +197,10 @@ export const operate = {
 	/** Whoever is asked for something says what is in the way; on the watch with one touch, and nothing more. */
 	task: {
 		yours: 'Your task',
+		notStarted: 'Production is not started',
+		startAbove: 'Start it in the bar above when the station is ready. Nothing is sent to devices before.',
+		startHere: 'Nothing is sent to devices before a person starts it.',
+		startedBy: (name: string): string => `${name} has control, and can start it.`,
 		comesHere: 'What the station asks of you comes here.',
 		goesOn: 'Your task goes on',
 		toldAbove: 'Its problem is told above',

@@ -32,7 +32,7 @@ export const mimic = {
 		out: 'ur drift',
 		awaits: 'Inväntar',
 		notConfirmed: 'inte bekräftat',
-		forced: 'tvingat',
+		forced: 'forcerat',
 		restartOnly: 'bara vid omstart',
 		alarms: 'Larm',
 		whatToDo: 'Att göra',

@@ -90,7 +90,7 @@ export const operate: Text['operate'] = {
 			finish: (title, running) => `slutet av ”${title}”${runs(running)}`,
 			effect: (title, running) => `det som ”${title}” gör${runs(running)}`,
 			correction: () => 'en rättelse av en person',
-			force: () => 'att utgången tvingas'
+			force: () => 'att utgången forceras'
 		},
 		plan: (n) => `Det finns en plan: ${starts(n)}.`,
 		about: {
@@ -124,6 +124,7 @@ export const operate: Text['operate'] = {
 	operations: {
 		title: 'Operationer',
 		plural: (word) => word,
+		startFirst: 'Börjar när produktionen har startats',
 		soAlready: 'Det den är till för är redan så',
 		doneOf: (done, all) => `${done} av ${all} klara`,
 		of: (done, all) => `${done} av ${all}`,
@@ -187,6 +188,10 @@ export const operate: Text['operate'] = {
 	},
 	task: {
 		yours: 'Din uppgift',
+		notStarted: 'Produktionen är inte startad',
+		startAbove: 'Starta den i listen ovanför när stationen är klar. Innan dess skickas inget till enheterna.',
+		startHere: 'Inget skickas till enheterna innan en person startar den.',
+		startedBy: (name) => `${name} har kontrollen och kan starta den.`,
 		comesHere: 'Det stationen ber dig om kommer hit.',
 		goesOn: 'Din uppgift fortsätter',
 		toldAbove: 'Problemet berättas ovan',

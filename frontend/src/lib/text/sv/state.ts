@@ -65,11 +65,11 @@ export const state: Text['state'] = {
 		value: 'Värde',
 		because: 'Vad som hände',
 		alarm: (text) => `Larm: ${text}`,
-		did: { corrected: 'rättat', forced: 'tvingat', 'force-released': 'inte längre tvingat' },
+		did: { corrected: 'rättat', forced: 'forcerat', 'force-released': 'inte längre forcerat' },
 		acts: {
 			corrected: (value) => `rättat till ${value}`,
-			forced: (value) => `tvingat till ${value}`,
-			'force-released': (value) => `inte längre tvingat: ${value}`
+			forced: (value) => `forcerat till ${value}`,
+			'force-released': (value) => `inte längre forcerat: ${value}`
 		},
 		onlyFrom: (clock) => `Visas från ${clock}: det ändrades för ofta för mer.`
 	},
@@ -154,7 +154,7 @@ export const state: Text['state'] = {
 		left: (time) => `${time} kvar`
 	},
 	approval: {
-		dual: 'En andra person måste godkänna varje rättelse och tvingande av den.',
+		dual: 'En andra person måste godkänna varje rättelse och forcering av den.',
 		needed: 'En andra person måste godkänna detta. Det väntar i två minuter på någon som är inloggad, och upphör när tillståndet ändras.',
 		ask: 'Be en andra person…',
 		sure: 'Be en andra person godkänna detta?',
@@ -168,7 +168,7 @@ export const state: Text['state'] = {
 		title: (name) => `Godkänna det som ${name} ber om?`,
 		correction: 'Rättar',
 		outputs: 'Avgör utsignaler',
-		force: (time) => `Tvingar i ${time}`,
+		force: (time) => `Forcerar i ${time}`,
 		approve: 'Godkänn',
 		decline: 'Avslå',
 		both: 'Det görs genast, i bådas namn, och skrivs i journalen.',

@@ -23,7 +23,7 @@ export const trace: Text['trace'] = {
 	value: 'Värde',
 	since: (clock, ago) => `sedan ${clock}, ${ago}`,
 	sinceUnknown: 'sedan när är inte känt',
-	forced: 'tvingad',
+	forced: 'forcerad',
 	byNobody: 'Inget meddelande säger det, och ingen uppgift för en person.',
 	byTask: (tasks) => `Inget meddelande säger det: någon kvitterar ${tasks}.`,
 	written: 'Skrivet',
