@@ -50,7 +50,7 @@ export async function takeControl(page: Page): Promise<void> {
 	// On a small screen it is behind the mark of who is signed in.
 	if (!(await control.isVisible())) await page.getByTestId('who').click();
 	const held = (await control.getAttribute('data-holder')) !== 'nobody';
-	await page.getByRole('button', { name: 'Take control' }).click();
+	await page.getByRole('button', { name: 'Take control', exact: true }).click();
 	if (held) await page.getByRole('dialog').getByRole('button', { name: 'Take over' }).click();
 	await expect(control).toHaveAttribute('data-holder', 'you');
 }

@@ -21,7 +21,7 @@ ALARMS: Final[dict[str, str]] = {
         "{silence}",
         "{silence_past}",
         "{consequence}",
-        "Check that the node of {resource} runs and is reachable.",
+        "Check the power and the network of {resource}, and that its ROS node runs.",
     ),
     "silent.nothing": "Nothing heard from {resource}",
     "silent.nothing-past": "For some time nothing was heard from {resource}",

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
+from sequence_planner.texts.message import Title
+
 MOST_LISTED: Final = 4  # of a longer list one fewer is named, and the others are counted
 _SHORTEST_RANGE: Final = 3
 _NUMBER: Final = re.compile(r"(?<![^\W_])\d+(?![^\W_])")
@@ -267,3 +269,35 @@ SWEDISH: Final = Grammar(
 GRAMMARS: Final = (ENGLISH, SWEDISH)
 OF_WHAT_IS_SO: Final = tuple(replace(grammar, denial=grammar.ceasing) for grammar in GRAMMARS)
 """As they deny what is so now, and is to end."""
+
+
+def folded(titles: Iterable[str]) -> list[str]:
+    """Titles, those that differ in one number alone as one in the place of the first: `Place pairs 2 to 6`."""
+    groups: dict[object, list[str]] = {}
+    for title in dict.fromkeys(titles):
+        words = title.words if isinstance(title, Title) else {ENGLISH.language: title}
+        shapes = {language: _NUMBER.split(text) for language, text in words.items()}
+        numbers = {number for text in words.values() for number in _NUMBER.findall(text)}
+        # One that begins with a zero is a name: 01 is not 1.
+        one = (
+            len(numbers) == 1
+            and all(each == str(int(each)) for each in numbers)
+            and all(len(each) == 2 for each in shapes.values())
+        )
+        groups.setdefault(str(shapes) if one else title, []).append(title)
+    return [alike[0] if len(alike) == 1 else _as_one(alike) for alike in groups.values()]
+
+
+def _as_one(titles: Sequence[str]) -> str:
+    first = titles[0]
+    if not isinstance(first, Title):
+        return ENGLISH.every(titles)
+    grammars = {each.language: each for each in GRAMMARS}
+    words = {
+        language: grammars.get(language, ENGLISH).every(
+            [each.words[language] for each in titles if isinstance(each, Title)]
+        )
+        for language in first.words
+    }
+    said = next((language for language, text in first.words.items() if text == str(first)), next(iter(words)))
+    return Title(words[said], words)

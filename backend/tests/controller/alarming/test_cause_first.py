@@ -54,7 +54,7 @@ def test_a_robot_that_is_stuck_is_one_alarm_of_the_robot() -> None:
     assert lasting.keys() == {ROBOT_IS_STILL}
     alarm = lasting[ROBOT_IS_STILL]
     assert alarm.text == "Robot UR10 has stalled. It still reports: robot.moving and robot.pose == unknown"
-    assert "“Tighten bolt pair 3”" in alarm.consequence
+    assert "“Tighten bolt pairs 1 to 3”" in alarm.consequence
     assert "Robot UR10: “Move to bolt pair 3” has not finished within 30 s" in alarm.parts
     assert alarm.priority is Priority.HIGH, "it led outside the safe states"
     assert any("outside its safe states" in part for part in alarm.parts)

@@ -220,7 +220,7 @@ def test_where_there_is_no_plan_what_is_out_of_service_is_to_be_put_back() -> No
     assert "no-plan" not in there(shown, rig_now(rig)), "bolts are placed without it"
     assert rig.run(30, until=lambda: rig.execution.plan.status is PlanStatus.NONE)
     told = shown.current(rig_now(rig))["no-plan"]
-    assert told.consequence == "“Tighten bolt pair 1”, “Tighten bolt pair 2” and “Tighten bolt pair 3” wait."
+    assert told.consequence == "“Tighten bolt pairs 1 to 3” waits."
     assert told.action == "Put Robot UR10 back in service, or see what the active operations need."
     serve(ServiceKind.ABILITY, "nutrunner.run_nut", False)
     told = shown.current(rig_now(rig))["no-plan"]

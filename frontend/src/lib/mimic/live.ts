@@ -59,6 +59,8 @@ export function whereabouts(track: MimicTrack, variables: Variables, last: strin
 	const target = track.target === null ? null : valueOf(variables, track.target);
 	const previous = track.previous === null ? null : valueOf(variables, track.previous);
 	if (isStop(position)) return { from: position, to: position, kind: 'there' };
+	// Where nothing is heard of it, and nobody knows where it was, it is drawn at no stop: it may never have been there.
+	if (position === null && !isStop(previous) && last === null) return null;
 	const to = isStop(target) ? target : null;
 	const from = isStop(previous) ? previous : (last ?? onlyNeighbour(track, to));
 	if (from === null && to === null) return null;

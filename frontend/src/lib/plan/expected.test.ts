@@ -21,11 +21,11 @@ test('what has begun says when and for how long, the rest what is expected, late
 test('a plan says how much of it is ahead, when less might do, and who found it', () => {
 	const plan = { ...PLAN, steps: [done, { ...next, expected_start: NOW, expected_end: NOW + 3 }], ticks: 1 };
 	expect(promiseText(plan, NOW, operate.plan)).toBe(
-		'Shortest plan, proven: 1 tick, 1 start ahead, expected to be done in about 3 s'
+		'The shortest plan there is, proven: 1 start to come. Done in about 3 s.'
 	);
 	const soon = { ...plan, ticks: 6, contract: 'fast' as const, minimal_ticks: false, milliseconds: 12.3, engine: 'search' };
 	expect(promiseText(soon, NOW, operate.plan)).toBe(
-		'Plan found soon: 6 ticks (maybe not the fewest), 1 start ahead, expected to be done in about 3 s, answered in 12 ms by search'
+		'Found soon: 1 start to come. There may be a shorter plan. Done in about 3 s. Found in 12 ms by search.'
 	);
-	expect(promiseText({ ...PLAN, contract: null, milliseconds: 0.41 }, NOW, operate.plan)).toBe('answered in 0.4 ms');
+	expect(promiseText({ ...PLAN, contract: null, milliseconds: 0.41 }, NOW, operate.plan)).toBe('Found in 0.4 ms.');
 });

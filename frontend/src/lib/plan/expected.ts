@@ -33,9 +33,9 @@ export function leftOf(steps: readonly PlanStep[], now: number): number | null {
 export function promiseText(plan: Plan, now: number, texts: Texts): string {
 	const ahead = plan.steps.filter((step) => !hasBegun(step)).length;
 	const left = leftOf(plan.steps, now);
-	const { contract, ticks, milliseconds, engine } = plan;
+	const { contract, milliseconds, engine } = plan;
 	const parts = [
-		contract === null ? '' : contract === 'minimal' ? texts.shortest(ticks, ahead) : texts.soon(ticks, plan.minimal_ticks, ahead),
+		contract === null ? '' : contract === 'minimal' ? texts.shortest(ahead) : texts.soon(plan.minimal_ticks, ahead),
 		left === null ? '' : texts.ends(left),
 		milliseconds === null
 			? ''
@@ -43,5 +43,5 @@ export function promiseText(plan: Plan, now: number, texts: Texts): string {
 				? texts.answered(plannerTime(milliseconds))
 				: texts.answeredBy(plannerTime(milliseconds), engine)
 	];
-	return parts.filter((part) => part !== '').join(', ');
+	return parts.filter((part) => part !== '').join(' ');
 }

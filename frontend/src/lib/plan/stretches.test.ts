@@ -60,6 +60,17 @@ test('the name of what is over ends where the next of its row begins, and does n
 	expect(found.map((_, index) => roomOf(found, index, 5))).toEqual([-40, 0, 0]);
 });
 
+test('what goes on has its place before what is over, of which nothing is said where it has left', () => {
+	const over = (at: number): ReturnType<typeof operation> => operation({ began: NOW - at, ended: NOW - at + 1 });
+	const runs = operation({ active: true, active_since: NOW - 20, work: [{ began: NOW - 10, ended: null }] });
+	const found = stretchesOf({ a: over(12), b: over(11), runs }, [], NOW, 60, 5);
+	expect(found.map(({ operation, row }) => [operation, row])).toEqual([
+		['b', 1],
+		['runs', 0]
+	]);
+	expect([roomOf(found, 0, 5, -20), roomOf(found, 0, 5, -8)]).toEqual([0, -6]);
+});
+
 test('what is too long ago is not told', () => {
 	expect(stretchesOf({ old: operation({ began: NOW - 100, ended: NOW - 90 }) }, [], NOW, 60, 1)).toEqual([]);
 });

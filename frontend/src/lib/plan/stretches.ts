@@ -44,23 +44,29 @@ export function stretchesOf(
 		else if (first) found.push({ operation, title, from: timesOf(first, now, late).start, to, standing: 'ahead' });
 	}
 	found.sort((a, b) => a.from - b.from || a.to - b.to);
-	const rows: number[] = [];
-	return found.flatMap((stretch) => {
+	const rows: Stretch[][] = [];
+	for (const stretch of found) {
 		const from = Math.max(stretch.from, -since);
-		const free = rows.findIndex((last) => last + words <= from);
-		const row = free === -1 ? rows.length : free;
-		if (row >= ROWS) return [];
-		rows[row] = from;
-		return [{ ...stretch, from, row }];
-	});
+		const free = rows.findIndex((row) => (row.at(-1)?.from ?? -Infinity) + words <= from);
+		// What goes on or comes has its place before what is over.
+		const over = stretch.standing === 'past' ? -1 : rows.findIndex((row) => row.at(-1)?.standing === 'past');
+		const row = free !== -1 ? free : rows.length < ROWS ? rows.length : over;
+		if (row === -1) continue;
+		const kept = rows[row] ?? [];
+		if (free === -1) kept.pop();
+		rows[row] = [...kept, { ...stretch, from, row }];
+	}
+	return rows.flat().sort((a, b) => a.from - b.from || a.row - b.row);
 }
 
 /**
  * Where the name of a stretch must end: where the next of its row begins. That of one that is over, for which `words` are
- * needed, does not reach beyond the present: it would be taken for what goes on.
+ * needed, does not reach beyond the present, nor beyond its own end where that lies before what is in sight from `left` on:
+ * it would be taken for what goes on.
  */
-export function roomOf(stretches: readonly Stretch[], index: number, words: number): number {
+export function roomOf(stretches: readonly Stretch[], index: number, words: number, left = -Infinity): number {
 	const stretch = stretches[index];
 	const next = stretches.slice(index + 1).find(({ row }) => row === stretch?.row)?.from ?? Infinity;
-	return stretch?.standing === 'past' ? Math.min(next, Math.max(0, stretch.from + words)) : next;
+	if (stretch?.standing !== 'past') return next;
+	return Math.min(next, Math.max(stretch.to < left ? stretch.to : 0, stretch.from + words));
 }

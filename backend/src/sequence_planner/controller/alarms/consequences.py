@@ -15,6 +15,7 @@ from sequence_planner.language.evaluator import evaluate
 from sequence_planner.language.syntax import variables
 from sequence_planner.planning.heuristic.relaxation import reachable
 from sequence_planner.planning.problem import Circumstances
+from sequence_planner.texts.grammar import folded
 from sequence_planner.texts.message import Argument, Item, Message, message, quoted
 
 # What comes of an alarm's cause: which of the active operations wait because of it, as far as that can be told.
@@ -86,7 +87,7 @@ class Consequences:
         return message("sentences", first=nobody, second=self.waiting(rest)) if rest else nobody
 
     def _quoted(self, names: Iterable[str]) -> list[Item]:
-        return quoted([self._execution.automaton.operations[name].title for name in names])
+        return quoted(folded(self._execution.automaton.operations[name].title for name in names))
 
     def _open(self, resources: Collection[str]) -> Message | None:
         """That it is not known whether operations can begin, since values of these resources are not."""
@@ -104,7 +105,7 @@ class Consequences:
             and evaluate(operation.precondition, execution.state) is None
             and unknown.intersection(_read(automaton, variables(operation.precondition)))
         ]
-        return message("wait.open", operations=quoted(titles)) if titles else None
+        return message("wait.open", operations=quoted(folded(titles))) if titles else None
 
     def held_up(self, resources: Collection[str]) -> frozenset[str]:
         """The active operations that cannot be completed while these resources do nothing.

@@ -1,6 +1,5 @@
 /** Operate. */
 const starts = (n: number): string => (n === 1 ? '1 start' : `${n} starts`);
-const ticks = (n: number): string => (n === 1 ? '1 tick' : `${n} ticks`);
 
 export const operate = {
 	/** Another model comes once the product in work is done. */
@@ -30,7 +29,7 @@ export const operate = {
 			planning: 'Planning',
 			followed: 'Followed'
 		},
-		replanned: (n: number): string => `re-planned ${n}×`,
+		replanned: (n: number): string => `Planned again ${n === 1 ? 'once' : `${n} times`}.`,
 		next: 'Next',
 		step: { done: 'done', running: 'running', next: 'next', planned: 'planned' },
 		isNew: 'new',
@@ -51,12 +50,11 @@ export const operate = {
 		inSeconds: (n: number): string => (n === 0 ? 'now' : `in ${n} s`),
 		about: (n: number): string => `about ${n} s`,
 		droppedStatus: 'dropped',
-		shortest: (n: number, ahead: number): string => `Shortest plan, proven: ${ticks(n)}, ${starts(ahead)} ahead`,
-		soon: (n: number, fewest: boolean, ahead: number): string =>
-			`Plan found soon: ${ticks(n)} (${fewest ? 'fewest possible' : 'maybe not the fewest'}), ${starts(ahead)} ahead`,
-		ends: (seconds: number): string => `expected to be done in about ${seconds} s`,
-		answered: (time: string): string => `answered in ${time}`,
-		answeredBy: (time: string, engine: string): string => `answered in ${time} by ${engine}`,
+		shortest: (ahead: number): string => `The shortest plan there is, proven: ${starts(ahead)} to come.`,
+		soon: (fewest: boolean, ahead: number): string => `Found soon: ${starts(ahead)} to come. ${fewest ? 'No plan is shorter.' : 'There may be a shorter plan.'}`,
+		ends: (seconds: number): string => `Done in about ${seconds} s.`,
+		answered: (time: string): string => `Found in ${time}.`,
+		answeredBy: (time: string, engine: string): string => `Found in ${time} by ${engine}.`,
 		whyNone: 'Why there is no plan',
 		noneWhile: (several: boolean): string =>
 			`No plan as long as ${several ? 'all of these stay as they are' : 'this stays as it is'}:`,
