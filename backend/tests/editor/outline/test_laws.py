@@ -269,6 +269,23 @@ def test_whatever_is_not_finished_is_told_and_nothing_is_made_of_it(outline: Out
 
 
 @pytest.mark.parametrize("name", sorted(templates().templates))
+def test_a_template_says_the_same_in_another_language(name: str) -> None:
+    """Each title is in the other words, but for those that are the same; names stay."""
+    english, swedish = templates().templates[name], templates("sv").templates[name]
+    assert outlined(swedish, "made").problems == []
+    assert english.model_dump(exclude={"title"}) != swedish.model_dump(exclude={"title"})
+
+    def items(part: object, key: str) -> list[object]:
+        if isinstance(part, dict):
+            return [*filter(None, [part.get(key)]), *(each for value in part.values() for each in items(value, key))]
+        return [each for value in part for each in items(value, key)] if isinstance(part, list | tuple) else []
+
+    assert items(english.model_dump(), "name") == items(swedish.model_dump(), "name")
+    pairs = zip(items(english.model_dump(), "title"), items(swedish.model_dump(), "title"), strict=True)
+    assert [each for each, other in pairs if each == other] in ([], ["Robot"])
+
+
+@pytest.mark.parametrize("name", sorted(templates().templates))
 def test_a_template_is_checked_without_findings_and_makes_its_product(name: str, tmp_path: Path) -> None:
     for path, text in outlined(templates().templates[name], "made").files.items():
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)

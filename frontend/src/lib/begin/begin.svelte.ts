@@ -4,7 +4,7 @@ import { SvelteSet } from 'svelte/reactivity';
 import type { Outline, OutlineView, Templates } from '#lib/contract.ts';
 import { unread, type Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
-import { say } from '#lib/text/text.svelte.ts';
+import { language, say } from '#lib/text/text.svelte.ts';
 import type { Kept } from './kept.ts';
 import { keyOf, unsaid, wrongIn, type Key, type Wrong } from './places.ts';
 import { neverText } from './sentences.ts';
@@ -67,7 +67,7 @@ export class Begin {
 
 	/** Reads what one can begin with. */
 	async begin(): Promise<void> {
-		const answer = await request<Templates>('GET', ADDRESS);
+		const answer = await request<Templates>('GET', `${ADDRESS}?${new URLSearchParams({ language: language() })}`);
 		if (answer.ok) this.templates = answer.value.templates;
 		else this.refusal = answer.refusal;
 	}

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from itertools import chain, count
 
 from sequence_planner.editor.outline.devices import BETWEEN, SUPPLY, enumerations_of, files_of, rest_of
-from sequence_planner.editor.outline.facts import condition_of, sentence_of
-from sequence_planner.editor.outline.outline import Outline, OutlineStep, Robot
+from sequence_planner.editor.outline.facts import STEP, condition_of, sentence_of
+from sequence_planner.editor.outline.outline import Fact, Never, Outline, OutlineStep, Robot
 from sequence_planner.editor.outline.writing import enumeration, in_both, in_one_line, spoken, titled
 from sequence_planner.editor.outline.wrong import problems_of
 from sequence_planner.model.yaml.editor import in_brackets
+
+LONGEST_NAME = 60  # of what must never be
 
 # Not finished outlines are none of its concern: `problems_of` tells what is missing.
 
@@ -110,16 +113,36 @@ def _work_master(outline: Outline) -> str:
 
 
 def _specifications(outline: Outline) -> str:
-    entries = list[str]()
-    for number, each in enumerate(outline.never, 1):
+    entries, taken = list[str](), set[str]()
+    for each in outline.never:
         title = spoken(each.title) or sentence_of(each, outline)
+        name = _free(_called(each), taken)
+        taken.add(name)
         facts = condition_of(each.facts, outline)
         if each.during:
             said = f"  never: {facts}\n  while: {condition_of(each.during, outline)}\n"
         else:
             said = f"  forbidden: {facts}\n"
-        entries.append(f"never_{number}:\n  title: {in_brackets(title)}\n{said}")
+        entries.append(f"{name}:\n  title: {in_brackets(title)}\n{said}")
     return "\n".join(entries)
+
+
+def _called(never: Never) -> str:
+    """What must never be, as a name: `never_arm_fixture_and_clamp_open`."""
+    facts, during = ("_and_".join(_fact_name(each) for each in part) for part in (never.facts, never.during))
+    name = f"never_{facts}_while_{during}" if during else f"never_{facts}"
+    return name if len(name) <= LONGEST_NAME else "never"
+
+
+def _fact_name(fact: Fact) -> str:
+    """The thing and its value; of a step the step alone, which is under way."""
+    thing = fact.thing.rpartition(".")[2] if fact.thing.startswith(STEP) else f"{fact.thing}_{fact.value}"
+    return thing if fact.holds else f"not_{thing}"
+
+
+def _free(name: str, taken: Collection[str]) -> str:
+    """The name, or with a number behind it where others have it."""
+    return next(each for each in chain([name], (f"{name}_{n}" for n in count(2))) if each not in taken)
 
 
 def _test(outline: Outline) -> str:

@@ -5,6 +5,7 @@ export const begin = {
 	title: 'First station',
 	kept: 'Kept in this browser.',
 	stepsLabel: 'Steps',
+	choose: 'Choose…',
 	steps: { station: 'Station', devices: 'Devices', poses: 'Poses', product: 'Product', never: 'Never', look: 'Look and begin' },
 	about: {
 		station: 'What the station is called, and what you begin with.',

@@ -5,6 +5,7 @@ export const begin: Text['begin'] = {
 	title: 'Första stationen',
 	kept: 'Behålls i den här webbläsaren.',
 	stepsLabel: 'Steg',
+	choose: 'Välj …',
 	steps: { station: 'Station', devices: 'Enheter', poses: 'Lägen', product: 'Produkt', never: 'Aldrig', look: 'Titta och börja' },
 	about: {
 		station: 'Vad stationen heter, och vad du börjar med.',

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from fastapi import Response
+from typing import Annotated, Literal
+
+from fastapi import Query, Response
 
 from sequence_planner.auth.roles import Role, Scope
 from sequence_planner.editor.outline.beginning import templates
@@ -22,9 +24,9 @@ router = interface("/model", tags=["model"], responses=refused(409, 503))
 
 
 @router.get("/outlines", dependencies=[VIEWER])
-async def outline_templates() -> TemplatesView:
-    """Outlines of stations to begin a model with."""
-    return templates()
+async def outline_templates(language: Annotated[Literal["en", "sv"], Query()] = "en") -> TemplatesView:
+    """Outlines of stations to begin a model with, with their titles in a language."""
+    return templates(language)
 
 
 @router.post("/outlines/preview", dependencies=[VIEWER, JSON_ONLY], response_model=OutlineView)
