@@ -5,6 +5,7 @@ import type { Refusal } from '#lib/rest/refusal.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { same, type Path } from './content.ts';
 import { Deeds } from './deeds.svelte.ts';
+import { Folding } from './folding.svelte.ts';
 import type { Draft } from './draft.svelte.ts';
 import { fixed } from './fixing.ts';
 import { countsOf, foundIn } from './found.ts';
@@ -22,7 +23,7 @@ export interface Sight {
 }
 
 /** With less than this, in rem, nothing below the form could be read. */
-const LEAST = 11;
+const LEAST = 10;
 
 export class Bench {
 	readonly draft: Draft;
@@ -40,7 +41,7 @@ export class Bench {
 	/** How often something was asked for there: each time it comes in sight. */
 	asked = $state(0);
 	/** How high that is, in rem. */
-	below = $state(11);
+	below = $state(10);
 
 	readonly tree = $derived.by(() => treeOf(this.draft.files, this.draft.contents));
 	readonly lookup = $derived(lookupOf(this.tree));
@@ -50,6 +51,8 @@ export class Bench {
 	readonly counts = $derived(countsOf(this.found, this.lookup));
 	/** What is done with parts of the tree. */
 	readonly deeds = new Deeds(this);
+	/** Which sections of the forms are open. */
+	readonly folding = new Folding();
 	/** Those that are chosen with the chosen one; whatever else is chosen is chosen alone. */
 	#marked = $state.raw<ReadonlySet<string>>(new Set());
 	/** The chosen parts, in the order of the tree; the form shows one. */

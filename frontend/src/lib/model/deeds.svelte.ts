@@ -156,26 +156,30 @@ export class Deeds {
 		void this.#carry({ title, make, done: () => this.#show(title, at) });
 	}
 
-	/** Puts parts beside one of their siblings. */
-	move(nodes: readonly Node[], target: Target): Promise<void> {
+	/** Puts parts beside one of their siblings, found when those before are done; null where they are at the end already. */
+	move(nodes: readonly Node[], aim: () => Target | null): Promise<void> {
 		const [first] = nodes;
 		if (!first || !this.#allows('move', nodes)) return Promise.resolve();
 		const { together, change } = say().model;
 		const title = nodes.length === 1 ? change.move(this.#bench.label(first)) : together.moved(nodes.length, this.#names(nodes));
 		const siblings = (): readonly Node[] => this.#bench.lookup.parents.get(first.id)?.children ?? [];
+		let edits: readonly Edit[] = [];
 		return this.#carry({
 			title,
 			make: () => {
+				edits = [];
+				const target = aim();
+				if (target === null) return edits;
 				if (this.#present(nodes).length < nodes.length || !this.#bench.lookup.byId.has(target.node.id)) {
 					this.said = together.gone;
-					return [];
+					return edits;
 				}
-				return movedTo(nodes, target, siblings(), this.#bench.draft.contents[first.file]);
+				return (edits = movedTo(nodes, target, siblings(), this.#bench.draft.contents[first.file]));
 			},
 			done: () => {
 				const list = siblings();
 				const place = list.findIndex(({ id }) => id === first.id);
-				if (this.said === null) this.told = together.placed(title, place + 1, list.length);
+				if (edits.length > 0) this.told = together.placed(title, place + 1, list.length);
 			}
 		});
 	}

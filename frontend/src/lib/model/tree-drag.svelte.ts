@@ -25,6 +25,7 @@ export class TreeDrag {
 	/** Where the pointer is, in the tree. */
 	at = $state.raw<{ readonly x: number; readonly y: number }>({ x: 0, y: 0 });
 	#from: { readonly x: number; readonly y: number; readonly node: Node; readonly pointer: number } | null = null;
+	#last = { x: NaN, y: NaN };
 	#frame = 0;
 
 	constructor(tree: Tree) {
@@ -57,6 +58,8 @@ export class TreeDrag {
 			this.#tree.host()?.setPointerCapture(event.pointerId);
 			this.#frame = requestAnimationFrame(() => this.#scroll());
 		}
+		// What comes above the tree, such as that the connection is lost, moves it under a hand that rests: the line stays at its row.
+		if (event.clientX === this.#last.x && event.clientY === this.#last.y) return;
 		this.#aim(event.clientX, event.clientY);
 	}
 
@@ -79,6 +82,7 @@ export class TreeDrag {
 	#aim(x: number, y: number): void {
 		const host = this.#tree.host();
 		if (!host) return;
+		this.#last = { x, y };
 		const box = host.getBoundingClientRect();
 		this.at = { x: x - box.left, y: y - box.top };
 		const over = document.elementFromPoint(Math.min(Math.max(x, box.left + 4), box.right - 4), y)?.closest<HTMLElement>('[data-id]');

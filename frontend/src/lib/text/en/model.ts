@@ -54,8 +54,10 @@ export const model = {
 	unrun: (n: number): string => `${count(n, 'file', 'files')} the station does not run as here`,
 	review: 'Review changes',
 	moreFields: 'More',
+	/** The sections of the form of an ability. */
+	sections: { what: 'Name and time', person: 'Person', start: 'Start', course: 'Under way', finish: 'Finish' },
 	inOperations: 'See it in the order of operations',
-	now: { title: 'In the station that runs', tag: 'station now', differs: 'This is of the station that runs: the draft differs from it.', which: 'Which one', may: 'May start when', supervised: 'added by the supervisor', try: 'Try it' },
+	now: { title: 'In the station that runs', tag: 'station now', differs: 'This is of the station that runs: the draft differs from it.', which: 'Which one', may: 'May start when', hold: (n: number, of: number): string => (n === of ? `all ${of} hold` : `${n} of ${of} hold, not`), supervised: 'added by the supervisor', try: 'Try it' },
 	/** How long an ability took, beside what is written. */
 	measured: {
 		is: (least: number, most: number, runs: number): string => `measured: ${least === most ? least : `${least} to ${most}`} s, ${count(runs, 'run', 'runs')}`,

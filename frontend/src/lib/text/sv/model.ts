@@ -53,8 +53,9 @@ export const model: Text['model'] = {
 	unrun: (n) => `${count(n, 'fil', 'filer')} som stationen inte kör som här`,
 	review: 'Granska ändringar',
 	moreFields: 'Mer',
+	sections: { what: 'Namn och tid', person: 'Person', start: 'Start', course: 'På väg', finish: 'Avslut' },
 	inOperations: 'Se den i operationernas ordning',
-	now: { title: 'I stationen som kör', tag: 'stationen nu', differs: 'Det här är stationen som kör: utkastet skiljer sig från den.', which: 'Vilken', may: 'Får starta när', supervised: 'tillagt av övervakaren', try: 'Prova den' },
+	now: { title: 'I stationen som kör', tag: 'stationen nu', differs: 'Det här är stationen som kör: utkastet skiljer sig från den.', which: 'Vilken', may: 'Får starta när', hold: (n, of) => (n === of ? `alla ${of} gäller` : `${n} av ${of} gäller, inte`), supervised: 'tillagt av övervakaren', try: 'Prova den' },
 	form: 'Vald del',
 	measured: {
 		is: (least, most, runs) => `uppmätt: ${least === most ? least : `${least} till ${most}`} s, ${count(runs, 'körning', 'körningar')}`,
