@@ -455,6 +455,7 @@ export const model = {
 		first: 'It is the first already',
 		last: 'It is the last already',
 		gone: 'Not moved: somebody else has deleted or renamed it meanwhile.',
+		unsent: 'The server cannot be reached. It is kept here until it is sent, and done once.',
 		noClipboard: 'The browser does not let this page use the clipboard. Press Ctrl+C or Ctrl+X in the tree.',
 		placed: (what: string, place: number, of: number): string => `${what}: ${place} of ${of}`,
 		cut: (n: number, names: string): string => (n === 1 ? `${names} cut` : `${n} parts cut: ${names}`),

@@ -441,6 +441,7 @@ export const model: Text['model'] = {
 		first: 'Den är redan först',
 		last: 'Den är redan sist',
 		gone: 'Inte flyttad: någon annan har tagit bort den eller bytt dess namn under tiden.',
+		unsent: 'Servern kan inte nås. Det behålls här tills det är skickat och görs en gång.',
 		noClipboard: 'Webbläsaren låter inte sidan använda urklipp. Tryck Ctrl+C eller Ctrl+X i trädet.',
 		placed: (what, place, of) => `${what}: ${place} av ${of}`,
 		cut: (n, names) => (n === 1 ? `${names} urklippt` : `${n} delar urklippta: ${names}`),
