@@ -86,3 +86,27 @@ test('the form is usable in the hand', async ({ browse }) => {
 		expect(await findings(page)).toEqual([]);
 	}
 });
+
+test('the actions of an ability are put in another order by keys and by a button, with their comments', async ({ browse, drafting }) => {
+	const page = await browse(INA, at('robot', 'attach_in_planning_scene'));
+	const FILE = 'resources/robot.yaml';
+	const text = async (): Promise<string> => {
+		const answer = await page.context().request.get(`/api/v1/model/files?path=${FILE}`);
+		return ((await answer.json()) as { files: Record<string, { text: string }> }).files[FILE]?.text ?? '';
+	};
+	const before = await text();
+	const two = 'do:\n        # First.\n        - attach_tool := true\n        - target_pose := home # second';
+	await drafting.change('Two actions', [FILE, 'do: [attach_tool := true]', two]);
+	const now = before.replace('do: [attach_tool := true]', two);
+	const row = (n: number) => expression(page, `Start: Actions, ${n}`);
+	await expect(row(2)).toHaveText('target_pose := home');
+	await row(2).focus();
+	await page.keyboard.press('Alt+ArrowUp');
+	await expect(row(1)).toHaveText('target_pose := home');
+	await expect(row(1)).toBeFocused();
+	expect(await text()).toContain('do:\n        - target_pose := home # second\n        # First.\n        - attach_tool := true\n');
+	await page.keyboard.press('Alt+ArrowUp'); // it is the first
+	await form(page).getByRole('button', { name: 'Move Start: Actions, 2 up' }).click();
+	await expect(row(1)).toHaveText('attach_tool := true');
+	await expect.poll(text).toBe(now);
+});

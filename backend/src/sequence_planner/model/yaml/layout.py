@@ -98,8 +98,8 @@ class Layout:
         return self._comments_above(parent, self.entries(parent), position)
 
     def extents(self, parent: Node) -> list[tuple[int, int]]:
-        """Return where each entry begins and ends with what goes with it: in a block the comments directly above it, the
-        one behind it, and those below it that are indented more deeply. The margin of its first line is not in it.
+        """Return where each entry begins and ends with what goes with it: in a block the comments directly above it,
+        the one behind it, and those below it that are indented more deeply. The margin of its first line is not in it.
         """
         entries = self.entries(parent)
         if parent.style:
