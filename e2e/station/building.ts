@@ -103,16 +103,16 @@ export class Builder {
 		}
 	}
 
-	/** Opens what is behind *More*, where a field is not seen without that. */
-	async #reveal(way: Locator): Promise<void> {
+	/** Opens the sections of a form and what is behind *More*, where a field is not seen without that. */
+	async reveal(way: Locator): Promise<void> {
 		const isSeen = (): Promise<boolean> => way.waitFor({ timeout: LOADED }).then(() => true, () => false);
-		const more = this.form.locator('details.rest:not([open]) > summary');
+		const more = this.form.locator(':is(details.rest, details[data-section]):not([open]) > summary');
 		while (!(await isSeen()) && (await more.count()) > 0) await this.hand.press(more.first());
 	}
 
 	async #fill(field: Field, within: string): Promise<void> {
 		const label = within + field.label;
-		await this.#reveal(this.#way(field, label));
+		await this.reveal(this.#way(field, label));
 		switch (field.as) {
 			case 'text':
 				await this.hand.write(this.textbox(label), field.text);

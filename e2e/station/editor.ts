@@ -10,6 +10,12 @@ export const file = (page: Page): Locator => page.getByRole('region', { name: 'F
 /** Shows one of what is told of the draft below its form. */
 export const panel = (page: Page, name: 'Problems' | 'Usages' | 'Guards added' | 'Tried runs' | 'Changes' | 'Could be shorter'): Promise<void> =>
 	page.getByRole('tablist', { name: 'About the draft' }).getByRole('tab', { name }).click();
+/** Opens a section of the form. */
+export async function unfold(page: Page, name: 'Name and time' | 'Person' | 'Start' | 'Under way' | 'Finish'): Promise<void> {
+	const section = form(page).locator('details[data-section]').filter({ has: page.getByText(name, { exact: true }) });
+	await section.waitFor();
+	if ((await section.getAttribute('open')) === null) await section.locator('> summary').click();
+}
 /** How the check of the draft stands. */
 export const check = (page: Page): Locator => page.getByTestId('check').getByRole('status');
 export const problems = (page: Page, name = 'Problems'): Locator => page.getByRole('region', { name, exact: true });

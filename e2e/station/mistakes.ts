@@ -104,6 +104,7 @@ async function fields(builder: Builder): Promise<void> {
 
 	await builder.choose('move_to', ROBOT, 'abilities', 'move_to');
 	const executing = builder.editor('Executing');
+	await builder.reveal(executing);
 	const before = await executing.innerText();
 	await hand.write(executing, 'target_pos == position and pose != position');
 	await expect(form.locator('[data-path="executing"]')).toContainText('did you mean `target_pose`?');

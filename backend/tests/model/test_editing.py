@@ -69,6 +69,17 @@ def test_comments_go_with_their_entries() -> None:
     assert rename(text, ("b",), "d: e").split("\n")[4] == "'d: e': 2 # two"
 
 
+def test_what_stands_between_entries_stays_where_it_is() -> None:
+    text = "a:\n  x: 1\n  # Not yet: y\n\n# About b.\nb: 2 # two\n\n\n# ---- apart\n\nc: 3"
+    there = "# About b.\nb: 2 # two\n\na:\n  x: 1\n  # Not yet: y\n\n\n# ---- apart\n\nc: 3"
+    assert move(text, ("b",), before="a") == f"\n{there}"  # a comment in the first line would be about the file
+    assert move(text, ("c",), before="a") == (
+        "c: 3\n\na:\n  x: 1\n  # Not yet: y\n\n\n# ---- apart\n\n# About b.\nb: 2 # two"
+    )
+    assert move("# The file.\na: 1\n# About b.\nb: 2\n", ("a",)) == "# The file.\n\n# About b.\nb: 2\na: 1\n"
+    assert move("m: [ a,  b , c ]\n", ("m", 2), before=0) == "m: [ c,  a , b ]\n"
+
+
 def test_of_a_mapping_only_what_differs_is_written() -> None:
     text = "a: # one\n  b: 1 # two\n  # three\n  c: {d: [1,  2]}\n"
     new = replace(text, ("a",), {"b": 1, "c": {"d": [1, 3]}, "e": None})

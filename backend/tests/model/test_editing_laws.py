@@ -192,6 +192,32 @@ def test_move_loses_nothing(text: str, data: st.DataObject) -> None:
     assert characters(new) == characters(text)
 
 
+@examples(200)
+@given(documents, st.data())
+def test_what_was_moved_and_moved_back_leaves_no_trace(text: str, data: st.DataObject) -> None:
+    content = content_of(text)
+    parents = [path for path in [(), *paths_of(content)] if isinstance(at(content, path), dict | list)]
+    parent = data.draw(st.sampled_from([path for path in parents if at(content, path)]))
+    siblings = at(content, parent)
+    keys: list[Content] = list(range(len(siblings))) if isinstance(siblings, list) else list(siblings)
+    here, there = (data.draw(st.integers(0, len(keys) - 1)) for _ in range(2))
+    beside = {"before": keys[there]} if there < here else {"after": keys[there]}
+    new = move(text, (*parent, keys[here]), **beside)
+    moved = at(content_of(new), parent)
+    order = [*keys]
+    order.insert(there, order.pop(here))
+    if isinstance(moved, list):
+        assert moved == [siblings[int(str(key))] for key in order]
+        step, back = there, {"before": here} if here < there else {"after": here}
+    else:
+        assert [*moved] == order
+        step, back = keys[here], {"before" if here < there else "after": order[here]}
+    again = move(new, (*parent, step), **back)
+    if parent == () and again != text:  # a blank line keeps the comment of the first entry from being one of the file
+        again, text = ("".join(line for line in each.splitlines(True) if line.strip()) for each in (again, text))
+    assert again == text
+
+
 def characters(text: str) -> list[str]:
     return sorted(text.translate({ord(sign): None for sign in " \n,"}))
 

@@ -2,7 +2,7 @@
 import type { Locator, Page } from '@playwright/test';
 import { findings } from '../../station/barriers.ts';
 import { INA } from '../../station/station.ts';
-import { check, expression, field, file, form, write } from '../../station/editor.ts';
+import { check, expression, field, file, form, unfold, write } from '../../station/editor.ts';
 import { expect, test } from '../../station/test.ts';
 
 test.use({ shared: 'robots drafted', byItself: false, people: 'everybody', copied: 'robots_with_buffer' });
@@ -21,6 +21,7 @@ test('an instance shows what it has of its type, changes it, and is reset; the t
 	await expect(row(page, ROBOT, 'abilities', 'open_gripper')).toContainText('of robot');
 	await expect(form(page)).toContainText('From type robot');
 	const title = field(page, 'title');
+	await unfold(page, 'Name and time');
 	await expect(title.locator('[data-typed]')).toHaveText('From type robot: Open the empty gripper');
 	await title.getByRole('textbox').fill('Let go');
 	await title.getByRole('textbox').press('Tab');
@@ -35,6 +36,7 @@ test('an instance shows what it has of its type, changes it, and is reset; the t
 	// The type: a parameter is a value there, and a wrong name is underlined behind it.
 	await page.goto(at(TYPE, 'abilities', 'move_to'));
 	const executing = expression(page, 'Executing');
+	await unfold(page, 'Under way');
 	await write(executing, 'target == stop and at != conveyor and att != stop');
 	await page.keyboard.press('Escape');
 	await expect(field(page, 'executing').locator('.cm-lintRange-error')).toHaveText('att');

@@ -35,6 +35,9 @@ test.describe('a station that works', () => {
 			await expect(operate.getByRole('heading', { name: 'move_to_position', level: 2 })).toBeVisible();
 			const now = region(operate, 'In the station that runs');
 			await expect(now.getByRole('combobox', { name: 'Which one' })).toHaveValue(moveTo('home'));
+			// Folded it says how many hold; how it is left is how it is found again.
+			await expect(now.getByTestId('may-start')).toContainText(/\d+ of \d+ hold, not|all \d+ hold/);
+			await now.getByRole('button', { name: /^May start when/ }).click();
 			await expect(now.getByRole('list', { name: 'May start when' }).locator('[title="robot.target_pose == robot.pose"]')).toBeVisible();
 			await now.getByRole('button', { name: 'Try it' }).click();
 			await expect(press(operate)).toHaveAttribute('aria-disabled', 'true');

@@ -4,6 +4,8 @@ import type { Finding, Fix } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { same, type Path } from './content.ts';
+import { Deeds } from './deeds.svelte.ts';
+import { Folding } from './folding.svelte.ts';
 import type { Draft } from './draft.svelte.ts';
 import { fixed } from './fixing.ts';
 import { countsOf, foundIn } from './found.ts';
@@ -21,7 +23,7 @@ export interface Sight {
 }
 
 /** With less than this, in rem, nothing below the form could be read. */
-const LEAST = 11;
+const LEAST = 10;
 
 export class Bench {
 	readonly draft: Draft;
@@ -39,7 +41,7 @@ export class Bench {
 	/** How often something was asked for there: each time it comes in sight. */
 	asked = $state(0);
 	/** How high that is, in rem. */
-	below = $state(11);
+	below = $state(10);
 
 	readonly tree = $derived.by(() => treeOf(this.draft.files, this.draft.contents));
 	readonly lookup = $derived(lookupOf(this.tree));
@@ -47,6 +49,19 @@ export class Bench {
 		foundIn(this.draft.check?.findings ?? [], this.lookup, this.draft.files)
 	);
 	readonly counts = $derived(countsOf(this.found, this.lookup));
+	/** What is done with parts of the tree. */
+	readonly deeds = new Deeds(this);
+	/** Which sections of the forms are open. */
+	readonly folding = new Folding();
+	/** Those that are chosen with the chosen one; whatever else is chosen is chosen alone. */
+	#marked = $state.raw<ReadonlySet<string>>(new Set());
+	/** The chosen parts, in the order of the tree; the form shows one. */
+	readonly selection: readonly Node[] = $derived.by(() => {
+		const marked = this.#marked;
+		if (marked.size > 1 && marked.has(this.chosen)) return [...this.lookup.byId.values()].filter(({ id }) => marked.has(id));
+		return this.node === null ? [] : [this.node];
+	});
+	readonly #selected = $derived(new Set(this.selection.map(({ id }) => id)));
 
 	constructor(
 		draft: Draft,
@@ -110,8 +125,28 @@ export class Bench {
 		return !this.may || file.startsWith('packages/') || (this.draft.files[file]?.wrong ?? null) !== null;
 	}
 
+	/** Chooses one, and no other with it. */
 	choose(id: string): void {
+		this.#marked = new Set();
 		if (id !== this.chosen) this.#look(id, false);
+	}
+
+	/** Chooses several; the chosen one stays it where it is among them. */
+	mark(ids: readonly string[]): void {
+		const [first] = ids;
+		if (first === undefined) return;
+		this.#marked = new Set(ids.length > 1 ? ids : []);
+		if (!ids.includes(this.chosen)) this.#look(first, false);
+	}
+
+	/** Another one is chosen: those that were with the one before are so no more. */
+	settle(): void {
+		if (!this.#marked.has(this.chosen)) this.#marked = new Set();
+	}
+
+	/** Whether it is chosen, alone or with others. */
+	isSelected(id: string): boolean {
+		return this.#selected.has(id);
 	}
 
 	/** The entry in which a line of a file is. */

@@ -39,7 +39,7 @@ describe('parts in the clipboard', () => {
 		const { edits, names, at } = pasted(text(ROBOT, 'abilities', 'move'), node(GRIPPER, 'abilities', 'close'));
 		expect(names).toEqual(['move']);
 		expect(edits).toEqual([{ kind: 'add', file: GRIPPER, path: ['abilities', 'move'], value: move }]);
-		expect(at).toEqual({ file: GRIPPER, path: ['abilities', 'move'] });
+		expect(at).toEqual([{ file: GRIPPER, path: ['abilities', 'move'] }]);
 		expect(pasted(text(ROBOT, 'abilities', 'move'), node(ROBOT)).names).toEqual(['move_2']);
 	});
 
@@ -48,7 +48,7 @@ describe('parts in the clipboard', () => {
 		expect(pasted(several, node(ROBOT)).names).toEqual(['a', 'b', 'seen']);
 		expect(pasted(text('operations.yaml', 'assemble'), node(ROBOT)).edits).toMatchObject([{ file: 'operations.yaml', path: ['assemble_2'] }]);
 		const whole = pasted(text(ROBOT), null);
-		expect(whole.at).toEqual({ file: 'resources/robot_2.yaml', path: [] });
+		expect(whole.at).toEqual([{ file: 'resources/robot_2.yaml', path: [] }]);
 		expect(whole.edits.map((edit) => edit.kind === 'add' && edit.path)).toEqual([['title'], ['measured'], ['abilities']]);
 	});
 

@@ -8,7 +8,7 @@ type Yaml = Pick<typeof import('yaml'), 'parse' | 'stringify'>;
 type Contents = Readonly<Record<string, Json | undefined>>;
 
 /** The section of a part, as it stands above it; null for what is no entry of a file, such as a message. */
-function sectionOf({ kind, file, path }: Node): string | null {
+export function sectionOf({ kind, file, path }: Node): string | null {
 	if (kind === 'resource') return 'resources';
 	if (kind === 'type') return 'types';
 	if (kind === 'section' || kind === 'station' || kind === 'message' || path.length === 0) return null;
@@ -18,15 +18,23 @@ function sectionOf({ kind, file, path }: Node): string | null {
 }
 
 /** A part as text; null where it is written nowhere by itself. */
-export function partText(node: Node, contents: Contents, { stringify }: Yaml): string | null {
-	const [section, value] = [sectionOf(node), valueAt(contents[node.file], node.path)];
-	return section === null || value === undefined || node.of !== undefined ? null : stringify({ [section]: { [node.name]: value } });
+export const partText = (node: Node, contents: Contents, yaml: Yaml): string | null => partsText([node], contents, yaml);
+
+/** Several parts as one text, each below its section; null where one of them is written nowhere by itself. */
+export function partsText(nodes: readonly Node[], contents: Contents, { stringify }: Yaml): string | null {
+	const all: Record<string, Record<string, Json>> = {};
+	for (const node of nodes) {
+		const [section, value] = [sectionOf(node), valueAt(contents[node.file], node.path)];
+		if (section === null || value === undefined || node.of !== undefined) return null;
+		(all[section] ??= {})[node.name] = value;
+	}
+	return stringify(all);
 }
 
-/** What would be pasted: the edits, where each part is found then, and what the first of them is called. */
+/** What would be pasted: the edits, where each part is found then, and what they are called. */
 export interface Pasted {
 	readonly edits: readonly Edit[];
-	readonly at: { readonly file: string; readonly path: readonly (string | number)[] };
+	readonly at: readonly { readonly file: string; readonly path: readonly (string | number)[] }[];
 	readonly names: readonly string[];
 }
 
@@ -67,8 +75,7 @@ export function pastedAt(text: string, node: Node | null, lookup: Lookup, conten
 			found.push({ file: place.file, path: [...place.path.map(String), name] });
 		}
 	}
-	const [at] = found;
-	return at === undefined || edits.length === 0 ? { section: null } : { edits, at, names };
+	return edits.length === 0 ? { section: null } : { edits, at: found, names };
 }
 
 function isTaken(name: string, { kind, file, path }: Place, contents: Contents): boolean {
@@ -77,7 +84,7 @@ function isTaken(name: string, { kind, file, path }: Place, contents: Contents):
 	return isMapping(there) && Object.hasOwn(there, name);
 }
 
-function free(name: string, taken: (name: string) => boolean): string {
+export function free(name: string, taken: (name: string) => boolean): string {
 	if (!taken(name)) return name;
 	for (let n = 2; ; n++) if (!taken(`${name}_${n}`)) return `${name}_${n}`;
 }

@@ -16,7 +16,8 @@ import type { Completion, Hover, Wrong } from './language.ts';
 
 const THEME = EditorView.theme({
 	'&': {
-		minHeight: 'var(--ctl-h)',
+		minHeight: 'var(--editor-least, var(--ctl-h))',
+		maxHeight: 'var(--editor-most, none)',
 		border: '1px solid var(--edge)',
 		borderRadius: 'var(--r-2)',
 		background: 'var(--raised)',
@@ -25,7 +26,7 @@ const THEME = EditorView.theme({
 	},
 	'&.cm-focused': { outline: '2px solid var(--focus)', outlineOffset: '2px' },
 	'.cm-scroller': { fontFamily: 'var(--mono)', fontFeatureSettings: "'calt' 0", lineHeight: '1.55' },
-	'.cm-content': { padding: '0.55rem 0', caretColor: 'var(--ink)' },
+	'.cm-content': { padding: 'var(--editor-pad, 0.55rem) 0', caretColor: 'var(--ink)' },
 	'.cm-line': { padding: '0 0.75rem' },
 	'.cm-gutters': { background: 'var(--sunken)', color: 'var(--ink-2)', borderRight: '1px solid var(--line)' },
 	'.cm-tooltip': {

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { copied, made, moved, placesAt, removed, taken, written } from './making.ts';
+import { copied, made, placesAt, removed, taken, written } from './making.ts';
 import { keysOfOthers, SPECIFICATIONS } from './specification.ts';
 import { lookupOf, treeOf, around, idOf } from './tree.ts';
 
@@ -38,13 +38,6 @@ describe('edits', () => {
 			{ kind: 'remove', file: FILE, path: ['measured'], was: { pose: { type: 'pose' } } }
 		]);
 		expect(removed(node(), CONTENT, 'text')).toEqual([{ kind: 'text', file: FILE, was: 'text', text: null }]);
-	});
-
-	test('something is moved by one among its siblings, and no further than to the end', () => {
-		const siblings = LOOKUP.parents.get(node('abilities', 'move').id)?.children ?? [];
-		expect(moved(node('abilities', 'move'), siblings, CONTENT, 1)).toMatchObject([{ kind: 'move', after: 'stop' }]);
-		expect(moved(node('abilities', 'stop'), siblings, CONTENT, -1)).toMatchObject([{ kind: 'move', before: 'move' }]);
-		expect(moved(node('abilities', 'move'), siblings, CONTENT, -1)).toEqual([]);
 	});
 
 	test('a copy stands behind what it is a copy of; a resource is copied as it is written', () => {

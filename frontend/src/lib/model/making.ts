@@ -153,16 +153,6 @@ export function taken(file: string, content: Json | undefined, path: Path, keep:
 	return [{ kind: 'remove', file, path: [...at], was: valueAt(content, at) ?? null }];
 }
 
-/** Edits that put it one further up or down among its siblings; none where it is there already. */
-export function moved(node: Node, siblings: readonly Node[], content: Json | undefined, by: 1 | -1): Edit[] {
-	const at = siblings.findIndex((each) => each.id === node.id);
-	const beside = siblings[at + by];
-	if (at < 0 || beside === undefined || node.path.length === 0 || node.of !== undefined || beside.of !== undefined) return [];
-	const step = String(beside.path.at(-1));
-	const was = valueAt(content, node.path) ?? null;
-	return [{ kind: 'move', file: node.file, path: [...node.path], was, ...(by < 0 ? { before: step } : { after: step }) }];
-}
-
 /** Edits that let the entry at `path` be `value` that was `was`; undefined is no entry. `keep` as in `taken`. */
 export function written(
 	file: string,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 
 from ruamel.yaml import YAML
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString, SingleQuotedScalarString
@@ -225,17 +226,21 @@ def inserted(text: str, parent: EntryPath, position: int, name: str | None, valu
 
 
 def moved(text: str, path: EntryPath, position: int) -> str:
-    """`text` with the entry at `path` at another position, which counts without it."""
+    """`text` with the entry at `path` at another position, which counts without it, and its comments.
+
+    What stands between entries, such as blank lines, stays where it is: moved back, all is as it was.
+    """
     layout, way = _found(text, path)
-    entry = layout.entry(way)
-    own = layout.comments_above(way[-1][0], way[-1][1])
-    raw = (text[own : layout.line_start(entry.start)] if own < entry.start else "") + " " * (
-        entry.start - layout.line_start(entry.start)
-    )
-    raw_lines = (raw + text[entry.start : layout.line_end(entry.end)]).split("\n")
-    return _splice_in(
-        removed(text, path), path[:-1], position, text[entry.start : entry.end], lambda _column, _in_brackets: raw_lines
-    )
+    parent, here = way[-1]
+    layout.refuse_shared(way, layout.entry(way))
+    extents = layout.extents(parent)
+    entries = [text[begin:end] for begin, end in extents]
+    between = [text[end:begin] for (_, end), (begin, _) in pairwise(extents)]
+    entries.insert(position, entries.pop(here))
+    head = text[: extents[0][0]]
+    if len(way) == 1 and entries[0].startswith("#") and all(line.startswith("#") for line in head.splitlines()):
+        head += "\n"  # or it would be a comment about the file
+    return head + "".join(map("".join, zip(entries, [*between, ""], strict=True))) + text[extents[-1][1] :]
 
 
 def removed(text: str, path: EntryPath) -> str:

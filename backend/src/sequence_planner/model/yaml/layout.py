@@ -95,7 +95,39 @@ class Layout:
 
         A comment that begins the file is about the file, and not about its first entry.
         """
+        return self._comments_above(parent, self.entries(parent), position)
+
+    def extents(self, parent: Node) -> list[tuple[int, int]]:
+        """Return where each entry begins and ends with what goes with it: in a block the comments directly above it,
+        the one behind it, and those below it that are indented more deeply. The margin of its first line is not in it.
+        """
         entries = self.entries(parent)
+        if parent.style:
+            return [(entry.start, entry.end) for entry in entries]
+        found: list[tuple[int, int]] = []
+        for position, entry in enumerate(entries):
+            begin = self._comments_above(parent, entries, position)
+            while self.text[begin] == " ":
+                begin += 1
+            found.append((begin, self._comments_below(entry)))
+        return found
+
+    def _comments_below(self, entry: YamlEntry) -> int:
+        """Return where the line of an entry's end ends, or the last of the comments below it that are indented more."""
+        column = entry.start - self.line_start(entry.start)
+        found = at = self.line_end(entry.end)
+        while at < len(self.text):
+            end = self.line_end(at + 1)
+            line = self.text[at + 1 : end]
+            inner = line.lstrip(" ")
+            if inner and not (inner.startswith("#") and len(line) - len(inner) > column):
+                break
+            at = end
+            if inner:
+                found = end
+        return found
+
+    def _comments_above(self, parent: Node, entries: list[YamlEntry], position: int) -> int:
         start = entries[position].start
         floor = self.line_end(entries[position - 1].end) if position else self._head_end(parent)
         top = self.line_start(start)

@@ -54,8 +54,10 @@ export const model = {
 	unrun: (n: number): string => `${count(n, 'file', 'files')} the station does not run as here`,
 	review: 'Review changes',
 	moreFields: 'More',
+	/** The sections of the form of an ability. */
+	sections: { what: 'Name and time', person: 'Person', start: 'Start', course: 'Under way', finish: 'Finish' },
 	inOperations: 'See it in the order of operations',
-	now: { title: 'In the station that runs', tag: 'station now', differs: 'This is of the station that runs: the draft differs from it.', which: 'Which one', may: 'May start when', supervised: 'added by the supervisor', try: 'Try it' },
+	now: { title: 'In the station that runs', tag: 'station now', differs: 'This is of the station that runs: the draft differs from it.', which: 'Which one', may: 'May start when', hold: (n: number, of: number): string => (n === of ? `all ${of} hold` : `${n} of ${of} hold, not`), supervised: 'added by the supervisor', try: 'Try it' },
 	/** How long an ability took, beside what is written. */
 	measured: {
 		is: (least: number, most: number, runs: number): string => `measured: ${least === most ? least : `${least} to ${most}`} s, ${count(runs, 'run', 'runs')}`,
@@ -427,6 +429,43 @@ export const model = {
 			order: 'Conditions in their order'
 		},
 		do: 'Add'
+	},
+	/** Several parts that are chosen at once. */
+	together: {
+		count: (n: number): string => `${count(n, 'part', 'parts')} selected`,
+		label: 'What can be done with all of them',
+		deed: { copy: 'Copy', cut: 'Cut', duplicate: 'Duplicate', remove: 'Delete', move: 'Move' },
+		one: 'Only one again',
+		about: 'Each of these is one change, which one Undo takes back. Ctrl or Shift with a click selects more; Alt with an arrow key moves.',
+		deleteKey: 'Delete key',
+		without: (name: string): string => `Leave out ${name}`,
+		more: (n: number): string => `and ${n} more`,
+		notTogether: (deeds: readonly string[]): string => `Not with all of them: ${deeds.join(', ')}`,
+		leave: (out: number, rest: number): string => `Leave out ${out}, keep ${rest}`,
+		why: {
+			heading: (name: string): string => `“${name}” is a heading, and no part by itself.`,
+			within: (name: string, other: string): string => `${name} is in ${other}, which is selected too.`,
+			typed: (name: string, _: string, type: string): string => `${name} comes from type ${type}: do that there.`,
+			message: (name: string): string => `${name} is a message definition: it has a file of its own and no text in others.`,
+			locked: (name: string, _: string, file: string): string => `${name} cannot be changed here: ${file} cannot be read, or belongs to a package.`,
+			twice: (name: string, other: string): string => `${other} and ${name} have the same name and would be one in the copy. Copy one after the other.`,
+			mixed: (name: string, other: string): string => `${other} and ${name} have no place in common: one is a file of its own, the other a part of one.`,
+			unordered: (name: string): string => `${name} has a file of its own: files have no order.`,
+			apart: (name: string, other: string): string => `${name} stands in another list than ${other}.`
+		} satisfies Record<string, (name: string, other: string, of: string) => string>,
+		first: 'It is the first already',
+		last: 'It is the last already',
+		gone: 'Not moved: somebody else has deleted or renamed it meanwhile.',
+		unsent: 'The server cannot be reached. It is kept here until it is sent, and done once.',
+		noClipboard: 'The browser does not let this page use the clipboard. Press Ctrl+C or Ctrl+X in the tree.',
+		placed: (what: string, place: number, of: number): string => `${what}: ${place} of ${of}`,
+		cut: (n: number, names: string): string => (n === 1 ? `${names} cut` : `${n} parts cut: ${names}`),
+		removed: (n: number, names: string): string => `${count(n, 'part', 'parts')} deleted: ${names}`,
+		duplicated: (n: number, names: string): string => `${count(n, 'part', 'parts')} duplicated: ${names}`,
+		moved: (n: number, names: string): string => `${count(n, 'part', 'parts')} moved: ${names}`,
+		remove: (n: number): string => `Delete ${count(n, 'part', 'parts')}`,
+		unnamed: 'Nothing else names any of them.',
+		places: (n: number): string => `${count(n, 'place names', 'places name')} one of them, and will be wrong without it:`
 	},
 	paste: {
 		copied: (name: string): string => `${name} copied as YAML`,

@@ -53,8 +53,9 @@ export const model: Text['model'] = {
 	unrun: (n) => `${count(n, 'fil', 'filer')} som stationen inte kör som här`,
 	review: 'Granska ändringar',
 	moreFields: 'Mer',
+	sections: { what: 'Namn och tid', person: 'Person', start: 'Start', course: 'På väg', finish: 'Avslut' },
 	inOperations: 'Se den i operationernas ordning',
-	now: { title: 'I stationen som kör', tag: 'stationen nu', differs: 'Det här är stationen som kör: utkastet skiljer sig från den.', which: 'Vilken', may: 'Får starta när', supervised: 'tillagt av övervakaren', try: 'Prova den' },
+	now: { title: 'I stationen som kör', tag: 'stationen nu', differs: 'Det här är stationen som kör: utkastet skiljer sig från den.', which: 'Vilken', may: 'Får starta när', hold: (n, of) => (n === of ? `alla ${of} gäller` : `${n} av ${of} gäller, inte`), supervised: 'tillagt av övervakaren', try: 'Prova den' },
 	form: 'Vald del',
 	measured: {
 		is: (least, most, runs) => `uppmätt: ${least === most ? least : `${least} till ${most}`} s, ${count(runs, 'körning', 'körningar')}`,
@@ -415,6 +416,42 @@ export const model: Text['model'] = {
 			order: 'Villkor i sin ordning'
 		},
 		do: 'Lägg till'
+	},
+	together: {
+		count: (n) => count(n, 'vald del', 'valda delar'),
+		label: 'Det som kan göras med alla',
+		deed: { copy: 'Kopiera', cut: 'Klipp ut', duplicate: 'Duplicera', remove: 'Ta bort', move: 'Flytta' },
+		one: 'Bara en igen',
+		about: 'Vart och ett är en ändring, som ett Ångra tar tillbaka. Ctrl eller Skift med ett klick väljer fler; Alt med en piltangent flyttar.',
+		deleteKey: 'Delete-tangenten',
+		without: (name) => `Utelämna ${name}`,
+		more: (n) => `och ${n} till`,
+		notTogether: (deeds) => `Inte med alla: ${deeds.join(', ')}`,
+		leave: (out, rest) => `Utelämna ${out}, behåll ${rest}`,
+		why: {
+			heading: (name) => `”${name}” är en rubrik och ingen egen del.`,
+			within: (name, other) => `${name} ingår i ${other}, som också är vald.`,
+			typed: (name, _, type) => `${name} kommer från typen ${type}: gör det där.`,
+			message: (name) => `${name} är en meddelandedefinition: den har en egen fil och ingen text i andra.`,
+			locked: (name, _, file) => `${name} kan inte ändras här: ${file} kan inte läsas eller hör till ett paket.`,
+			twice: (name, other) => `${other} och ${name} har samma namn och skulle bli en i kopian. Kopiera en i taget.`,
+			mixed: (name, other) => `${other} och ${name} har ingen plats gemensam: den ena är en egen fil, den andra en del av en.`,
+			unordered: (name) => `${name} har en egen fil: filer har ingen ordning.`,
+			apart: (name, other) => `${name} står i en annan lista än ${other}.`
+		},
+		first: 'Den är redan först',
+		last: 'Den är redan sist',
+		gone: 'Inte flyttad: någon annan har tagit bort den eller bytt dess namn under tiden.',
+		unsent: 'Servern kan inte nås. Det behålls här tills det är skickat och görs en gång.',
+		noClipboard: 'Webbläsaren låter inte sidan använda urklipp. Tryck Ctrl+C eller Ctrl+X i trädet.',
+		placed: (what, place, of) => `${what}: ${place} av ${of}`,
+		cut: (n, names) => (n === 1 ? `${names} urklippt` : `${n} delar urklippta: ${names}`),
+		removed: (n, names) => `${count(n, 'del borttagen', 'delar borttagna')}: ${names}`,
+		duplicated: (n, names) => `${count(n, 'del duplicerad', 'delar duplicerade')}: ${names}`,
+		moved: (n, names) => `${count(n, 'del flyttad', 'delar flyttade')}: ${names}`,
+		remove: (n) => `Ta bort ${count(n, 'del', 'delar')}`,
+		unnamed: 'Inget annat nämner någon av dem.',
+		places: (n) => `${count(n, 'ställe nämner', 'ställen nämner')} någon av dem och blir fel utan den:`
 	},
 	paste: {
 		copied: (name) => `${name} kopierad som YAML`,
