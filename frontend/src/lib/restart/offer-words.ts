@@ -78,10 +78,16 @@ export function storyOf(view: Known, offer: WayOffer): string {
 	// What somebody says to be done already does not come then.
 	const goals = operationTitles(view, offer.goals.filter((name) => !offer.claims.includes(name)));
 	const then = goals.length === 0 ? texts.goalsPlain : texts.goals(few(texts, goals));
-	if (asksForHands(offer)) return offer.errand === null ? then : `${startsOf(view, offer)} ${then}`;
-	if (offer.errand !== null) return startsOf(view, offer);
+	// Its title says what is done by hand, and what is started.
+	if (asksForHands(offer)) return then;
+	if (offer.errand !== null) return isTitledByStarts(offer) ? `${offer.into_safe ? `${texts.intoSafe} ` : ''}${then}` : startsOf(view, offer);
 	// What it corrects is among its facts, and in its title.
 	return canBeTaken(offer) ? then : `${texts.goOn} ${then}`;
+}
+
+/** Whether its title is what is started, and not what that is for. */
+function isTitledByStarts({ kind, operation, errand }: WayOffer): boolean {
+	return operation === null && kind !== 'goal' && (errand?.steps.length ?? 0) > 0;
 }
 
 function startsOf(view: Known, { errand }: WayOffer): string {
