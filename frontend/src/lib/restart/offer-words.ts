@@ -14,6 +14,9 @@ type Known = Pick<StationView, 'operations' | 'resources'> | null;
 /** So many starts, or operations, are told of in a sentence; the rest is counted. */
 const TOLD = 3;
 
+/** Seconds by which a sum may be wrong. */
+const TRIFLE = 1e-6;
+
 /** What it asks for; a kind that this page does not know keeps its own word. */
 export function kindWord({ kinds }: Pick<Ways, 'kinds'>, kind: string): string {
 	return Object.entries(kinds).find(([name]) => name === kind)?.[1] ?? kind;
@@ -21,7 +24,8 @@ export function kindWord({ kinds }: Pick<Ways, 'kinds'>, kind: string): string {
 
 /** How long it takes: `≈ 13 s`, `≈ 1 min 20 s`; only minutes where they are many. */
 export function timeWords(texts: Pick<Ways, 'seconds' | 'minutes'>, seconds: number): string {
-	const whole = Math.ceil(seconds);
+	// A sum of seconds may be a trifle more than they are.
+	const whole = Math.ceil(seconds - TRIFLE);
 	if (whole < 60) return texts.seconds(whole);
 	return whole < 600 ? texts.minutes(Math.floor(whole / 60), whole % 60) : texts.minutes(Math.round(whole / 60), 0);
 }

@@ -99,6 +99,7 @@ export const restart = {
 	},
 	errand: {
 		title: 'Under way',
+		over: 'What was done',
 		begins: 'It begins.',
 		from: 'Looking for what comes next.',
 		until: 'until',
@@ -196,7 +197,7 @@ export const restart = {
 		goals: (titles: string): string => `Then the station goes on: ${titles}.`,
 		goalsPlain: 'Then the station goes on.',
 		waitsOnly: 'The devices do it by themselves.',
-		intoSafe: 'Then the station is back in its safe states.',
+		intoSafe: 'It brings the station back into its safe states.',
 		hand: 'Nothing by hand',
 		you: (n: number): string => `You, ${count(n, 'step', 'steps')}`,
 		corrections: (n: number, what: string): string => `${count(n, 'correction', 'corrections')}: ${what}`,
@@ -326,7 +327,7 @@ export const restart = {
 			go: 'Operations go on.'
 		},
 		title: 'Go on',
-		alone: 'Or only one of these',
+		alone: (n: number): string => (n === 1 ? 'Or only this' : 'Or only one of these'),
 		works: 'Production is started, in automatic mode.',
 		preparing: 'The station is still getting ready.',
 		decideFirst: 'Decide on the outputs first.',

@@ -97,6 +97,7 @@ export const restart: Text['restart'] = {
 	},
 	errand: {
 		title: 'Pågår',
+		over: 'Vad som gjordes',
 		begins: 'Det börjar.',
 		from: 'Söker vad som kommer härnäst.',
 		until: 'tills',
@@ -194,7 +195,7 @@ export const restart: Text['restart'] = {
 		goals: (titles) => `Sedan fortsätter stationen: ${titles}.`,
 		goalsPlain: 'Sedan fortsätter stationen.',
 		waitsOnly: 'Enheterna gör det av sig själva.',
-		intoSafe: 'Sedan är stationen tillbaka i sina säkra tillstånd.',
+		intoSafe: 'Den för stationen tillbaka till dess säkra tillstånd.',
 		hand: 'Inget för hand',
 		you: (n) => `Du, ${count(n, 'steg', 'steg')}`,
 		corrections: (n, what) => `${count(n, 'rättelse', 'rättelser')}: ${what}`,
@@ -320,7 +321,7 @@ export const restart: Text['restart'] = {
 			go: 'Operationerna fortsätter.'
 		},
 		title: 'Fortsätt',
-		alone: 'Eller bara en av dessa',
+		alone: (n) => (n === 1 ? 'Eller bara detta' : 'Eller bara en av dessa'),
 		works: 'Produktionen är startad, i automatik.',
 		preparing: 'Stationen förbereds ännu.',
 		decideFirst: 'Besluta om utsignalerna först.',
