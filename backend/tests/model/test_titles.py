@@ -72,13 +72,19 @@ def test_titles_are_told(titled: Path, name: str, value: str, sentence: dict[str
 def test_it_is_told_what_a_person_does_so_that_a_measured_variable_gets_a_value(press: Path) -> None:
     said = sentences_of(ground(load_station(press)))
     assert said.tell_by_hand("arm.held", "bare") is None
-    by_hand = "{bare: {en: Turn the key., sv: Vrid om nyckeln.}}"
+    by_hand = "{bare: {en: Open the grip. Turn the key., sv: Öppna greppet. Vrid om nyckeln.}}"
     replace(press, "resources/arm.yaml", "held: {type: grip", f"held: {{by_hand: {by_hand}, type: grip")
     said = sentences_of(ground(load_station(press)))
     told = said.tell_by_hand("arm.held", "bare")
     assert told is not None
-    assert told.words == {"en": "Turn the key.", "sv": "Vrid om nyckeln."}
+    assert told.words == {"en": "Open the grip. Turn the key.", "sv": "Öppna greppet. Vrid om nyckeln."}
+    # In short by its first sentence, as it stands within another.
+    called = said.call_by_hand("arm.held", "bare")
+    assert called is not None
+    assert called.words == {"en": "open the grip", "sv": "öppna greppet"}
+    assert called.written == "see to it that arm.held is bare"
     assert said.tell_by_hand("arm.at", "home") is None
+    assert said.call_by_hand("arm.at", "home") is None
 
 
 def test_a_value_has_its_title_in_the_titles_of_abilities(press: Path) -> None:

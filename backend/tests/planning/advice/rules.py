@@ -77,7 +77,7 @@ def keeps_the_rules(automaton: Automaton, request: AdviceRequest, offer: Recover
     after = synchronise(automaton, {**request.state, **values})
     reached = [g.name for g in missing(request.goals, request.state) if holds(g.predicate, after)]
     assert set(reached) <= set(offer.claims)
-    assert all(f"{name} counts as {print_value(value)}" in title for name, value in _noted(automaton, request, offer))
+    assert all(f"{name} is {print_value(value)}" in title for name, value in _noted(automaton, request, offer))
     assert offer.only_if_checked == bool(offer.claims) == title.startswith(ONLY_IF)
     assert not offer.only_if_checked or offer.corrections
 

@@ -14,6 +14,9 @@ type Known = Pick<StationView, 'operations' | 'resources'> | null;
 /** So many starts, or operations, are told of in a sentence; the rest is counted. */
 const TOLD = 3;
 
+/** Seconds by which a sum may be wrong. */
+const TRIFLE = 1e-6;
+
 /** What it asks for; a kind that this page does not know keeps its own word. */
 export function kindWord({ kinds }: Pick<Ways, 'kinds'>, kind: string): string {
 	return Object.entries(kinds).find(([name]) => name === kind)?.[1] ?? kind;
@@ -21,7 +24,8 @@ export function kindWord({ kinds }: Pick<Ways, 'kinds'>, kind: string): string {
 
 /** How long it takes: `≈ 13 s`, `≈ 1 min 20 s`; only minutes where they are many. */
 export function timeWords(texts: Pick<Ways, 'seconds' | 'minutes'>, seconds: number): string {
-	const whole = Math.ceil(seconds);
+	// A sum of seconds may be a trifle more than they are.
+	const whole = Math.ceil(seconds - TRIFLE);
 	if (whole < 60) return texts.seconds(whole);
 	return whole < 600 ? texts.minutes(Math.floor(whole / 60), whole % 60) : texts.minutes(Math.round(whole / 60), 0);
 }
@@ -78,10 +82,16 @@ export function storyOf(view: Known, offer: WayOffer): string {
 	// What somebody says to be done already does not come then.
 	const goals = operationTitles(view, offer.goals.filter((name) => !offer.claims.includes(name)));
 	const then = goals.length === 0 ? texts.goalsPlain : texts.goals(few(texts, goals));
-	if (asksForHands(offer)) return offer.errand === null ? then : `${startsOf(view, offer)} ${then}`;
-	if (offer.errand !== null) return startsOf(view, offer);
+	// Its title says what is done by hand, and what is started.
+	if (asksForHands(offer)) return then;
+	if (offer.errand !== null) return isTitledByStarts(offer) ? `${offer.into_safe ? `${texts.intoSafe} ` : ''}${then}` : startsOf(view, offer);
 	// What it corrects is among its facts, and in its title.
 	return canBeTaken(offer) ? then : `${texts.goOn} ${then}`;
+}
+
+/** Whether its title is what is started, and not what that is for. */
+function isTitledByStarts({ kind, operation, errand }: WayOffer): boolean {
+	return operation === null && kind !== 'goal' && (errand?.steps.length ?? 0) > 0;
 }
 
 function startsOf(view: Known, { errand }: WayOffer): string {

@@ -43,6 +43,9 @@ export interface Known {
 /** A sentence for each: what was done, or what there is to do. */
 export function stepWords({ view, next, step, advice, now }: Known): Record<Step, string> {
 	const { next: acts } = say().restart;
+	const unheard = say().restart.steps.notLive;
+	// What was so when it was last heard is no word on what is.
+	if (next === 'live') return { understand: acts.live, state: unheard, ways: unheard, on: unheard };
 	const said = { understand: happened(view), state: state(view, now), ways: ways(view, advice, now), on: on(view) };
 	// What a person does next is said where it is done, unless the step says more.
 	if (step !== null && next !== 'take' && next !== 'looking' && next !== 'enter') said[step] = acts[next];

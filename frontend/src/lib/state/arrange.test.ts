@@ -34,6 +34,13 @@ describe('the list of variables', () => {
 		expect(names({})).toEqual(['bolts[bolt_pair_2]', 'agv.battery', 'agv.speed', 'robot.pose', 'robot.target_pose']);
 	});
 
+	test('is by what resources are called in it, and found by that and by their titles', () => {
+		const called = entriesOf(shown, (name) => name, new Map([['robot', 'A robot']]));
+		const found = (search: string): readonly string[] => arrange(called, { ...EVERYTHING, search }, shown, said);
+		expect(found('')).toEqual(['bolts[bolt_pair_2]', 'robot.pose', 'robot.target_pose', 'agv.battery', 'agv.speed']);
+		expect(found('a robot')).toEqual(found('robot arm'));
+	});
+
 	test.each([
 		['pose robot', ['robot.pose', 'robot.target_pose']],
 		['ARM above', ['robot.target_pose']],

@@ -34,10 +34,13 @@ function ranks(texts: Iterable<string>): Map<string, number> {
 /** The entries of all variables, by their names. */
 export function entriesOf(
 	{ variables, resources }: Pick<StationView, 'variables' | 'resources'>,
-	called: (name: string, resource: string | null) => string
+	called: (name: string, resource: string | null) => string,
+	/** What resources are called in the list, where that is not their title. */
+	shown: ReadonlyMap<string, string> = new Map()
 ): readonly Entry[] {
-	const titleOf = (resource: string | null): string =>
+	const fullTitleOf = (resource: string | null): string =>
 		resource === null ? '' : (resources[resource]?.title ?? resource);
+	const titleOf = (resource: string | null): string => shown.get(resource ?? OF_NONE) ?? fullTitleOf(resource);
 	const all = Object.entries(variables);
 	const names = ranks(all.map(([name, { resource }]) => called(name, resource)));
 	const titles = ranks(all.map(([, { resource }]) => titleOf(resource)));
@@ -46,7 +49,7 @@ export function entriesOf(
 			name,
 			resource: resource ?? OF_NONE,
 			kind,
-			text: `${name} ${variableName(name, resource)} ${called(name, resource)} ${titleOf(resource)}`.toLocaleLowerCase(),
+			text: `${name} ${variableName(name, resource)} ${called(name, resource)} ${titleOf(resource)} ${fullTitleOf(resource)}`.toLocaleLowerCase(),
 			byName: names.get(called(name, resource)) ?? 0,
 			byResource: titles.get(titleOf(resource)) ?? 0,
 			byKind: KINDS.indexOf(kind)

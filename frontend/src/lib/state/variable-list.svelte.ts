@@ -14,6 +14,7 @@ import { arrange, entriesOf, followsValues, type Entry } from './arrange.ts';
 import { EVERYTHING, OF_NONE, type Criteria } from './criteria.ts';
 import { countsOf, doubtsOf, type Standing } from './standing.ts';
 import { keepWatched, keptWatched } from './watched.ts';
+import { resourceTitle } from './words.ts';
 import { keepHidden, keptHidden, type ColumnId } from './columns.ts';
 
 const EVERY = 1000;
@@ -48,6 +49,8 @@ export class VariableList {
 	watchedOnly = $state(false);
 	/** Columns that are not shown, which this device remembers. */
 	hidden = $state.raw<readonly ColumnId[]>(keptHidden());
+	/** What resources are called in the picture of the station, as everywhere else. */
+	titles = $state.raw<ReadonlyMap<string, string>>(new Map());
 	task = $state.raw<Task | null>(null);
 	pointed = $state(false);
 	focused = $state(false);
@@ -59,7 +62,7 @@ export class VariableList {
 	/** Made anew when there are other variables, and not when their values change. */
 	readonly #entries: readonly Entry[] = $derived.by(() => {
 		const view = this.#station.names.length > 0 ? this.#now() : null;
-		return view === null ? [] : entriesOf(view, nameOf);
+		return view === null ? [] : entriesOf(view, nameOf, this.titles);
 	});
 	readonly #resources: ReadonlyMap<string, string> = $derived(new Map(this.#entries.map(({ name, resource }) => [name, resource])));
 	/** Seconds on the controller's clock, as of the last second. */
@@ -111,6 +114,11 @@ export class VariableList {
 	/** A variable as it is now. */
 	variable(name: string): Variable | undefined {
 		return this.#station.view?.variables[name];
+	}
+
+	/** What a resource is called in the list; what belongs to none belongs to the product. */
+	titleOf(resource: string | null): string {
+		return (resource === null ? undefined : this.titles.get(resource)) ?? resourceTitle(this.#station.view, resource);
 	}
 
 	/** Opens the correction of estimates, all at once. */

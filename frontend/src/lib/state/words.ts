@@ -40,6 +40,14 @@ export function writerText(view: Pick<StationView, 'abilities'> | null, writer: 
 	return job === undefined ? (view?.abilities[writer]?.title ?? writer) : words.job(job);
 }
 
+/** Since when somebody or something has it that a value is so, `at` a time of the clock. */
+export function sinceText(view: Pick<StationView, 'abilities'> | null, writer: string, at: string): string {
+	const texts = say().state.correct.since;
+	const said = writerText(view, writer);
+	if (view?.abilities[writer]) return texts.ability(said, at);
+	return said === writer && !writer.startsWith('job ') ? texts.person(said, at) : texts.program(said, at);
+}
+
 /** What was measured, as it stands in a belief: `robot.pose == home`, `robot.moving` or `not robot.moving`. */
 const MEASURED = /^(not )?([^\s=]+)(?: == (.+))?$/;
 

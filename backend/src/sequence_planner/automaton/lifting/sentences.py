@@ -52,6 +52,9 @@ _QUANTIFYING = re.compile(
     re.IGNORECASE,
 )
 
+# Between two sentences.
+_NEXT = re.compile(r"(?<=[.!?])\s+(?=[A-ZÅÄÖ])")
+
 # What a condition is made of, in the order in which it is written.
 
 
@@ -98,6 +101,11 @@ class SaidFormula(NamedTuple):
 
 Part = ValueLiteral | SaidPredicate | SaidComparison | SaidJunction | SaidCondition | SaidFormula | Junction
 """A `Junction` is what always holds, or never does."""
+
+
+def _leading(text: str) -> str:
+    """Its first sentence, without the full stop."""
+    return _NEXT.split(text, maxsplit=1)[0].removesuffix(".")
 
 
 def _form(part: Part) -> NormalForm:
@@ -213,6 +221,14 @@ class Sentences:
         words = {each.language: self._names.by_hand(variable, value, each) for each in GRAMMARS}
         said = {language: text for language, text in words.items() if text is not None}
         return Sentence(said, said[ENGLISH.language]) if ENGLISH.language in said else None
+
+    def call_by_hand(self, variable: str, value: Value) -> Sentence | None:
+        """What that is called in short: the first sentence of it, as it stands within another."""
+        how = self.tell_by_hand(variable, value)
+        if how is None:
+            return None
+        words = {language: within_sentence(_leading(text)) for language, text in how.words.items()}
+        return Sentence(words, f"see to it that {variable} is {print_value(value)}")
 
     def _predicates(self) -> Iterator[tuple[NormalForm, SaidPredicate]]:
         """The predicates with a title for all values of their parameters, by what they mean."""

@@ -150,13 +150,7 @@ def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
     if returning:
         yield message("offer.return", titles=returning)
     if offer.physical:
-        changes = _so(automaton, told(automaton, offer.physical))
-        if offer.records:
-            yield message(
-                "offer.see-to-so", changes=changes, records=_each(automaton, offer.records, "offer.counts-as")
-            )
-        else:
-            yield message("offer.see-to", changes=changes)
+        yield from _by_people(automaton, offer)
     if offer.only_if_checked:
         yield message("list", items=_so(automaton, offer.corrections))
     elif offer.corrections:
@@ -171,6 +165,23 @@ def _parts(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
         safe = [message("offer.safe")] if offer.into_safe else []
         condition = end_sentence(automaton, offer.goal, offer.into_safe)
         yield message("offer.wait", conditions=[*safe, *([condition] if condition else [])])
+
+
+def _by_people(automaton: Automaton, offer: RecoveryProposal) -> Iterator[Message]:
+    """What people do at the station, as the model calls it where it does; last, what is then noted of the product."""
+    changes = told(automaton, offer.physical)
+    acts = [(change, sentences_of(automaton).call_by_hand(change.name, change.new)) for change in changes]
+    called = [act for _, act in acts if act is not None]
+    others = _so(automaton, [change for change, act in acts if act is None])
+    records = _so(automaton, offer.records)
+    if called and records and not others:
+        yield message("offer.do-so", acts=called, records=records)
+    elif called:
+        yield message("offer.do", acts=called)
+    if others and records:
+        yield message("offer.see-to-so", changes=others, records=records)
+    elif others:
+        yield message("offer.see-to", changes=others)
 
 
 def told(automaton: Automaton, changes: Iterable[ValueChange]) -> list[ValueChange]:

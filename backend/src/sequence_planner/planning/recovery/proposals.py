@@ -211,7 +211,8 @@ def expected_seconds(automaton: Automaton, ticks: Iterable[PlanTick]) -> float:
 def estimated_times(automaton: Automaton, plan: Plan) -> list[tuple[float, float]]:
     """Estimate when each start of a plan comes and when it is over, in seconds after the plan begins.
 
-    It is over with the last effect of its resource before that is started again, or else as long as the model says.
+    It is over with the last effect of its resource before that is started again, or else as long as the model says: so
+    also where the plan ends before it does.
     """
     resources = {effect.name: effect.resource for effect in automaton.effects}
     comes = [*accumulate(expected_seconds(automaton, [tick]) for tick in plan.ticks)]
@@ -220,10 +221,14 @@ def estimated_times(automaton: Automaton, plan: Plan) -> list[tuple[float, float
     for index, (tick, name) in enumerate(plan.starts):
         ability, start = automaton.abilities[name], comes[tick - 1]
         later = (at for at, each in plan.starts[index + 1 :] if automaton.abilities[each].resource == ability.resource)
-        until = next(later, len(plan.ticks))
+        again = next(later, None)
+        until = len(plan.ticks) if again is None else again
         ends = [comes[at] for at in range(tick, until) if ability.resource in acts[at]]
         lasts = 0.0 if ability.duration is None else sum(ability.duration) / 2
-        times.append((start, ends[-1] if ends else start + lasts))
+        if ends and again is not None:
+            times.append((start, ends[-1]))
+        else:
+            times.append((start, max([*ends, start + lasts])))
     return times
 
 

@@ -10,6 +10,8 @@ export const state = {
 	shown: (n: number, all: number): string =>
 		n === all ? count(all, 'variable', 'variables') : `${n} of ${count(all, 'variable', 'variables')}`,
 	product: 'Product',
+	/** Before the names of columns, where rows have two lines. */
+	sortBy: 'Sort by',
 	columns: {
 		name: 'Variable',
 		value: 'Value',
@@ -205,7 +207,11 @@ export const state = {
 		believes: 'The station believes:',
 		unmeasured: 'Nothing measures it.',
 		asIs: 'leave it as it is',
-		written: (writer: string, at: string): string => `last written by “${writer}”${at && `, ${at}`}`,
+		since: {
+			ability: (title: string, at: string): string => `since “${title}”${at && ` at ${at}`}`,
+			person: (name: string, at: string): string => `since ${name} said so${at && ` at ${at}`}`,
+			program: (name: string, at: string): string => `by ${name}${at && ` at ${at}`}`
+		},
 		from: (evidence: string): string => `from ${evidence}`,
 		journal: 'It is written into the journal.',
 		doubt: (values: string): string => `In doubt. What is measured would fit: ${values}`,

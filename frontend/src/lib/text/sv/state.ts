@@ -10,6 +10,7 @@ export const state: Text['state'] = {
 	howYet: 'Varje värde som en enhet skickar eller får, och varje uppskattning, står här när modellen har den.',
 	shown: (n, all) => (n === all ? antal(all, 'variabel', 'variabler') : `${n} av ${antal(all, 'variabel', 'variabler')}`),
 	product: 'Produkten',
+	sortBy: 'Sortera efter',
 	columns: {
 		name: 'Variabel',
 		value: 'Värde',
@@ -203,7 +204,11 @@ export const state: Text['state'] = {
 		believes: 'Stationen tror:',
 		unmeasured: 'Inget mäter den.',
 		asIs: 'lämna som den är',
-		written: (writer, at) => `senast skriven av ”${writer}”${at && `, ${at}`}`,
+		since: {
+			ability: (title, at) => `sedan ”${title}”${at && ` ${at}`}`,
+			person: (name, at) => `sedan ${name} sade det${at && ` ${at}`}`,
+			program: (name, at) => `av ${name}${at && ` ${at}`}`
+		},
 		from: (evidence) => `utifrån ${evidence}`,
 		journal: 'Det skrivs i journalen.',
 		doubt: (values) => `Ifrågasatt. Det som mäts skulle passa till: ${values}`,
