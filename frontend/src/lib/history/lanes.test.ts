@@ -83,6 +83,12 @@ test('bars that last at the same time stand one below the other, in three rows a
 	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1', '2', '2 crowded', '0']);
 });
 
+test('what only begins has the room of its words, and one that has none takes it from no other', () => {
+	const bar = (at: number): Bar => ({ from: at, to: at, label: '', number: null, open: false });
+	const { all } = placed([bar(0), bar(1), bar(2), bar(3), bar(10), bar(11)], 10);
+	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1', '2', '2 crowded', '0', '1']);
+});
+
 test('marks that would cover one another are one, and what is pressed is the nearest', () => {
 	const spots = [110, 111, 160].map((time): Spot => ({ time, label: '', number: time, act: null, refused: false }));
 	expect(gathered(spots, window, 0.05).map((group) => group.length)).toEqual([2, 1]);

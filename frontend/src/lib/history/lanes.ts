@@ -188,8 +188,8 @@ export interface Placed<B extends Bar = Bar> {
 	readonly crowded: boolean;
 }
 
-/** Bars that last at the same time one below the other. */
-export function placed<B extends Bar>(bars: readonly B[]): { readonly rows: number; readonly all: readonly Placed<B>[] } {
+/** Bars that last at the same time one below the other; each takes `least` seconds of its row. */
+export function placed<B extends Bar>(bars: readonly B[], least = 0): { readonly rows: number; readonly all: readonly Placed<B>[] } {
 	const ends: number[] = [];
 	const all = [...bars]
 		.sort((a, b) => a.from - b.from)
@@ -197,7 +197,7 @@ export function placed<B extends Bar>(bars: readonly B[]): { readonly rows: numb
 			const free = ends.findIndex((end) => end <= bar.from);
 			const row = free >= 0 ? free : Math.min(ends.length, MOST_ROWS - 1);
 			const crowded = free < 0 && ends.length === MOST_ROWS;
-			ends[row] = Math.max(ends[row] ?? -Infinity, bar.to);
+			if (!crowded || least === 0) ends[row] = Math.max(ends[row] ?? -Infinity, bar.to, bar.from + least);
 			return { bar, row, crowded };
 		});
 	return { rows: Math.max(1, ends.length), all };

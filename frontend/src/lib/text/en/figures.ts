@@ -67,6 +67,8 @@ export const figures = {
 		then: (what: string): string => `then: ${what}`,
 		thenMoves: (who: string): string => `then moves: ${who}`,
 		next: 'Next:',
+		nextForPerson: 'Next for a person:',
+		now: 'Now:',
 		notLive: 'Not live',
 		sideBySide: 'Side by side',
 		alone: 'This station alone',

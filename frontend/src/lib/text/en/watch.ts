@@ -1,3 +1,6 @@
+// What does not break stays on one line of a small face.
+const inAbout = (seconds: number): string => `in\u00a0about\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`;
+
 /** The watch, and tasks wherever they are shown. */
 export const watch = {
 	forYou: 'For you',
@@ -25,8 +28,10 @@ export const watch = {
 	comes: 'Your next task comes here.',
 	/** What the plan has for somebody next, and in how many seconds. */
 	next: (title: string, seconds: number | null): string =>
-		// What does not break stays on one line of a small face.
-		seconds === null ? `Next: ${title}` : seconds < 1 ? `${title} soon` : `${title} in\u00a0about\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
+		seconds === null ? `Next: ${title}` : `${title} ${seconds < 1 ? 'soon' : inAbout(seconds)}`,
+	inAbout: (seconds: number): string => (seconds < 1 ? 'soon' : inAbout(seconds)),
+	/** Below a task, where nothing moves after it. */
+	nextForYou: (title: string): string => `Next for you: ${title}`,
 	/** Beside what is wrong. */
 	goThere: 'Help is needed at the station.',
 	/** Of an alarm, when it came. */
@@ -57,6 +62,7 @@ export const watch = {
 	told: 'The station is told.',
 	problemOf: (name: string): string => `${name} has a problem with it`,
 	notLive: 'Not live',
+	notLiveSince: (clock: string): string => `Not live since ${clock}`,
 	causes: {
 		connecting: 'Connecting to the station.',
 		closed: 'The connection to the server is lost. Trying again.',
@@ -64,6 +70,8 @@ export const watch = {
 		gap: 'A message was lost on the way.',
 		silent: 'Nothing new has come from the server.'
 	},
+	/** How the pages look, and in which language. */
+	display: 'Display',
 	soundOn: 'Sound on',
 	soundOff: 'Sound off',
 	/** Which screen this watch has, for who wears it to say. */

@@ -65,6 +65,8 @@ export const figures: Text['figures'] = {
 		then: (what) => `sedan: ${what}`,
 		thenMoves: (who) => `sedan rör sig: ${who}`,
 		next: 'Sedan:',
+		nextForPerson: 'Sedan för en person:',
+		now: 'Nu:',
 		notLive: 'Inte direkt',
 		sideBySide: 'Sida vid sida',
 		alone: 'Bara den här stationen',

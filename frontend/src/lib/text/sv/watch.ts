@@ -1,5 +1,7 @@
 import type { Text } from '../text.svelte.ts';
 
+const inAbout = (seconds: number): string => `om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`;
+
 export const watch: Text['watch'] = {
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
@@ -19,8 +21,9 @@ export const watch: Text['watch'] = {
 	recorded: 'Klart antecknas.',
 	progress: (done, all) => `${done} av ${all} klara`,
 	comes: 'Din nästa uppgift kommer hit.',
-	next: (title, seconds) =>
-		seconds === null ? `Sedan: ${title}` : seconds < 1 ? `${title} strax` : `${title} om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
+	next: (title, seconds) => (seconds === null ? `Sedan: ${title}` : `${title} ${seconds < 1 ? 'strax' : inAbout(seconds)}`),
+	inAbout: (seconds) => (seconds < 1 ? 'strax' : inAbout(seconds)),
+	nextForYou: (title) => `Sedan för dig: ${title}`,
 	goThere: 'Hjälp behövs vid stationen.',
 	called: (stopped, clock) => `${stopped ? 'Står stilla' : 'Hjälp behövs'} sedan ${clock}.`,
 	seen: 'Sett',
@@ -45,6 +48,7 @@ export const watch: Text['watch'] = {
 	told: 'Stationen vet om det.',
 	problemOf: (name) => `${name} har problem med den`,
 	notLive: 'Inte direkt',
+	notLiveSince: (clock) => `Inte direkt sedan ${clock}`,
 	causes: {
 		connecting: 'Ansluter till stationen.',
 		closed: 'Anslutningen till servern är bruten. Försöker igen.',
@@ -52,6 +56,7 @@ export const watch: Text['watch'] = {
 		gap: 'Ett meddelande gick förlorat.',
 		silent: 'Inget nytt har kommit från servern.'
 	},
+	display: 'Visning',
 	soundOn: 'Ljud på',
 	soundOff: 'Ljud av',
 	shapes: { round: 'För rund skärm', square: 'För fyrkantig skärm' },
