@@ -38,11 +38,6 @@ export function nextText(next: Next | null | undefined, time: number | null): st
 	return say().watch.next(next.title, next.at === null || time === null ? null : Math.max(0, Math.round(next.at - time)));
 }
 
-/** In about how many seconds something is expected, as of `time`; empty where nobody knows. */
-export function inAbout(at: number | null, time: number): string {
-	return at === null ? '' : say().watch.inAbout(Math.max(0, Math.round(at - time)));
-}
-
 export type Progress = NonNullable<WatchSnapshot['progress']>;
 
 /** The same as a watch is told: how far the order in work is, or the operations since the first of them began. */

@@ -1,6 +1,3 @@
-// What does not break stays on one line of a small face.
-const inAbout = (seconds: number): string => `in\u00a0about\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`;
-
 /** The watch, and tasks wherever they are shown. */
 export const watch = {
 	forYou: 'For you',
@@ -28,10 +25,8 @@ export const watch = {
 	comes: 'Your next task comes here.',
 	/** What the plan has for somebody next, and in how many seconds. */
 	next: (title: string, seconds: number | null): string =>
-		seconds === null ? `Next: ${title}` : `${title} ${seconds < 1 ? 'soon' : inAbout(seconds)}`,
-	inAbout: (seconds: number): string => (seconds < 1 ? 'soon' : inAbout(seconds)),
-	/** Below a task, where nothing moves after it. */
-	nextForYou: (title: string): string => `Next for you: ${title}`,
+		// What does not break stays on one line of a small face.
+		seconds === null ? `Next: ${title}` : seconds < 1 ? `${title} soon` : `${title} in\u00a0about\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
 	/** Beside what is wrong. */
 	goThere: 'Help is needed at the station.',
 	/** Of an alarm, when it came. */

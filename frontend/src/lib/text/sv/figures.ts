@@ -65,6 +65,7 @@ export const figures: Text['figures'] = {
 		then: (what) => `sedan: ${what}`,
 		thenMoves: (who) => `sedan rör sig: ${who}`,
 		next: 'Sedan:',
+		inAbout: (seconds) => (seconds < 1 ? 'strax' : `om ungefär ${seconds < 60 ? `${seconds} s` : `${Math.round(seconds / 60)} min`}`),
 		nextForPerson: 'Sedan för en person:',
 		now: 'Nu:',
 		notLive: 'Inte direkt',

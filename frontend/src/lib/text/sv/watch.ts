@@ -1,7 +1,5 @@
 import type { Text } from '../text.svelte.ts';
 
-const inAbout = (seconds: number): string => `om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`;
-
 export const watch: Text['watch'] = {
 	forYou: 'För dig',
 	nothingToDo: 'Inget att göra',
@@ -21,9 +19,8 @@ export const watch: Text['watch'] = {
 	recorded: 'Klart antecknas.',
 	progress: (done, all) => `${done} av ${all} klara`,
 	comes: 'Din nästa uppgift kommer hit.',
-	next: (title, seconds) => (seconds === null ? `Sedan: ${title}` : `${title} ${seconds < 1 ? 'strax' : inAbout(seconds)}`),
-	inAbout: (seconds) => (seconds < 1 ? 'strax' : inAbout(seconds)),
-	nextForYou: (title) => `Sedan för dig: ${title}`,
+	next: (title, seconds) =>
+		seconds === null ? `Sedan: ${title}` : seconds < 1 ? `${title} strax` : `${title} om\u00a0ungefär\u00a0${seconds < 60 ? `${seconds}\u00a0s` : `${Math.round(seconds / 60)}\u00a0min`}`,
 	goThere: 'Hjälp behövs vid stationen.',
 	called: (stopped, clock) => `${stopped ? 'Står stilla' : 'Hjälp behövs'} sedan ${clock}.`,
 	seen: 'Sett',
