@@ -20,7 +20,7 @@ test.use({ shared: null, byItself: false, people: 'nobody' });
 test('a new station becomes somebody’s by its link, once, who then lets others in', async ({ station, browse }) => {
 	const ada = await browse(null, '/');
 	const refusal = ada.getByRole('alert');
-	const make = ada.getByRole('button', { name: 'Make the administrator' });
+	const make = ada.getByRole('button', { name: 'Become the administrator' });
 
 	await test.step('without the link it says where to find it, and offers no demonstration', async () => {
 		await expect(ada).toHaveURL('/setup');

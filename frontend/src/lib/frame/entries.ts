@@ -5,6 +5,7 @@ import type { Session } from '#lib/account/session.svelte.ts';
 import { byUrgency } from '#lib/alarm/priority.ts';
 import { setCycleStop, setMode, startProduction, takeControl, releaseControl } from '#lib/command/send.ts';
 import type { StationView } from '#lib/contract.ts';
+import { standingsOf, type OperationStanding } from '#lib/operation/standing.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
@@ -59,6 +60,7 @@ function acts({ session, view, mine }: Known): Entry[] {
 /** All that there is, in the order in which it is offered before anything is typed. */
 export function entriesOf(known: Known): Entry[] {
 	const { session, view } = known;
+	const standings = view === null ? new Map<string, OperationStanding>() : standingsOf(view);
 	const pages = [...pagesFor(session).flatMap((group) => group.pages), ...[...WITHIN, ...MENU].filter(({ role }) => session.may(role))];
 	return [
 		...acts(known),
@@ -68,7 +70,7 @@ export function entriesOf(known: Known): Entry[] {
 			([key, alarm]): Entry => ({ group: 'alarm', text: wordsOf(alarm).text, name: key, does: { to: '/alarms' } })
 		),
 		...Object.entries(view?.operations ?? {}).map(
-			([name, { title }]): Entry => ({ group: 'operation', text: say().frame.palette.why(title), name, does: { why: name } })
+			([name, { title }]): Entry => ({ group: 'operation', text: say().frame.palette.why[standings.get(name) ?? 'waits'](title), name, does: { why: name } })
 		),
 		...Object.entries(view?.abilities ?? {}).map(
 			([name, { title }]): Entry => ({ group: 'ability', text: title, name, does: { to: abilityAddress(name) } })

@@ -23,6 +23,7 @@ describe.each(languages)('the help in %s', (language) => {
 	test('has the same lines as in English, and is not in English', () => {
 		expect(Object.keys(helped).sort()).toEqual(Object.keys(english.pages).sort());
 		expect(keys.all).toHaveLength(english.keys.all.length);
+		expect(keys.conditions).toHaveLength(english.keys.conditions.length);
 		for (const page of pages) {
 			expect(helped[page].how, page).toHaveLength(english.pages[page].how.length);
 			if (language !== 'en') for (const line of helped[page].how) expect(english.pages[page].how).not.toContain(line);

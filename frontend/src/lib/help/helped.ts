@@ -15,7 +15,12 @@ export interface Help {
 export interface Helped {
 	readonly title: (page: string) => string;
 	/** What is pressed, and what it does. */
-	readonly keys: { readonly title: string; readonly all: readonly (readonly [pressed: string, does: string])[] };
+	readonly keys: {
+		readonly title: string;
+		readonly all: readonly (readonly [pressed: string, does: string])[];
+		/** Only where conditions are written. */
+		readonly conditions: readonly (readonly [pressed: string, does: string])[];
+	};
 	readonly pages: Readonly<Record<HelpedPage, Help>>;
 }
 

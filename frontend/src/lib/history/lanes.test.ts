@@ -76,11 +76,31 @@ test('what was called off as it did not end in time has failed, and what a perso
 	expect(runs.get('robot.move')?.[0]?.failed).toBeUndefined();
 });
 
+test('what ran when its device did not go on is told from the others, with the cause', () => {
+	const alarm = { event: 'came', kind: 'overdue', text: 'The tool has stalled. It turns', priority: 'high', resources: ['tool'], parts: [] };
+	const marks = [
+		mark(11, 110, 'ticked', { started: ['tool.run', 'robot.move'] }),
+		mark(12, 130, 'alarm', alarm),
+		mark(13, 150, 'ticked', { ended: ['tool.run'] }),
+		mark(14, 160, 'ticked', { started: ['tool.run'] })
+	];
+	const lanes = lanesOf(line(marks), [], { window, until: Infinity, resources: ['robot', 'tool'], names: { ...names, resourceOf: (id) => id.split('.')[0] ?? '' } });
+	const bars = (id: string) => lanes.find((each) => each.id === id)?.bars.map(({ failed, cause }) => [failed, cause]);
+	expect(bars('of tool')).toEqual([[true, 'The tool has stalled'], [undefined, undefined]]);
+	expect(bars('of robot')).toEqual([[undefined, undefined]]);
+});
+
 test('bars that last at the same time stand one below the other, in three rows at most', () => {
 	const bar = (from: number, to: number): Bar => ({ from, to, label: '', number: null, open: false });
 	const { rows, all } = placed([bar(0, 10), bar(2, 12), bar(3, 13), bar(4, 14), bar(12, 20)]);
 	expect(rows).toBe(3);
 	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1', '2', '2 crowded', '0']);
+});
+
+test('what only begins has the room of its words, and one that has none takes it from no other', () => {
+	const bar = (at: number): Bar => ({ from: at, to: at, label: '', number: null, open: false });
+	const { all } = placed([bar(0), bar(1), bar(2), bar(3), bar(10), bar(11)], 10);
+	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1', '2', '2 crowded', '0', '1']);
 });
 
 test('marks that would cover one another are one, and what is pressed is the nearest', () => {

@@ -1,8 +1,9 @@
 /** What a time line draws: lanes for the mode, the operations, each resource with what ran, and all else that happened. */
 import { initialsOf } from '#lib/account/initials.ts';
-import type { Priority, TimeLine } from '#lib/contract.ts';
+import type { Alarm, Priority, TimeLine } from '#lib/contract.ts';
 import type { Act } from '#lib/journal/acts.ts';
 import { actText, actorText, subjectText } from '#lib/journal/wording.ts';
+import { leading, wordsOf } from '#lib/text/message.ts';
 import { say } from '#lib/text/text.svelte.ts';
 import { shareOf, type Window } from '#lib/axis/window.ts';
 import type { Names } from './names.ts';
@@ -15,8 +16,10 @@ export interface Bar {
 	readonly label: string;
 	readonly number: number | null;
 	readonly open: boolean;
-	/** It was called off, as it did not end in time. */
+	/** It was called off, as it did not end in time; or its device did not go on. */
 	readonly failed?: boolean;
+	/** What was wrong with its device meanwhile, in a few words. */
+	readonly cause?: string;
 	/** It is not as usual: not the mode in which the station works by itself. */
 	readonly other?: boolean;
 }
@@ -80,6 +83,7 @@ export function lanesOf(
 		const label = names.ability(ability);
 		byResource.set(of, [...(byResource.get(of) ?? []), ...bars.map((bar) => ({ ...bar, label }))]);
 	}
+	for (const [id, bars] of byResource) byResource.set(id, broken(bars, troublesOf(line, id)));
 	const operations = line.whole ? operationsOf(line, window, until) : [];
 	return [
 		{ id: 'mode', title: words.mode, bars: modesOf(line, window, until), spots: spots(MODE_KINDS) },
@@ -88,6 +92,33 @@ export function lanesOf(
 		{ id: 'plan', title: words.plan, bars: [], spots: [...plans, ...spots(new Set(['begun']))] },
 		{ id: 'people', title: words.people, bars: [], spots: [...acts.map((act) => actSpot(act, names)), ...spots(NOTICED), ...alarmsOf(line, names)] }
 	];
+}
+
+/** Kinds of alarms that tell that a device does not go on, or that nothing is heard of it. */
+const BROKEN: ReadonlySet<unknown> = new Set(['overdue', 'still', 'given-up', 'silent']);
+
+interface Trouble {
+	readonly time: number;
+	readonly cause: string;
+}
+
+/** When a device of a resource did not go on, and what was told of it. */
+function troublesOf({ marks }: TimeLine, resource: string): Trouble[] {
+	return marks.flatMap(({ kind, time, content }) => {
+		const what = partOf(content, 'what') ?? content;
+		if (kind !== 'alarm' || what['event'] !== 'came' || !BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
+		return [{ time, cause: leading(wordsOf(what as unknown as Alarm).text)[0] }];
+	});
+}
+
+/** What ran when its device did not go on, marked so: of several at once the one that was started last. */
+function broken(bars: readonly Bar[], troubles: readonly Trouble[]): Bar[] {
+	const found = new Map<Bar, string>();
+	for (const { time, cause } of troubles) {
+		const [bar] = bars.filter(({ from, to }) => from <= time && time <= to).sort((a, b) => b.from - a.from);
+		if (bar) found.set(bar, cause);
+	}
+	return bars.map((bar) => (found.has(bar) ? { ...bar, failed: true, cause: found.get(bar) ?? '' } : bar));
 }
 
 function actSpot(act: Act, names: Names): Spot {
@@ -188,8 +219,8 @@ export interface Placed<B extends Bar = Bar> {
 	readonly crowded: boolean;
 }
 
-/** Bars that last at the same time one below the other. */
-export function placed<B extends Bar>(bars: readonly B[]): { readonly rows: number; readonly all: readonly Placed<B>[] } {
+/** Bars that last at the same time one below the other; each takes `least` seconds of its row. */
+export function placed<B extends Bar>(bars: readonly B[], least = 0): { readonly rows: number; readonly all: readonly Placed<B>[] } {
 	const ends: number[] = [];
 	const all = [...bars]
 		.sort((a, b) => a.from - b.from)
@@ -197,7 +228,7 @@ export function placed<B extends Bar>(bars: readonly B[]): { readonly rows: numb
 			const free = ends.findIndex((end) => end <= bar.from);
 			const row = free >= 0 ? free : Math.min(ends.length, MOST_ROWS - 1);
 			const crowded = free < 0 && ends.length === MOST_ROWS;
-			ends[row] = Math.max(ends[row] ?? -Infinity, bar.to);
+			if (!crowded || least === 0) ends[row] = Math.max(ends[row] ?? -Infinity, bar.to, bar.from + least);
 			return { bar, row, crowded };
 		});
 	return { rows: Math.max(1, ends.length), all };

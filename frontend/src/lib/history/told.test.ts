@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { namesOf } from './names.ts';
-import { told } from './told.ts';
+import { factsOf, told } from './told.ts';
 
 const names = namesOf(null);
 
@@ -26,6 +26,13 @@ test('a tick says what it did, else what it heard', () => {
 		''
 	]);
 	expect(said('ticked', {})[0]).toBe('Tick');
+});
+
+test('each thing that a tick did is a fact of its own, and none is said twice', () => {
+	const content = { started: ['a', 'b'], ended: ['place'], completed: ['place'], activated: ['tighten'] };
+	expect(factsOf(told({ kind: 'ticked', content }, names))).toEqual(['Started: a', 'Started: b', 'Became active: tighten', 'Completed: place']);
+	expect(factsOf(told({ kind: 'ticked', content: { ended: ['a'] } }, names))).toEqual(['Ended: a']);
+	expect(factsOf(told({ kind: 'ticked', content: { started: ['1', '2', '3', '4', '5', '6'] } }, names)).at(-1)).toBe('Started: and 2 more');
 });
 
 test('what a person did says who and why', () => {

@@ -175,9 +175,30 @@ function tick(content: Content, why: string, names: Names): Partial<Told> & { wh
 		const heard = partOf(content, 'measured');
 		return { what: heard === null ? words.ticked : words.heard, on: settings(heard ?? {}, names) };
 	}
-	if (done.length === 1) return { ...first, why };
+	if (done.length === 1) return { ...first, why, several: factsIn(content, names) };
 	const several = done.filter((each) => each.on !== '').map((each) => `${each.what}: ${each.on}`);
-	return { what: done.map((each) => each.what).join(', '), on: several.join(' · '), why, several };
+	return { what: done.map((each) => each.what).join(', '), on: several.join(' · '), why, several: factsIn(content, names) };
+}
+
+/** Of what is said of an operation, what is said of an ability of the same name as well. */
+const SAID_BY = { ended: 'completed', activated: 'started' } as const;
+
+/** What a tick did, each to one thing: that a task ended is not said where the operation of its name is completed by it. */
+function factsIn(content: Content, names: Names): string[] {
+	const words = say().history.words;
+	const named = (part: string): string[] => {
+		const of = DEEDS.find(([each]) => each === part)?.[1];
+		return of === undefined ? [] : textsOf(content[part]).map(names[of]);
+	};
+	const facts = DEEDS.flatMap(([part]) => {
+		const other = part === 'ended' || part === 'activated' ? named(SAID_BY[part]) : [];
+		const own = named(part).filter((name) => !other.includes(name));
+		const more = own.length - NAMED;
+		const shown = more > 1 ? own.slice(0, NAMED) : own;
+		return [...shown.map((name) => `${words[part]}: ${name}`), ...(more > 1 ? [`${words[part]}: ${words.and(more)}`] : [])];
+	});
+	const plan = planWords(content);
+	return plan === null ? facts : [...facts, plan];
 }
 
 /** Of an alarm that came what leads is what came, and the rest what is told of it. */

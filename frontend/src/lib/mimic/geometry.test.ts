@@ -133,13 +133,25 @@ describe('the picture', () => {
 
 	it('cuts texts to the room they have, and says so', () => {
 		fc.assert(
-			fc.property(fc.string({ maxLength: 90 }), fc.integer({ min: 1, max: 80 }), (text, room) => {
+			fc.property(fc.string({ maxLength: 120 }), fc.integer({ min: 1, max: 110 }), (text, room) => {
 				const shown = fit(text, room, 'strong', (each) => each.length);
 				expect(shown.length).toBeLessThanOrEqual(Math.max(1, room));
 				if (text.length <= room) expect(shown).toBe(text);
-				else expect(shown.endsWith('…')).toBe(true);
+				else {
+					const cut = shown.lastIndexOf('…');
+					expect(text.startsWith(shown.slice(0, cut))).toBe(true);
+					expect(text.endsWith(shown.slice(cut + 1))).toBe(true);
+				}
 			})
 		);
+	});
+
+	it('keeps both ends of a long name: they tell it from others', () => {
+		const name = (number: number) => `${'Donaudampfschiffahrtselektrizität'.repeat(3)} part 0${number}`;
+		const shown = (number: number) => fit(name(number), 80, 'strong', (each) => each.length);
+		expect(shown(1)).toMatch(/^Donau.*…part 01$/);
+		expect(shown(1)).not.toBe(shown(2));
+		expect(fit('Tool for the ladder frame', 12, 'strong', (each) => each.length)).toBe('Tool for th…');
 	});
 });
 

@@ -45,14 +45,19 @@ export function widthOf(text: string, font: Font): number {
 	return width;
 }
 
-/** As much of a text as there is room for; that something is left out is told by an ellipsis. */
+/** Letters at the end of a long name that tell it from others, and the room, in units, from which on there is some for both its ends. */
+const [END, LONG] = [7, 30];
+const BOTH = 80;
+
+/** As much of a text as there is room for; that something is left out is told by an ellipsis. Of a long one its end is kept, too. */
 export function fit(text: string, room: number, font: Font, width: (text: string, font: Font) => number = widthOf): string {
 	if (width(text, font) <= room) return text;
+	const end = text.length > LONG && room >= BOTH ? text.slice(-END).trimStart() : '';
 	let [most, none] = [0, text.length];
 	while (none - most > 1) {
 		const half = (most + none) >> 1;
-		if (width(`${text.slice(0, half)}…`, font) <= room) most = half;
+		if (width(`${text.slice(0, half)}…${end}`, font) <= room) most = half;
 		else none = half;
 	}
-	return most === 0 ? '…' : `${text.slice(0, most).trimEnd()}…`;
+	return most === 0 ? '…' : `${text.slice(0, most).trimEnd()}…${end}`;
 }

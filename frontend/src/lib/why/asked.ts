@@ -6,6 +6,8 @@ export interface Asked {
 	readonly at: number;
 	/** What has been told above, each once: it is not opened again below itself. */
 	readonly above: readonly string[];
+	/** What is asked about is done: the conditions are those of the next time. */
+	readonly done?: boolean;
 }
 
 export const keyOf = (of: string, name: string): string => `${of} ${name}`;

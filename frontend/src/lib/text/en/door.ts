@@ -54,7 +54,7 @@ export const door = {
 		title: 'First start',
 		over: 'This station has an administrator already.',
 		become: 'You become the first administrator: you decide who else may do what.',
-		make: 'Make the administrator',
+		make: 'Become the administrator',
 		noAdministrator: 'This station has no administrator yet.',
 		how: 'How somebody becomes one',
 		nobody: 'Nobody can sign in yet: this station has no administrator.',

@@ -67,6 +67,10 @@ export const figures = {
 		then: (what: string): string => `then: ${what}`,
 		thenMoves: (who: string): string => `then moves: ${who}`,
 		next: 'Next:',
+		/** When it is about to come. */
+		inAbout: (seconds: number): string => (seconds < 1 ? 'soon' : `in about ${seconds < 60 ? `${seconds} s` : `${Math.round(seconds / 60)} min`}`),
+		nextForPerson: 'Next for a person:',
+		now: 'Now:',
 		notLive: 'Not live',
 		sideBySide: 'Side by side',
 		alone: 'This station alone',

@@ -131,7 +131,13 @@ export const frame = {
 		hint: 'A page, variable, ability, operation or act',
 		nothing: (typed: string): string => `Nothing is called “${typed}”.`,
 		examples: 'Example stations',
-		why: (operation: string): string => `Why does “${operation}” wait?`,
+		/** What is asked of an operation, by how it stands. */
+		why: {
+			waits: (operation: string): string => `Why does “${operation}” wait?`,
+			active: (operation: string): string => `When is “${operation}” done?`,
+			stopped: (operation: string): string => `Why does “${operation}” stand still?`,
+			done: (operation: string): string => `“${operation}” is done. When does it begin again?`
+		},
 		groups: { act: 'Possible now', page: 'Pages', alarm: 'Alarms', operation: 'Operations', ability: 'Abilities', variable: 'Variables' }
 	}
 };

@@ -9,9 +9,11 @@ export const help: Helped = {
 			['Ctrl K', 'Search or act'],
 			['?', 'This help'],
 			['Tab, Shift Tab', 'To the next part of the page, or the one before'],
-			['Arrow keys', 'Within a list, a tree, the time line, the plan, the picture of the station or that of the operations'],
-			['F8', 'To what was done last, while that is told, and how it is taken back'],
-			['Escape', 'Puts a dialog or a menu away; what was typed in a field stays'],
+			['Arrow keys', 'Move within a list, the plan, the time line or a picture'],
+			['F8', 'Go to the message about what you just did, to take it back'],
+			['Escape', 'Close a dialog or a menu']
+		],
+		conditions: [
 			['Ctrl Space', 'In a condition: what could stand there'],
 			['F12, Shift F12', 'In a condition: to where a name is declared, and where it is used']
 		]

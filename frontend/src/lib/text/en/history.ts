@@ -20,6 +20,7 @@ export const history = {
 		stop: 'Stop playing',
 		speed: 'Speed',
 		operations: 'Operations',
+		with: (title: string, cause: string): string => `${title}: ${cause}`,
 		stopped: (title: string): string => `${title}: called off`,
 		zoom: 'Part of the time line',
 		earlier: 'Earlier',

@@ -66,8 +66,11 @@ export const operate = {
 		ask: 'Why?',
 		askOf: (title: string): string => `Why? ${title}`,
 		of: (title: string): string => `What “${title}” waits for`,
+		/** Of an operation that is done. */
+		doneOf: (title: string): string => `“${title}” is done`,
+		beginsAgain: 'It begins again when',
 		nothing: 'Nothing is in its way.',
-		goalHolds: 'Its goal holds now.',
+		goalHolds: 'It is done.',
 		again: 'Ask again',
 		asked: (clock: string): string => `As it was at ${clock}`,
 		asking: 'Asking',
@@ -101,7 +104,7 @@ export const operate = {
 			precondition: 'It begins when',
 			turn: 'It is its turn when',
 			goal: 'It is done when',
-			undone: 'It is done as long as',
+			undone: 'Why it is done',
 			predicate: 'It is so when'
 		},
 		sake: (titles: string): string => `for the sake of ${titles}`,

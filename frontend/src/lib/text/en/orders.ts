@@ -10,17 +10,17 @@ export const orders = {
 	ways: {
 		order: {
 			name: 'By order',
-			means: 'Operations of work masters run for an order alone.',
+			means: 'The station makes only what is ordered.',
 			title: 'Let the station work by order?',
 			word: 'Work by order',
-			follows: 'Operations of work masters become active only for an order from then on. Operations that are active without an order stop being active.'
+			follows: 'From now on the station makes only what is ordered. What it has begun without an order is not finished.'
 		},
 		freely: {
 			name: 'Freely',
-			means: 'Operations become active whenever they can, and orders wait.',
+			means: 'The station goes on with the next product by itself, and orders wait.',
 			title: 'Let the station work freely?',
 			word: 'Work freely',
-			follows: 'Operations become active whenever they can from then on, and orders wait.'
+			follows: 'From now on the station goes on with the next product by itself, and orders wait.'
 		}
 	},
 	columns: { stored: 'Not released', waiting: 'Waiting', worked: 'In work', made: 'Made today' },
@@ -34,7 +34,7 @@ export const orders = {
 		stored: 'Orders stand here until somebody allows them to start.',
 		waiting: 'Orders that may start stand here, in the order in which they are to begin.',
 		worked: 'The order that the station works on stands here.',
-		made: 'What is made today stands here, the last first.'
+		made: 'What was made today stands here, the newest first.'
 	},
 	before: (n: number): string => count(n, 'order before today', 'orders before today'),
 	moreThanShown: 'There are more orders than are shown here.',
@@ -92,6 +92,7 @@ export const orders = {
 	notBefore: (time: string): string => `not before ${time}`,
 	by: (name: string): string => `from ${name}`,
 	found: 'Best for the due times and the durations known by now.',
+	freely: 'No times yet: the station works freely, and orders wait.',
 	foundSoon: 'The best that was found in time for the due times and the durations known by now.',
 	foundNot: (why: string): string => `By priority and due time: ${why}.`,
 	line: {

@@ -57,6 +57,7 @@ export const watch = {
 	told: 'The station is told.',
 	problemOf: (name: string): string => `${name} has a problem with it`,
 	notLive: 'Not live',
+	notLiveSince: (clock: string): string => `Not live since ${clock}`,
 	causes: {
 		connecting: 'Connecting to the station.',
 		closed: 'The connection to the server is lost. Trying again.',
@@ -64,6 +65,8 @@ export const watch = {
 		gap: 'A message was lost on the way.',
 		silent: 'Nothing new has come from the server.'
 	},
+	/** How the pages look, and in which language. */
+	display: 'Display',
 	soundOn: 'Sound on',
 	soundOff: 'Sound off',
 	/** Which screen this watch has, for who wears it to say. */

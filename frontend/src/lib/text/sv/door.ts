@@ -52,7 +52,7 @@ export const door: Text['door'] = {
 		title: 'Första starten',
 		over: 'Stationen har redan en administratör, så ingen länk skapar en till.',
 		become: 'Du blir stationens första administratör, som bestämmer vad andra får göra.',
-		make: 'Skapa administratören',
+		make: 'Bli administratör',
 		noAdministrator: 'Stationen har ingen administratör än.',
 		how: 'Hur någon blir det',
 		nobody: 'Ingen kan logga in än: stationen har ingen administratör.',

@@ -123,7 +123,12 @@ export const frame: Text['frame'] = {
 		hint: 'En sida, variabel, förmåga, operation eller åtgärd',
 		nothing: (typed) => `Inget heter ”${typed}”.`,
 		examples: 'Exempelstationer',
-		why: (operation) => `Varför väntar ”${operation}”?`,
+		why: {
+			waits: (operation) => `Varför väntar ”${operation}”?`,
+			active: (operation) => `När är ”${operation}” klar?`,
+			stopped: (operation) => `Varför står ”${operation}” still?`,
+			done: (operation) => `”${operation}” är klar. När börjar den igen?`
+		},
 		groups: { act: 'Möjligt nu', page: 'Sidor', alarm: 'Larm', operation: 'Operationer', ability: 'Förmågor', variable: 'Variabler' }
 	}
 };

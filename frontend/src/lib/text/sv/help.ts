@@ -8,9 +8,11 @@ export const help: Helped = {
 			['Ctrl K', 'Sök eller agera'],
 			['?', 'Den här hjälpen'],
 			['Tab, Skift Tab', 'Till sidans nästa del, eller den förra'],
-			['Piltangenter', 'Inom en lista, ett träd, tidslinjen, planen, bilden av stationen eller den av operationerna'],
-			['F8', 'Till det som gjordes senast, medan det visas, och hur det tas tillbaka'],
-			['Escape', 'Lägger undan en dialog eller en meny; det som skrivits i ett fält är kvar'],
+			['Piltangenter', 'Flytta inom en lista, planen, tidslinjen eller en bild'],
+			['F8', 'Gå till meddelandet om det du just gjorde, för att ta tillbaka det'],
+			['Escape', 'Stäng en dialog eller en meny']
+		],
+		conditions: [
 			['Ctrl Mellanslag', 'I ett villkor: vad som kan stå där'],
 			['F12, Skift F12', 'I ett villkor: dit ett namn deklareras, och var det används']
 		]

@@ -20,6 +20,7 @@ export const history: Text['history'] = {
 		stop: 'Sluta spela upp',
 		speed: 'Hastighet',
 		operations: 'Operationer',
+		with: (title, cause) => `${title}: ${cause}`,
 		stopped: (title) => `${title}: avbruten`,
 		zoom: 'Del av tidslinjen',
 		earlier: 'Tidigare',

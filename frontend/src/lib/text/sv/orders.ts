@@ -10,17 +10,17 @@ export const orders: Text['orders'] = {
 	ways: {
 		order: {
 			name: 'På order',
-			means: 'Operationer i arbetsmallar utförs bara för en order.',
+			means: 'Stationen gör bara det som är beställt.',
 			title: 'Låta stationen arbeta på order?',
 			word: 'Arbeta på order',
-			follows: 'Operationer i arbetsmallar blir därefter aktiva bara för en order. Det som är aktivt för ingen läggs åt sidan.'
+			follows: 'Från och med nu gör stationen bara det som är beställt. Det den har påbörjat utan order görs inte klart.'
 		},
 		freely: {
 			name: 'Fritt',
-			means: 'Operationer blir aktiva när de kan, och order väntar.',
+			means: 'Stationen fortsätter själv med nästa produkt, och order väntar.',
 			title: 'Låta stationen arbeta fritt?',
 			word: 'Arbeta fritt',
-			follows: 'Operationer blir därefter aktiva när de kan, och order väntar.'
+			follows: 'Från och med nu fortsätter stationen själv med nästa produkt, och order väntar.'
 		}
 	},
 	columns: { stored: 'Inte släppta', waiting: 'Väntar', worked: 'I arbete', made: 'Tillverkat i dag' },
@@ -34,7 +34,7 @@ export const orders: Text['orders'] = {
 		stored: 'Här står order tills någon låter dem börja.',
 		waiting: 'Här står order som får börja, i den ordning de ska börja.',
 		worked: 'Här står den order som stationen arbetar med.',
-		made: 'Här står det som tillverkas i dag, det senaste först.'
+		made: 'Här står det som har tillverkats i dag, det senaste först.'
 	},
 	before: (n) => count(n, 'order före i dag', 'order före i dag'),
 	moreThanShown: 'Det finns fler order än som visas här.',
@@ -92,6 +92,7 @@ export const orders: Text['orders'] = {
 	notBefore: (time) => `inte före ${time}`,
 	by: (name) => `från ${name}`,
 	found: 'Bäst för de sluttider och varaktigheter som är kända.',
+	freely: 'Inga tider än: stationen arbetar fritt, och order väntar.',
 	foundSoon: 'Den bästa som hann hittas för de sluttider och varaktigheter som är kända.',
 	foundNot: (why) => `Efter prioritet och sluttid: ${why}.`,
 	line: {

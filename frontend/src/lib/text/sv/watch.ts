@@ -45,6 +45,7 @@ export const watch: Text['watch'] = {
 	told: 'Stationen vet om det.',
 	problemOf: (name) => `${name} har problem med den`,
 	notLive: 'Inte direkt',
+	notLiveSince: (clock) => `Inte direkt sedan ${clock}`,
 	causes: {
 		connecting: 'Ansluter till stationen.',
 		closed: 'Anslutningen till servern är bruten. Försöker igen.',
@@ -52,6 +53,7 @@ export const watch: Text['watch'] = {
 		gap: 'Ett meddelande gick förlorat.',
 		silent: 'Inget nytt har kommit från servern.'
 	},
+	display: 'Visning',
 	soundOn: 'Ljud på',
 	soundOff: 'Ljud av',
 	shapes: { round: 'För rund skärm', square: 'För fyrkantig skärm' },
