@@ -3,16 +3,15 @@ import type { Operation } from '#lib/contract.ts';
 import { told } from '#lib/text/message.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
 import { durationText } from '#lib/wording/time.ts';
-import { workedSince, type OperationStanding } from './standing.ts';
+import type { OperationStanding } from './standing.ts';
 
 /** Until when an active one is under way and for how long it has been, or what another waits for. */
 export function saidOf(operation: Operation, standing: OperationStanding, now: number, texts: Text['operate']['operations']): string {
-	const { active, goal, precondition, sentence } = operation;
+	const { active, active_since, goal, precondition, sentence } = operation;
 	const what = sentence ? told(sentence, active ? goal : precondition) : '';
 	if (!active) return what === '' ? texts.soAlready : what;
 	if (standing === 'waits') return texts.startFirst;
-	const since = workedSince(operation);
-	const lasted = since === null ? '' : durationText(now - since);
+	const lasted = durationText(now - (active_since ?? now));
 	const parts = standing === 'stopped' ? [texts.stoppedFor(lasted), what] : [what, lasted];
 	return parts.filter((part) => part !== '').join(' · ');
 }

@@ -40,16 +40,9 @@ export function isAtWork({ active, work }: Operation): boolean {
 	return active && work.at(-1)?.ended === null;
 }
 
-/** Since when somebody has been at work for an active operation, with what lay between; null before that. */
-export function workedSince({ active, work }: Operation): number | null {
-	return active ? (work[0]?.began ?? null) : null;
-}
-
-/** How many seconds it took the last time, from the first step that served it, or else from when it could begin. */
-export function tookOf({ active, began, ended, work }: Operation): number | null {
-	if (began === null || ended === null) return null;
-	const first = active ? undefined : work[0]?.began;
-	return ended - Math.min(ended, Math.max(began, first ?? began));
+/** How many seconds it took the last time; null where that was never. */
+export function tookOf({ began, ended }: Operation): number | null {
+	return began === null || ended === null ? null : ended - began;
 }
 
 /** What the plan does for an operation. */

@@ -277,6 +277,7 @@ class Operations:
         known = before or {}
         self._progress = {name: _come_back(known.get(name, OperationProgress())) for name in operations}
         self._active = frozenset[str]()
+        self._early = set[str]()  # active before production was started, which is when their time begins
         self._conditions = {
             name: (print_expression(each.goal), print_expression(each.precondition))
             for name, each in operations.items()
@@ -296,9 +297,15 @@ class Operations:
             known = self._progress[name]
             rested = {"active_since": None, "work": _rested(known.work, now)}
             self._progress[name] = known.model_copy(update=rested)
+        started = self._execution.production is Production.STARTED
         for name in active:
-            if self._progress[name].active_since is None:
+            if self._progress[name].active_since is None or (started and name in self._early):
                 self._progress[name] = self._progress[name].model_copy(update={"active_since": now, "work": ()})
+                changed.add(name)
+                if not started:
+                    self._early.add(name)
+        if started:
+            self._early.clear()
         changed |= self._active ^ active
         changed |= self._worked(active, now)
         self._active = active
