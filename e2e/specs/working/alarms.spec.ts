@@ -25,7 +25,7 @@ test('a device falls silent: its alarm is acknowledged, shelved, taken back and 
 	await expect(alarm(other)).toContainText('Nothing heard from Robot UR10');
 	await expect(alarm(other)).toContainText(/” waits?\b|without it/);
 	await choose(other);
-	await expect(detail(other)).toContainText('Check that the node of Robot UR10 runs');
+	await expect(detail(other)).toContainText('Check the power and the network of Robot UR10, and that its ROS node runs.');
 	await expect(detail(other)).toContainText('How it came about');
 	await expect(detail(other).getByRole('link', { name: 'Its 2 topics' })).toHaveAttribute('href', '/ros?show=wrong');
 
