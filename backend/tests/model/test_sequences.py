@@ -316,8 +316,11 @@ tighten_bolts:
   for: {pair: bolt_pair}
   sequence: tighten_bolt_pair(pair)
 """
-_READY = "scene.attached == ATLASTOOL and not nutrunner.activate_lift)\n"
-_EACH_AFTER_THE_OTHER = "    and (pair == first(bolt_pair) or bolts[previous(pair)] == tightened)\n"
+_READY = "bolts[pair] == placed and nutrunner_is_at_hand\n"
+_EACH_AFTER_THE_OTHER = (
+    ">-\n    bolts[pair] == placed and nutrunner_is_at_hand\n"
+    "    and (pair == first(bolt_pair) or bolts[previous(pair)] == tightened)\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -339,7 +342,7 @@ _EACH_AFTER_THE_OTHER = "    and (pair == first(bolt_pair) or bolts[previous(pai
             "truck_engine_station",
             {
                 "work_masters.yaml": [(_ENGINE, _ENGINE_STEPS)],
-                "operations.yaml": [(_TIGHTENING, ""), (_READY, _READY + _EACH_AFTER_THE_OTHER)],
+                "operations.yaml": [(_TIGHTENING, ""), (_READY, _EACH_AFTER_THE_OTHER)],
             },
         ),
     ],

@@ -107,8 +107,8 @@ def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_b
         standing = SimpleNamespace(name="press-b", holder="press-a", active=False, trouble=None)
         epoch = None if stands_by else 2
         keeper: Any = SimpleNamespace(held=not stands_by, epoch=epoch, standing=standing, taken_from=None)
-        station, socket = prepare_station(SINGLE_BOLT), tmp_path / "socket"
-        running: Any = SimpleNamespace(model=SINGLE_BOLT, socket=socket, emulated=False, start=False, station=station)
+        socket, runs = tmp_path / "socket", prepare_station(SINGLE_BOLT)
+        running: Any = SimpleNamespace(model=SINGLE_BOLT, socket=socket, emulated=False, start=False, station=runs)
         none: Any = None
         recording = CommandAudit(database, lambda why: None)
         life = service._Life(running, Preparation(), recording, database, keeper, none, none, Mode.AUTOMATIC)
