@@ -42,7 +42,9 @@ def test_each_title_is_told_once_and_no_other_is(chosen: list[tuple[str, int]]) 
     every = list(dict.fromkeys(f"{what} {number}" for what, number in chosen))
     told = Counter[str]()
     for each in folded(every):
-        what, numbers = re.fullmatch(r"(\D*?)s? (\d.*)", each).groups()  # type: ignore[union-attr]
+        found = re.fullmatch(r"(\D*?)s? (\d.*)", each)
+        assert found is not None, each
+        what, numbers = found.groups()
         ranges = re.findall(r"(\d+)(?: to (\d+))?", numbers)
         assert len(ranges) <= MOST_LISTED
         told.update(f"{what} {n}" for first, last in ranges for n in range(int(first), int(last or first) + 1))
