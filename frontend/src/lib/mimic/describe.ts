@@ -48,8 +48,8 @@ export interface Found {
 	readonly keys: ReadonlyMap<string, string>;
 }
 
-/** What a thing does or is. */
-export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, language: string): Now {
+/** What a thing does or is. `waits`: it stands where an operation has stopped. */
+export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, language: string, waits = false): Now {
 	const texts = say().mimic;
 	const { variables, tasks } = view;
 	const resource = symbol.resource;
@@ -57,7 +57,7 @@ export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, languag
 	const running = found.doing.get(resource ?? '')?.running ?? [];
 	const active = running.length > 0 || (symbol.active.length > 0 && holds(symbol.active, variables) === true);
 	const tone = active ? 'active' : 'rests';
-	if (symbol.track !== null) return whereNow(symbol.track, view, active, language);
+	if (symbol.track !== null) return whereNow(symbol.track, view, active, waits && running.length === 0, language);
 	if (symbol.symbol === 'person') {
 		const task = Object.values(tasks).find((each) => each.resource === resource);
 		if (task !== undefined) return { text: task.title, tone: 'active' };
@@ -75,7 +75,7 @@ export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, languag
 	return { text: capital(texts.is(nameOfVariable(key, resource), told)), tone: value === null ? 'doubt' : tone };
 }
 
-function whereNow(track: MimicTrack, view: Pictured, active: boolean, language: string): Now {
+function whereNow(track: MimicTrack, view: Pictured, active: boolean, waits: boolean, language: string): Now {
 	const texts = say().mimic;
 	const { variables } = view;
 	const at = whereabouts(track, variables, null);
@@ -84,6 +84,7 @@ function whereNow(track: MimicTrack, view: Pictured, active: boolean, language: 
 	if (at === null || (at.kind === 'moving' && target === null)) return { text: texts.between, tone: 'active' };
 	const stop = capital(stopName(track, at.kind === 'moving' ? (target ?? at.to) : at.to, language));
 	if (at.kind === 'moving') return { text: texts.towards(stop), tone: 'active' };
+	if (waits) return { text: texts.atWork(stop, texts.standsWaiting), tone: 'rests' };
 	const work = workAt(at.to, view);
 	if (work === null) return { text: stop, tone: active ? 'active' : 'rests' };
 	const isNamed = work.toLowerCase().includes(stop.toLowerCase());
@@ -121,7 +122,7 @@ export function inWork(view: Pick<Pictured, 'abilities'>): ReadonlyMap<string, '
 }
 
 /** The values in brackets behind a name: `pair_1` of `tighten(pair_1)`. */
-function valuesIn(name: string): string[] {
+export function valuesIn(name: string): string[] {
 	return /\(([^()]*)\)$/.exec(name)?.[1]?.split(', ') ?? [];
 }
 

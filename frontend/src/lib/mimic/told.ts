@@ -3,6 +3,7 @@ import type { Mimic, MimicSymbol, Priority } from '#lib/contract.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
+import { isPartAffected, standsAffected, type Stopped } from './affected.ts';
 import { keysOf, nameOf, nowOf, partValue, type Now, type Pictured } from './describe.ts';
 import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
 
@@ -13,18 +14,28 @@ export interface Told {
 	/** What it does or is, with its parts and what it holds: for who does not see it. */
 	readonly sentence: string;
 	readonly alarm: Priority | null;
+	/** It lights up as this: by its alarm, or as it stands where an operation has stopped. */
+	readonly lit: Priority | null;
+	/** The variables of its parts that light up, and as what. */
+	readonly parts: ReadonlyMap<string, Priority>;
 }
 
-export function toldOf(mimic: Mimic, view: Pictured, language: string): Told[] {
+/** `stopped` are the operations that came to a stop, if any did. */
+export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: Stopped | null = null): Told[] {
 	const found = { doing: doingOf(view.abilities), keys: keysOf(view.variables) };
 	return mimic.symbols.map((symbol) => {
-		const now = nowOf(symbol, view, found, language);
+		const alarm = worst(alarmsOf(view.alarms, symbol.resource));
+		const stands = stopped !== null && standsAffected(symbol, view, stopped);
+		const now = nowOf(symbol, view, found, language, stands);
+		const parts = symbol.parts.filter((part) => stopped !== null && isPartAffected(part, view, stopped));
 		return {
 			symbol,
 			title: nameOf(symbol, view.resources, language),
 			now,
 			sentence: [now.text, ...details(symbol, view, language)].filter((text) => text !== '').join('. '),
-			alarm: worst(alarmsOf(view.alarms, symbol.resource))
+			alarm,
+			lit: alarm ?? (stands ? stopped.priority : null),
+			parts: new Map(parts.map(({ variable }) => [variable, stopped?.priority ?? 'low']))
 		};
 	});
 }

@@ -19,6 +19,8 @@ export const mimic = {
 	then: (now: string, next: string): string => `${now}, then ${next}`,
 	andMore: (named: string, more: number): string => `${named} and ${more} more`,
 	unknownPlace: 'Nobody knows where it is',
+	/** Of what stands where an operation has stopped. */
+	standsWaiting: 'waits',
 	between: 'Between two places',
 	notHeard: 'Not heard',
 	rests: 'Nothing runs',
