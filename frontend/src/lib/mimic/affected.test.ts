@@ -1,7 +1,8 @@
 import { expect, test } from 'vitest';
 import type { MimicPart, MimicSymbol } from '#lib/contract.ts';
+import { stoppedOf } from '#lib/operation/standing.ts';
 import { alarm, estimate, operation, PLAN, step, view } from '#lib/testing/view.ts';
-import { isPartAffected, standsAffected, stoppedOf } from './affected.ts';
+import { isPartAffected, standsAffected } from './affected.ts';
 
 const steps = [step('tool.run', 'tool', 1, { id: '1', status: 'running', started: 10 })];
 const station = view({

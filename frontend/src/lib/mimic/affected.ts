@@ -1,22 +1,8 @@
 /** What of the picture lights up with operations that have stopped: the parts they are about, and what stands there. */
-import type { MimicPart, MimicSymbol, Priority, StationView } from '#lib/contract.ts';
-import { standingsOf, stoppedTone } from '#lib/operation/standing.ts';
+import type { MimicPart, MimicSymbol } from '#lib/contract.ts';
+import type { Stopped } from '#lib/operation/standing.ts';
 import { valuesIn, type Pictured } from './describe.ts';
 import { valueOf, whereabouts } from './live.ts';
-
-/** The operations that have stopped by their names, and how urgent that is. */
-export interface Stopped {
-	readonly priority: Priority;
-	readonly operations: ReadonlySet<string>;
-}
-
-/** Null where all go on. */
-export function stoppedOf(view: StationView): Stopped | null {
-	const priority = stoppedTone(view);
-	if (priority === null) return null;
-	const operations = [...standingsOf(view)].flatMap(([name, standing]) => (standing === 'stopped' ? [name] : []));
-	return { priority, operations: new Set(operations) };
-}
 
 /** Whether a part of the product is what a stopped operation has yet to change: its goal wants another value of it. */
 export function isPartAffected({ variable }: MimicPart, { operations, variables }: Pictured, stopped: Stopped): boolean {

@@ -8,6 +8,8 @@ const FONTS: Readonly<Record<Font, readonly [weight: number, size: number]>> = {
 	second: [560, 10.75],
 	small: [520, 10]
 };
+/** How high their letters are, in units of the drawing. */
+export const SIZE: Readonly<Record<Font, number>> = { strong: FONTS.strong[1], second: FONTS.second[1], small: FONTS.small[1] };
 /** Of the size of a font, for where nothing can be measured. */
 const LETTER = 0.58;
 

@@ -1,9 +1,10 @@
 /** All that the picture tells of its things, once for the drawing, the rows and the table. */
 import type { Mimic, MimicSymbol, Priority } from '#lib/contract.ts';
+import type { Stopped } from '#lib/operation/standing.ts';
 import { doingOf } from '#lib/resource/doing.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
-import { isPartAffected, standsAffected, type Stopped } from './affected.ts';
+import { isPartAffected, standsAffected } from './affected.ts';
 import { keysOf, nameOf, nowOf, partValue, type Now, type Pictured } from './describe.ts';
 import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
 

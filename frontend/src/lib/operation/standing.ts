@@ -35,6 +35,20 @@ export function stoppedTone({ plan, alarms }: StationView): Priority | null {
 	return (['high', 'medium', 'low'] as const).find((priority) => all.includes(priority)) ?? null;
 }
 
+/** The operations that have stopped by their names, and how urgent that is. */
+export interface Stopped {
+	readonly priority: Priority;
+	readonly operations: ReadonlySet<string>;
+}
+
+/** Null where all go on. */
+export function stoppedOf(view: StationView): Stopped | null {
+	const priority = stoppedTone(view);
+	if (priority === null) return null;
+	const operations = [...standingsOf(view)].flatMap(([name, standing]) => (standing === 'stopped' ? [name] : []));
+	return { priority, operations: new Set(operations) };
+}
+
 /** Whether somebody is at work for an active operation now: a step that serves it runs. */
 export function isAtWork({ active, work }: Operation): boolean {
 	return active && work.at(-1)?.ended === null;
