@@ -122,7 +122,7 @@ export class Back {
 			await (corrects ? corrected : question.getByRole('button', { name: /^Yes, / })).click();
 			return corrects ? this.#correct() : true;
 		}
-		await this.restart.getByRole('button', { name: 'All of it is so' }).click();
+		await this.restart.getByRole('button', { name: 'Confirm all of it' }).click();
 		return this.#send('Confirm');
 	}
 

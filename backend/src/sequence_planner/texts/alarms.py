@@ -229,8 +229,8 @@ ALARMS: Final[dict[str, str]] = {
     "not-restored.more": ", and {count} more",
     **_kind(
         "undecided-outputs",
-        "Outputs came back from the journal, and devices would react to them: {outputs}",
-        "Outputs had come back from the journal, and somebody had to decide on them: {outputs}",
+        "Commands from before the start would make devices react: {outputs}",
+        "Commands from before the start waited for a decision: {outputs}",
         "Production cannot be started.",
         "Decide for each whether the device shall react, or stay as it is.",
     ),

@@ -138,8 +138,8 @@ export const restart = {
 		by: (writer: string, at: string): string => `by ${writer}, ${at}`,
 		unconfirmed: 'Not confirmed yet',
 		look: 'The station believes this, and nobody has seen yet whether it is true. Look whether it is so:',
-		all: 'All of it is so',
-		one: 'It is so'
+		all: 'Confirm all of it',
+		one: 'Confirm'
 	},
 
 	outputs: {

@@ -79,10 +79,10 @@ export const state = {
 	changes: (n: number): string => (n === 0 ? 'no change in the last minute' : `${count(n, 'change', 'changes')} in the last minute`),
 	tick: (name: string): string => `Tick ${name}`,
 	correctIt: 'Correct…',
-	confirmIt: 'It is so…',
+	confirmIt: 'Confirm…',
 	ticked: (n: number): string => `${count(n, 'estimate', 'estimates')} ticked`,
 	correctTogether: 'Correct together…',
-	confirmTogether: 'They are so…',
+	confirmTogether: 'Confirm together…',
 	untick: 'Untick all',
 	confirm: {
 		title: 'Is this so?',

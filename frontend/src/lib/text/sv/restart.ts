@@ -136,8 +136,8 @@ export const restart: Text['restart'] = {
 		by: (writer, at) => `av ${writer}, ${at}`,
 		unconfirmed: 'Inte bekräftat ännu',
 		look: 'Stationen antar detta, och ingen har ännu sett om det stämmer. Titta om det är så:',
-		all: 'Allt är så',
-		one: 'Det är så'
+		all: 'Bekräfta allt',
+		one: 'Bekräfta'
 	},
 
 	outputs: {

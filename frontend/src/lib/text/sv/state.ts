@@ -77,16 +77,16 @@ export const state: Text['state'] = {
 	changes: (n) => (n === 0 ? 'ingen ändring den senaste minuten' : `${antal(n, 'ändring', 'ändringar')} den senaste minuten`),
 	tick: (name) => `Markera ${name}`,
 	correctIt: 'Rätta…',
-	confirmIt: 'Det stämmer…',
+	confirmIt: 'Bekräfta…',
 	ticked: (n) => `${antal(n, 'uppskattning markerad', 'uppskattningar markerade')}`,
 	correctTogether: 'Rätta tillsammans…',
-	confirmTogether: 'De stämmer…',
+	confirmTogether: 'Bekräfta tillsammans…',
 	untick: 'Avmarkera alla',
 	confirm: {
 		title: 'Stämmer detta?',
 		titles: 'Stämmer allt detta?',
 		word: 'Bekräfta',
-		about: 'Säg det bara om du har tittat efter. Inget ändras av det.',
+		about: 'Bekräfta bara det du har sett. Inget ändras av det.',
 		done: (names) => `Bekräftat: ${names}`
 	},
 	details: {
