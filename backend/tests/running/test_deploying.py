@@ -346,7 +346,7 @@ def test_where_the_model_asks_for_it_only_what_somebody_else_has_approved_is_dep
         with signed_in(station.model, station.port) as maria:
             name = maria.get("session").json()["person"]["name"]
             verdict = f"model/revisions/{revision}/reviews"
-            wanted = maria.post(verdict, json={"verdict": "changes-wanted", "text": "Why?"})
+            wanted = maria.post(verdict, json={"verdict": "changes-requested", "text": "Why?"})
             assert wanted.is_success, wanted.text
             refused = station.deploy(revision)
             assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-approved")

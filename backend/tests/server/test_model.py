@@ -506,14 +506,14 @@ def test_a_revision_is_approved_by_somebody_else_than_who_saved_it(
 
     def known() -> tuple[list[str], list[str]]:
         (found,) = [each for each in read(eva, "/revisions")["revisions"] if each["id"] == saved["id"]]
-        return found["approved_by"], found["changes_wanted_by"]
+        return found["approved_by"], found["changes_requested_by"]
 
     assert known() == ([], [])
     assert "“Bolts”" in problem(judged(eva, "approved"), 403, "same-person")["detail"]
     problem(judged(adam, "withdrawn"), 409, "no-review")
-    problem(judged(adam, "changes-wanted", "  "), 422, "invalid-request")
+    problem(judged(adam, "changes-requested", "  "), 422, "invalid-request")
     problem(judged(adam, "perhaps"), 422, "invalid-request")
-    said = judged(adam, "changes-wanted", "Say which bolts.")
+    said = judged(adam, "changes-requested", "Say which bolts.")
     assert said.status_code == 201
     name = said.json()["by"]
     assert known() == ([], [name])
@@ -524,7 +524,7 @@ def test_a_revision_is_approved_by_somebody_else_than_who_saved_it(
     problem(judged(adam, "withdrawn"), 409, "no-review")
     told = read(eva, "/comments")["comments"]
     assert [(each["verdict"], each["text"]) for each in told] == [
-        ("changes-wanted", "Say which bolts."),
+        ("changes-requested", "Say which bolts."),
         ("approved", ""),
         ("withdrawn", "I had not seen the second page."),
     ]

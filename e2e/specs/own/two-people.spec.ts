@@ -152,9 +152,9 @@ test('what is deployed was approved by somebody else than who saved it, and who 
 	await expect(ina.getByRole('button', { name: 'Ask for changes', exact: true })).toHaveAttribute('aria-disabled', 'true');
 	await ina.keyboard.type('Why is it no station any more?');
 	await ina.getByRole('button', { name: 'Ask for changes', exact: true }).click();
-	await expect(ina.getByText('Wants changes in “Bolt cell”')).toBeVisible();
+	await expect(ina.getByText('Asked for changes in “Bolt cell”')).toBeVisible();
 	await expect(field).toHaveValue('');
-	await expect(need(erik, 'approved')).toContainText('Ina wants changes.');
+	await expect(need(erik, 'approved')).toContainText('Ina asked for changes.');
 	await expect(need(erik, 'approved')).toHaveAttribute('data-met', 'false');
 	await erik.getByRole('tab', { name: /^Talk/ }).click();
 	await expect(erik.getByText('Why is it no station any more?')).toBeVisible();

@@ -3,7 +3,7 @@ import type { Revision } from '#lib/contract.ts';
 import { nameTrouble } from './naming.ts';
 
 function revision(name: string, draft = false): Revision {
-	return { id: 'a'.repeat(40), name, message: '', by: 'Erik', time: 0, running: false, draft, approved_by: [], changes_wanted_by: [] };
+	return { id: 'a'.repeat(40), name, message: '', by: 'Erik', time: 0, running: false, draft, approved_by: [], changes_requested_by: [] };
 }
 
 const KNOWN = [revision('Longer table'), revision('First')];

@@ -35,7 +35,7 @@ const WORKSHOP: Workshop = {
 	}
 };
 const REVISIONS: Revisions = {
-	revisions: [{ id: 'a'.repeat(40), name: 'New', message: '', by: 'Erik', time: 0, running: false, draft: true, approved_by: [], changes_wanted_by: [] }],
+	revisions: [{ id: 'a'.repeat(40), name: 'New', message: '', by: 'Erik', time: 0, running: false, draft: true, approved_by: [], changes_requested_by: [] }],
 	saved: true,
 	running: false
 };
@@ -72,9 +72,9 @@ describe('a deployment needs', () => {
 
 	test('the approval of somebody else where the model that runs asks for it, as long as nobody wants changes', () => {
 		const view = { ...VIEW, station: { ...STATION, deployment_approval: 'dual' as const } };
-		const said = (approved_by: string[], changes_wanted_by: string[]): Revisions => ({
+		const said = (approved_by: string[], changes_requested_by: string[]): Revisions => ({
 			...REVISIONS,
-			revisions: REVISIONS.revisions.map((each) => ({ ...each, approved_by, changes_wanted_by }))
+			revisions: REVISIONS.revisions.map((each) => ({ ...each, approved_by, changes_requested_by }))
 		});
 		expect(missing({ view })).toEqual(['approved']);
 		expect(missing({ view, revisions: null })).toEqual(['saved', 'approved']);

@@ -26,13 +26,13 @@ export function savedAs(revisions: Revisions | null): Revision | null {
 }
 
 /** Somebody else than who saved it has approved it, and nobody wants changes. */
-export function isApproved({ approved_by, changes_wanted_by }: Pick<Revision, 'approved_by' | 'changes_wanted_by'>): boolean {
-	return approved_by.length > 0 && changes_wanted_by.length === 0;
+export function isApproved({ approved_by, changes_requested_by }: Pick<Revision, 'approved_by' | 'changes_requested_by'>): boolean {
+	return approved_by.length > 0 && changes_requested_by.length === 0;
 }
 
 /** Whether somebody else has a say in whether the draft, saved as `saved`, is deployed: as the model that runs asks for it, or as they have said something. */
 export function isReviewed(view: Pick<StationView, 'station'>, saved: Revision | null): boolean {
-	return view.station.deployment_approval === 'dual' || (saved !== null && saved.approved_by.length + saved.changes_wanted_by.length > 0);
+	return view.station.deployment_approval === 'dual' || (saved !== null && saved.approved_by.length + saved.changes_requested_by.length > 0);
 }
 
 /** Nothing of the model that is there can run, so nothing need be stopped, and nobody need be in control. */

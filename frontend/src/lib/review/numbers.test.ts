@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import type { Revision } from '#lib/contract.ts';
 import { numberOf, runningOne, titleOfChange } from './numbers.ts';
 
-const revision = (id: string, running = false): Revision => ({ id, name: id, message: '', by: '', time: 0, running, draft: false, approved_by: [], changes_wanted_by: [] });
+const revision = (id: string, running = false): Revision => ({ id, name: id, message: '', by: '', time: 0, running, draft: false, approved_by: [], changes_requested_by: [] });
 
 test('revisions are counted from the oldest', () => {
 	const revisions = [revision('c'), revision('b', true), revision('a')];

@@ -232,7 +232,7 @@ class DraftOperationsView(View):
 class RevisionView(View):
     """A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
 
-    `approved_by` and `changes_wanted_by` are the names of those who think so of it. Time is in seconds since the epoch.
+    `approved_by` and `changes_requested_by` name those whose verdict on it counts. Time is in seconds since the epoch.
     """
 
     id: str
@@ -243,7 +243,7 @@ class RevisionView(View):
     running: bool
     draft: bool
     approved_by: list[str]
-    changes_wanted_by: list[str]
+    changes_requested_by: list[str]
 
 
 class RevisionsView(View):
@@ -454,7 +454,7 @@ def revisions_view(
             running=each.tree == running,
             draft=each.tree == edited,
             approved_by=[said.by_name for said in counting if said.verdict is Verdict.APPROVED],
-            changes_wanted_by=[said.by_name for said in counting if said.verdict is Verdict.CHANGES_WANTED],
+            changes_requested_by=[said.by_name for said in counting if said.verdict is Verdict.CHANGES_REQUESTED],
         )
 
     views = [view(each) for each in revisions]

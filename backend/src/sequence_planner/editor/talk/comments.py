@@ -46,7 +46,7 @@ class Verdict(StrEnum):
     """What somebody thinks of a revision; `withdrawn` takes back what they thought before."""
 
     APPROVED = "approved"
-    CHANGES_WANTED = "changes-wanted"
+    CHANGES_REQUESTED = "changes-requested"
     WITHDRAWN = "withdrawn"
 
 

@@ -198,7 +198,7 @@ async def revision_of(shop: Workshop, id: str) -> RevisionView:
 
 def _require_approval(revision: RevisionView) -> None:
     """Raises `Refused` where nobody else than who saved it has approved it, or somebody wants changes in it."""
-    if wanting := revision.changes_wanted_by:
+    if wanting := revision.changes_requested_by:
         people = ", ".join(wanting)
         raise Refused("not-approved", message("refused.not-approved.changes", name=revision.name, people=people))
     if not revision.approved_by:

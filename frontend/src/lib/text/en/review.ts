@@ -51,7 +51,7 @@ export const review = {
 		own: (name: string): string => `You have saved “${name}”: somebody else can approve it here.`,
 		verdict: {
 			approved: (name: string): string => `Approves “${name}”`,
-			'changes-wanted': (name: string): string => `Wants changes in “${name}”`,
+			'changes-requested': (name: string): string => `Asked for changes in “${name}”`,
 			withdrawn: (name: string): string => `Withdraws what they said of “${name}”`
 		}
 	},
@@ -238,7 +238,7 @@ export const review = {
 		},
 		approval: {
 			by: (people: string): string => `Approved by ${people}.`,
-			wanted: (people: string, n: number): string => `${people} ${n === 1 ? 'wants' : 'want'} changes.`,
+			wanted: (people: string): string => `${people} asked for changes.`,
 			later: 'It can be approved once it is saved.',
 			own: 'You have saved it: somebody else has to approve it on this page.',
 			demonstration: 'In a demonstration there is no second person who could.',

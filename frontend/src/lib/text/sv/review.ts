@@ -51,7 +51,7 @@ export const review: Text['review'] = {
 		own: (name) => `Du har sparat ”${name}”: någon annan kan godkänna den här.`,
 		verdict: {
 			approved: (name) => `Godkänner ”${name}”`,
-			'changes-wanted': (name) => `Vill ha ändringar i ”${name}”`,
+			'changes-requested': (name) => `Vill ha ändringar i ”${name}”`,
 			withdrawn: (name) => `Tar tillbaka det som sagts om ”${name}”`
 		}
 	},

@@ -39,7 +39,7 @@ class ReviewBody(Body):
 
     @model_validator(mode="after")
     def _says_which(self) -> Self:
-        if self.verdict is Verdict.CHANGES_WANTED and not self.text.strip():
+        if self.verdict is Verdict.CHANGES_REQUESTED and not self.text.strip():
             raise ValueError("say which changes you want")
         return self
 
