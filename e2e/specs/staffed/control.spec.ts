@@ -40,7 +40,7 @@ test('one person has control: it is taken, taken over and given up in the sight 
 
 	await test.step('it is taken over by name and with a reason', async () => {
 		await button(adam, 'Take control').click();
-		const dialog = adam.getByRole('dialog', { name: 'Take control over from Eva?' });
+		const dialog = adam.getByRole('dialog', { name: 'Take over control from Eva?' });
 		await dialog.getByLabel('Reason').fill('Change of shift');
 		await examine(adam, 'take-over');
 		await button(adam, 'Pause').click();

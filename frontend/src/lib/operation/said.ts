@@ -11,7 +11,7 @@ export function saidOf(operation: Operation, standing: OperationStanding, now: n
 	const what = sentence ? told(sentence, active ? goal : precondition) : '';
 	if (!active) return what === '' ? texts.soAlready : what;
 	if (standing === 'waits') return texts.startFirst;
-	const lasted = durationText(now - (active_since ?? now));
-	const parts = standing === 'stopped' ? [texts.stoppedFor(lasted), what] : [what, lasted];
+	// Since when it stands is said above the plan.
+	const parts = standing === 'stopped' ? [texts.stopped, what] : [what, durationText(now - (active_since ?? now))];
 	return parts.filter((part) => part !== '').join(' · ');
 }

@@ -116,7 +116,7 @@ export const alarms = {
 		tenMinutes: 'Last 10 min',
 		hour: 'Last hour',
 		course: (each: string): string => `Alarms in each ten minutes of the last hour: ${each}`,
-		floodBegins: 'A flood begins at 10 in 10 min.',
+		floodBegins: 'Flood: 10 or more in 10 min.',
 		atLeast: (n: number): string => `at least ${n}`,
 		flood: 'Too many for one person.',
 		frequent: 'Most frequent',

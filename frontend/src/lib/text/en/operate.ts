@@ -130,10 +130,10 @@ export const operate = {
 		plural: (word: string): string => (word.endsWith('s') ? word : `${word}s`),
 		/** Of one that does not begin as its goal holds already. */
 		startFirst: 'Begins once production is started',
-		soAlready: 'What it is for is so already',
+		soAlready: 'Not needed now',
 		doneOf: (done: number, all: number): string => `${done} of ${all} done`,
 		of: (done: number, all: number): string => `${done} of ${all}`,
-		stoppedFor: (duration: string): string => `stopped for ${duration}`,
+		stopped: 'stopped',
 		standing: { done: 'done', active: 'active', stopped: 'stopped', waits: 'waits' },
 		completed: (n: number): string => `${n}× completed`,
 		none: 'No operations',

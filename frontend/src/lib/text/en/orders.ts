@@ -13,7 +13,7 @@ export const orders = {
 			means: 'The station makes only what is ordered.',
 			title: 'Let the station work by order?',
 			word: 'Work by order',
-			follows: 'From now on the station makes only what is ordered. What it has begun without an order is not finished.'
+			follows: 'From now on the station makes only what is ordered. What is in work without an order is left unfinished.'
 		},
 		freely: {
 			name: 'Freely',
@@ -33,8 +33,8 @@ export const orders = {
 	empty: {
 		stored: 'Orders stand here until somebody allows them to start.',
 		waiting: 'Orders that may start stand here, in the order in which they are to begin.',
-		worked: 'The order that the station works on stands here.',
-		made: 'What was made today stands here, the newest first.'
+		worked: 'No order in work.',
+		made: 'Nothing made by order today.'
 	},
 	before: (n: number): string => count(n, 'order before today', 'orders before today'),
 	moreThanShown: 'There are more orders than are shown here.',
@@ -118,9 +118,9 @@ export const orders = {
 	workMaster: 'What is made',
 	noWorkMaster: 'The model of this station has no work master, so nothing can be ordered. An engineer adds one on the page Model.',
 	description: 'Description',
-	first: 'The highest is made first; 0 is as usual.',
+	first: 'The highest is made first. 0 is normal.',
 	earliest: 'Not before',
-	startAtOnce: 'Release it: it is made as soon as it is its turn',
+	startAtOnce: 'Release it now: it is made when it is its turn',
 	store: 'Add order',
 	isStored: (title: string): string => `The order ${title} is on the board.`,
 	done: (command: string, title: string): string => `${command}: ${title}. Done.`,

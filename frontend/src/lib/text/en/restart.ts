@@ -54,7 +54,7 @@ export const restart = {
 		done: 'done',
 		still: 'All devices stand still.',
 		unheard: (names: string, n: number): string => `Nobody knows whether ${names} ${n === 1 ? 'moves' : 'move'}.`,
-		moving: (names: string): string => `Still at work: ${names}.`,
+		moving: (names: string): string => `Not finished: ${names}.`,
 		questions: (n: number): string => `${count(n, 'question', 'questions')} to answer.`,
 		outputs: (n: number): string => `${count(n, 'output', 'outputs')} to decide on.`,
 		confirm: 'Look whether it is still as before.',
@@ -92,8 +92,8 @@ export const restart = {
 		over: (at: string): string => `over since ${at}, not acknowledged`
 	},
 	moves: {
-		title: 'What still moves',
-		nothing: 'All devices stand still.',
+		title: 'What has not finished',
+		nothing: 'Nothing is running.',
 		since: (duration: string): string => `for ${duration}`,
 		person: 'a person does it'
 	},
@@ -173,8 +173,8 @@ export const restart = {
 		noneFound: 'No way back was found in the time there is; that there is none is not proven.',
 		noneToDo: 'Nothing that devices or people could do from here is known to lead back.',
 		ifChecked: 'Only if you have checked',
-		ifCheckedMeaning: 'Each says that work on the product is done. The station knows of nobody who did it: take one only if you have seen it.',
-		onlyIf: (claims: string): string => `Only if you have checked: ${claims}`,
+		ifCheckedMeaning: 'Each of these says that work on the product is already done. The station knows of nobody who did it. Take one only if you have seen that it is so.',
+		onlyIf: (claims: string): string => `Already so: ${claims}`,
 		records: (values: string): string => `Then the station notes that ${values}.`,
 		claims: (titles: string): string => `It would count as done, or nearer to it: ${titles}.`,
 		kinds: {
@@ -207,7 +207,7 @@ export const restart = {
 		outsideShort: 'Starts outside the safe states',
 		leftOutShort: (n: number): string => `Gives up ${count(n, 'operation', 'operations')}`,
 		first: 'You do first',
-		see: (so: string): string => `See to it that ${so}.`,
+		see: (so: string): string => `Make sure that ${so}.`,
 		now: (value: string): string => `(now: ${value})`,
 		online: (title: string): string => `Bring ${title} back.`,
 		waits: 'The station notices it by itself.',
@@ -231,7 +231,7 @@ export const restart = {
 			out: (title: string): string => `${title} is still out of service`,
 			other: (so: string, now: string): string => `it is not so yet that ${so} ${now}`
 		},
-		holdFirst: 'Hold the station before you reach in: it goes on by itself as soon as this is done. Held, there may be other ways.',
+		holdFirst: 'Hold the station first. If you do not, it moves by itself as soon as this is done. Held, it may have other ways back.',
 		hold: 'Hold the station',
 		goOn: 'Nothing has to be carried out.'
 	},
@@ -242,14 +242,14 @@ export const restart = {
 		inAll: (time: string): string => `${time} with what follows`,
 		endsSafe: (time: string): string => `ends after ${time}, in a safe state`,
 		movesFirst: 'moves first',
-		nothing: 'Nothing is started: the devices do it by themselves.',
+		nothing: 'Nothing is sent. The devices do it by themselves.',
 		until: 'until',
 		safe: 'the station is back in its safe states',
 		and: 'and',
 		then: (goals: string): string => `Then, in automatic mode: ${goals}`,
 		thenPlain: 'Then, in automatic mode',
 		stepByStep: 'Step by step',
-		unknown: 'What the station does afterwards was not looked for, or not found.',
+		unknown: 'What the station does after that is not known.',
 		none: 'Nothing has to be started for it.',
 		length: (starts: number): string => count(starts, 'start', 'starts'),
 		minimal: 'the fewest possible',
@@ -263,7 +263,7 @@ export const restart = {
 		onlyCorrects: 'No start. Only what the station believes is changed.',
 		until: 'It ends when',
 		haveRead: (n: number): string => (n === 1 ? 'This start may be carried out.' : `All ${n} starts may be carried out.`),
-		mayWait: 'It may be waited for.',
+		mayWait: 'I will wait for it.',
 		haveSeen: (so: string): string => `I have looked: ${so}.`,
 		confirm: 'Confirm what is above.',
 		moved: 'The station has changed. Check the ways again.',
@@ -277,7 +277,7 @@ export const restart = {
 
 	byHand: {
 		title: 'None of these fits',
-		about: 'A plan to what you ask for is shown first, and taken like the others.',
+		about: 'You see the plan to what you ask for before anything starts.',
 		reset: 'Reset an operation',
 		resetMeaning: 'The station is brought to where the operation begins, and it begins again.',
 		operation: 'Operation',
@@ -285,13 +285,13 @@ export const restart = {
 		plan: 'Find a plan',
 		whyNot: 'Why not?',
 		goal: 'A goal by hand',
-		goalMeaning: 'What shall hold, in the language of the model.',
+		goalMeaning: 'What must be so, as an expression of the model.',
 		predicate: 'Predicate',
 		engineer: 'An engineer can bring the station to a goal by hand.',
 		finding: 'Looking',
 		offered: 'Found.',
 		correct: 'Correct the state by hand',
-		correctMeaning: 'If something is not as the station believes, and no way back says it.',
+		correctMeaning: 'If something is not as the station believes, and none of the ways says so.',
 		enterMeaning: 'Operations wait, and you decide what starts.'
 	},
 	why: {
@@ -327,8 +327,10 @@ export const restart = {
 			go: 'Operations go on.'
 		},
 		title: 'Go on',
-		alone: (n: number): string => (n === 1 ? 'Or only this' : 'Or only one of these'),
-		works: 'Production is started, in automatic mode.',
+		alone: (n: number): string => (n === 1 ? 'Or only a part of it' : 'Or only one part of it'),
+		/** Where the station goes on by itself: what can be done in place of that. */
+		instead: 'Instead',
+		works: 'Nothing to press here: production is started and goes on by itself.',
 		preparing: 'The station is still getting ready.',
 		decideFirst: 'Decide on the outputs first.',
 		errandFirst: 'Something is being carried out.'

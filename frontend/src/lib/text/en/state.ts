@@ -128,7 +128,7 @@ export const state = {
 		set: 'Set breakpoint'
 	},
 	change: {
-		title: 'What could make it otherwise?',
+		title: 'What would change it?',
 		value: 'So that it is',
 		ask: 'Find out',
 		asking: 'Asking',

@@ -62,7 +62,7 @@ export const account: Text['account'] = {
 		overTitle: (name) => `Ta över kontrollen från ${name}?`,
 		has: (since, long) => `har haft kontrollen sedan ${since}, i ${long}.`,
 		own: 'Det är du, i en annan webbläsare.',
-		theySee: 'Det syns genast där att du tog den.',
+		theySee: 'De får veta det genast.',
 		written: 'Det skrivs i journalen.',
 		nothingMoves: 'Inget rör sig av det: det som pågår fortsätter.',
 		moved: (name) => `Under tiden har ${name} fått kontrollen. Stäng och se efter igen.`,

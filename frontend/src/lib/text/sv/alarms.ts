@@ -113,7 +113,7 @@ export const alarms: Text['alarms'] = {
 		tenMinutes: 'Senaste 10 min',
 		hour: 'Senaste timmen',
 		course: (each) => `Larm i var tionde minut den senaste timmen: ${each}`,
-		floodBegins: 'En larmskur börjar vid 10 på 10 min.',
+		floodBegins: 'Larmskur: 10 eller fler på 10 min.',
 		atLeast: (n) => `minst ${n}`,
 		flood: 'För många för en person.',
 		frequent: 'Vanligast',

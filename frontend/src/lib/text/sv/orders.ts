@@ -13,7 +13,7 @@ export const orders: Text['orders'] = {
 			means: 'Stationen gör bara det som är beställt.',
 			title: 'Låta stationen arbeta på order?',
 			word: 'Arbeta på order',
-			follows: 'Från och med nu gör stationen bara det som är beställt. Det den har påbörjat utan order görs inte klart.'
+			follows: 'Från och med nu gör stationen bara det som är beställt. Det som är i arbete utan order lämnas ofärdigt.'
 		},
 		freely: {
 			name: 'Fritt',
@@ -33,8 +33,8 @@ export const orders: Text['orders'] = {
 	empty: {
 		stored: 'Här står order tills någon låter dem börja.',
 		waiting: 'Här står order som får börja, i den ordning de ska börja.',
-		worked: 'Här står den order som stationen arbetar med.',
-		made: 'Här står det som har tillverkats i dag, det senaste först.'
+		worked: 'Ingen order i arbete.',
+		made: 'Inget tillverkat på order i dag.'
 	},
 	before: (n) => count(n, 'order före i dag', 'order före i dag'),
 	moreThanShown: 'Det finns fler order än som visas här.',
@@ -117,9 +117,9 @@ export const orders: Text['orders'] = {
 	workMaster: 'Vad som tillverkas',
 	noWorkMaster: 'Stationens modell har ingen arbetsmall, så inget kan beställas. En ingenjör lägger till en på sidan Modell.',
 	description: 'Beskrivning',
-	first: 'Den högsta tillverkas först; 0 är som vanligt.',
+	first: 'Den högsta tillverkas först. 0 är det normala.',
 	earliest: 'Inte före',
-	startAtOnce: 'Släpp den: den tillverkas så snart det är dess tur',
+	startAtOnce: 'Släpp den nu: den tillverkas när det är dess tur',
 	store: 'Lägg till order',
 	isStored: (title) => `Ordern ${title} är på tavlan.`,
 	done: (command, title) => `${command}: ${title}. Klart.`,

@@ -52,7 +52,7 @@ export const restart: Text['restart'] = {
 		done: 'klart',
 		still: 'Alla enheter står stilla.',
 		unheard: (names) => `Ingen vet om ${names} rör sig.`,
-		moving: (names) => `Arbetar ännu: ${names}.`,
+		moving: (names) => `Inte klara: ${names}.`,
 		questions: (n) => `${count(n, 'fråga', 'frågor')} att svara på.`,
 		outputs: (n) => `${count(n, 'utsignal', 'utsignaler')} att besluta om.`,
 		confirm: 'Titta om det fortfarande är som förut.',
@@ -90,8 +90,8 @@ export const restart: Text['restart'] = {
 		over: (at) => `över sedan ${at}, inte kvitterat`
 	},
 	moves: {
-		title: 'Vad som ännu rör sig',
-		nothing: 'Alla enheter står stilla.',
+		title: 'Vad som inte är klart',
+		nothing: 'Inget pågår.',
 		since: (duration) => `i ${duration}`,
 		person: 'görs av en människa'
 	},
@@ -171,8 +171,8 @@ export const restart: Text['restart'] = {
 		noneFound: 'Ingen väg tillbaka hittades på den tid som finns; att ingen finns är inte bevisat.',
 		noneToDo: 'Inget som enheter eller människor kan göra härifrån är känt att leda tillbaka.',
 		ifChecked: 'Bara om du har kontrollerat',
-		ifCheckedMeaning: 'Var och en säger att arbete på produkten är gjort. Stationen känner inte till någon som har gjort det: välj en bara om du har sett det.',
-		onlyIf: (claims) => `Bara om du har kontrollerat: ${claims}`,
+		ifCheckedMeaning: 'Var och en av dessa säger att arbete på produkten redan är gjort. Stationen känner inte till någon som har gjort det. Välj en bara om du har sett att det är så.',
+		onlyIf: (claims) => `Redan så: ${claims}`,
 		records: (values) => `Sedan noterar stationen att ${values}.`,
 		claims: (titles) => `Det räknas då som gjort, eller närmare det: ${titles}.`,
 		kinds: {
@@ -228,7 +228,7 @@ export const restart: Text['restart'] = {
 			out: (title) => `${title} är fortfarande ur drift`,
 			other: (so, now) => `det är inte så än att ${so} ${now}`
 		},
-		holdFirst: 'Stanna stationen innan du sträcker dig in: den fortsätter av sig själv så snart detta är gjort. När den står kan vägarna vara andra.',
+		holdFirst: 'Stanna stationen först. Annars rör den sig av sig själv så snart detta är gjort. När den står kan vägarna vara andra.',
 		hold: 'Stanna stationen',
 		goOn: 'Inget behöver utföras.'
 	},
@@ -238,14 +238,14 @@ export const restart: Text['restart'] = {
 		inAll: (time) => `${time} med det som följer`,
 		endsSafe: (time) => `slutar efter ${time}, i ett säkert tillstånd`,
 		movesFirst: 'rör sig först',
-		nothing: 'Inget startas: enheterna gör det själva.',
+		nothing: 'Inget skickas. Enheterna gör det själva.',
 		until: 'tills',
 		safe: 'stationen är tillbaka i sina säkra tillstånd',
 		and: 'och',
 		then: (goals) => `Sedan, i automatik: ${goals}`,
 		thenPlain: 'Sedan, i automatik',
 		stepByStep: 'Steg för steg',
-		unknown: 'Vad stationen gör därefter söktes inte, eller hittades inte.',
+		unknown: 'Vad stationen gör därefter är inte känt.',
 		none: 'Inget behöver startas för det.',
 		length: (starts) => count(starts, 'start', 'starter'),
 		minimal: 'så få som möjligt',
@@ -259,7 +259,7 @@ export const restart: Text['restart'] = {
 		onlyCorrects: 'Ingen start. Bara det som stationen antar ändras.',
 		until: 'Det slutar när',
 		haveRead: (n) => (n === 1 ? 'Denna start får utföras.' : `Alla ${n} starter får utföras.`),
-		mayWait: 'Det får väntas på.',
+		mayWait: 'Jag väntar på det.',
 		haveSeen: (so) => `Jag har tittat: ${so}.`,
 		confirm: 'Bekräfta det som står ovan.',
 		moved: 'Stationen har ändrats. Sök vägarna igen.',
@@ -273,7 +273,7 @@ export const restart: Text['restart'] = {
 
 	byHand: {
 		title: 'Inget av detta passar',
-		about: 'En plan till det du ber om visas först, och tas som de andra.',
+		about: 'Du ser planen till det du ber om innan något startar.',
 		reset: 'Återställ en operation',
 		resetMeaning: 'Stationen förs till där operationen börjar, och den börjar om.',
 		operation: 'Operation',
@@ -281,13 +281,13 @@ export const restart: Text['restart'] = {
 		plan: 'Sök en plan',
 		whyNot: 'Varför inte?',
 		goal: 'Ett mål för hand',
-		goalMeaning: 'Vad som ska gälla, på modellens språk.',
+		goalMeaning: 'Vad som ska gälla, som ett uttryck i modellen.',
 		predicate: 'Predikat',
 		engineer: 'En ingenjör kan föra stationen till ett mål för hand.',
 		finding: 'Söker',
 		offered: 'Hittat.',
 		correct: 'Rätta tillståndet för hand',
-		correctMeaning: 'Om något inte är som stationen tror, och ingen väg tillbaka säger det.',
+		correctMeaning: 'Om något inte är som stationen tror, och ingen av vägarna säger det.',
 		enterMeaning: 'Operationerna väntar, och du bestämmer vad som startar.'
 	},
 	why: {
@@ -321,8 +321,9 @@ export const restart: Text['restart'] = {
 			go: 'Operationerna fortsätter.'
 		},
 		title: 'Fortsätt',
-		alone: (n) => (n === 1 ? 'Eller bara detta' : 'Eller bara en av dessa'),
-		works: 'Produktionen är startad, i automatik.',
+		alone: () => 'Eller bara en del av det',
+		instead: 'I stället',
+		works: 'Inget att trycka på här: produktionen är startad och fortsätter av sig själv.',
 		preparing: 'Stationen förbereds ännu.',
 		decideFirst: 'Besluta om utsignalerna först.',
 		errandFirst: 'Något utförs just nu.'

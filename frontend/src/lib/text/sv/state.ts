@@ -125,7 +125,7 @@ export const state: Text['state'] = {
 		set: 'Sätt brytpunkt'
 	},
 	change: {
-		title: 'Vad skulle kunna ändra den?',
+		title: 'Vad skulle ändra den?',
 		value: 'Så att den är',
 		ask: 'Ta reda på det',
 		asking: 'Frågar',
