@@ -209,3 +209,8 @@ export function isWithin(box: Box, around: Box): boolean {
 		box.y + box.height <= around.y + around.height
 	);
 }
+
+/** Whether a thing is drawn in a part of the picture: its card is in it, and so is what stands on its track. */
+export function isDrawn(box: Box, stands: Point | null, shown: Box): boolean {
+	return isWithin(box, shown) && (stands === null || isWithin({ ...stands, width: 0, height: 0 }, shown));
+}

@@ -6,7 +6,8 @@ import { inLanguage, say } from '#lib/text/text.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
 import { isPartAffected, standsAffected } from './affected.ts';
 import { keysOf, nameOf, nowOf, partValue, type Now, type Pictured } from './describe.ts';
-import { alarmsOf, holds, levelOf, valueOf, worst } from './live.ts';
+import { placeOf, type Point } from './geometry.ts';
+import { alarmsOf, holds, levelOf, valueOf, whereabouts, worst } from './live.ts';
 
 export interface Told {
 	readonly symbol: MimicSymbol;
@@ -17,6 +18,8 @@ export interface Told {
 	readonly alarm: Priority | null;
 	/** It lights up as this: by its alarm, or as it stands where an operation has stopped. */
 	readonly lit: Priority | null;
+	/** Where it stands on its track; null where it has none, or nobody knows. */
+	readonly stands: Point | null;
 	/** The variables of its parts that light up, and as what. */
 	readonly parts: ReadonlyMap<string, Priority>;
 }
@@ -35,10 +38,16 @@ export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: 
 			now,
 			sentence: [now.text, ...details(symbol, view, language)].filter((text) => text !== '').join('. '),
 			alarm,
+			stands: standsAt(symbol, view),
 			lit: alarm ?? (stands ? stopped.priority : null),
 			parts: new Map(parts.map(({ variable }) => [variable, stopped?.priority ?? 'low']))
 		};
 	});
+}
+
+function standsAt({ track }: MimicSymbol, { variables }: Pictured): Point | null {
+	const at = track && whereabouts(track, variables, null);
+	return at && placeOf(track, at);
 }
 
 function details(symbol: MimicSymbol, view: Pictured, language: string): string[] {

@@ -9,7 +9,9 @@ export interface Size {
 /** The `d` of an SVG path, for a domain of `places` values. The last of them is on top, the present on the right. */
 export function stepPath(stretches: readonly Stretch[], places: number, now: number, { width, height }: Size): string {
 	const xOf = (at: number): number => round(Math.min(1, Math.max(0, 1 - (now - at) / WINDOW)) * width);
-	const yOf = (place: number): number => round(places < 2 ? height / 2 : height * (1 - place / (places - 1)));
+	// What never changed has no height to be read.
+	const constant = stretches.every(({ low, high, last }) => low === high && last === stretches[0]?.last && (low === last || Number.isNaN(low)));
+	const yOf = (place: number): number => round(places < 2 || constant ? height / 2 : height * (1 - place / (places - 1)));
 	let path = '';
 	let pen = false;
 	const to = (x: number, place: number): void => {

@@ -54,6 +54,8 @@ export const figures = {
 	wall: {
 		picture: 'Product',
 		done: (n: number, all: number): string => `${n} of ${all} done`,
+		/** Beside the mode, where a run came to no end. */
+		stopped: 'does not go on',
 		onSchedule: 'On schedule. Mark: due by now.',
 		behind: (n: number): string => `${n} behind. Mark: due by now.`,
 		noneDue: 'No order is due today',

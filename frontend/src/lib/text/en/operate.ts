@@ -10,6 +10,8 @@ export const operate = {
 	},
 	title: 'Operate',
 	plan: {
+		/** After a run that came to no end. */
+		wayBack: 'depends on the way back',
 		title: 'Plan',
 		asTable: 'as table',
 		aboutPlan: 'About the plan',

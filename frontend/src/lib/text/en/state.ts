@@ -240,7 +240,7 @@ export const state = {
 		plan: 'The plan then, in automatic mode',
 		steps: (n: number): string => `Step by step: ${count(n, 'start', 'starts')}`,
 		noStarts: 'Nothing has to be started.',
-		leftOut: (title: string): string => `“${title}” is given up.`,
+		leftOut: (title: string): string => `“${title}” is left out of the plan.`,
 		itself: 'Nothing starts by a correction.',
 		word: 'Correct',
 		to: (value: string): string => `Correct to ${value}`,

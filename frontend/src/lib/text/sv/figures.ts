@@ -52,6 +52,7 @@ export const figures: Text['figures'] = {
 	wall: {
 		picture: 'Produkt',
 		done: (n, all) => `${n} av ${all} klara`,
+		stopped: 'kommer inte vidare',
 		onSchedule: 'Enligt plan. Strecket: ska vara klart nu.',
 		behind: (n) => `${n} efter. Strecket: ska vara klart nu.`,
 		noneDue: 'Ingen order ska bli klar i dag',

@@ -11,6 +11,7 @@ export const operate: Text['operate'] = {
 	},
 	title: 'Drift',
 	plan: {
+		wayBack: 'beror på vägen tillbaka',
 		title: 'Plan',
 		asTable: 'som tabell',
 		aboutPlan: 'Om planen',

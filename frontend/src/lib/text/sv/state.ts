@@ -237,7 +237,7 @@ export const state: Text['state'] = {
 		plan: 'Planen sedan, i automatiskt läge',
 		steps: (n) => `Steg för steg: ${antal(n, 'start', 'starter')}`,
 		noStarts: 'Inget behöver startas.',
-		leftOut: (title) => `”${title}” ges upp.`,
+		leftOut: (title) => `”${title}” är inte med i planen.`,
 		itself: 'En rättelse startar inget av sig själv.',
 		word: 'Rätta',
 		to: (value) => `Rätta till ${value}`,
