@@ -1,7 +1,7 @@
 /** What is said of a thing in the picture, in words. */
 import type { Mimic, MimicPart, MimicSymbol, MimicTrack, StationView } from '#lib/contract.ts';
 import type { Doing } from '#lib/resource/doing.ts';
-import { nextSteps } from '#lib/plan/status.ts';
+import { nextSteps, STUCK } from '#lib/plan/status.ts';
 import { runs } from '#lib/resource/running.ts';
 import { told } from '#lib/text/message.ts';
 import { inLanguage, say } from '#lib/text/text.svelte.ts';
@@ -10,7 +10,7 @@ import { listed } from '#lib/wording/listed.ts';
 import { inSentence } from '#lib/wording/names.svelte.ts';
 import { nameOf as nameOfVariable } from '#lib/wording/names.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';
-import { holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
+import { alarmsOf, holds, saidOf, sentTo, valueOf, whereabouts, type Variables } from './live.ts';
 
 /** What of the station a picture shows. */
 export type Pictured = Pick<StationView, 'abilities' | 'alarms' | 'operations' | 'resources' | 'tasks' | 'variables'>;
@@ -55,6 +55,8 @@ export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, languag
 	const resource = symbol.resource;
 	if (resource !== null && view.resources[resource]?.online === false) return { text: texts.notHeard, tone: 'doubt' };
 	const running = found.doing.get(resource ?? '')?.running ?? [];
+	// What it last measured would read as what is wrong with it.
+	if (alarmsOf(view.alarms, resource).some(([, { kind }]) => STUCK.has(kind))) return { text: texts.stuck, tone: 'rests' };
 	const active = running.length > 0 || (symbol.active.length > 0 && holds(symbol.active, variables) === true);
 	const tone = active ? 'active' : 'rests';
 	if (symbol.track !== null) return whereNow(symbol.track, view, active, waits && running.length === 0, language);

@@ -17,6 +17,8 @@ export function standingsOf(view: StationView): Map<string, OperationStanding> {
 		Object.entries(view.operations).map(([name, operation]) => {
 			// What is active before production is started is begun by nobody.
 			if (operation.active && view.production !== 'started') return [name, 'waits'];
+			// In other modes nothing more is started for it.
+			if (operation.active && view.mode !== 'automatic' && !isAtWork(operation)) return [name, 'waits'];
 			if (operation.active) {
 				const isStopped = stepsOf(view.plan, operation).some((step) => stopped.includes(step)) || (stands && isAtWork(operation));
 				return [name, isStopped ? 'stopped' : 'active'];

@@ -25,7 +25,7 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 }
 
 /** Kinds of alarms that tell that a device does not do what it should. */
-const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
+export const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
 /** Kinds of alarms that tell that nothing is heard of one, or of several. */
 export const UNHEARD: ReadonlySet<string> = new Set(['silent', 'many-silent', 'never-heard']);
 

@@ -12,7 +12,7 @@ import { correctedText } from './happened.ts';
 import { actsTo } from './mode-acts.ts';
 import { STEPS, type Next, type Step } from './next.ts';
 import { goesOn } from './offer.ts';
-import { lastingAlarms } from './shown.ts';
+import { isUnsure, lastingAlarms } from './shown.ts';
 import { resourceTitle } from './titles.ts';
 
 /** Those that lie behind, or in which nothing is to be done; what happened is understood as soon as something else comes next. */
@@ -26,8 +26,9 @@ export function doneSteps(view: StationView, step: Step | null): Record<Step, bo
 	};
 }
 
-/** Nothing is asked of a person about what is so. */
+/** Nothing is asked of a person about what is so, and it is known whether the station is safe. */
 function isTrue(view: StationView): boolean {
+	if (view.way_back && isUnsure(view.way_back)) return false;
 	return openQuestions(view).length === 0 && !view.unconfirmed && Object.keys(view.undecided).length === 0;
 }
 

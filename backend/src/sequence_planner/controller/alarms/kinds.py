@@ -36,6 +36,7 @@ class AlarmKind:
         of: frozenset[str] = frozenset(),
         about: frozenset[str] = frozenset(),
         waits: bool = False,
+        stage: str = "",
     ) -> Cause:
         """A cause of such an alarm. `parts` are told one by one; a single one that the text tells is not."""
         text, past = self._said("text", arguments), self._said("past", arguments)
@@ -56,6 +57,7 @@ class AlarmKind:
             of=of,
             about=about,
             waits=waits,
+            stage=stage,
         )
 
     def _said(self, what: str, arguments: Mapping[str, Argument]) -> Message:
@@ -70,7 +72,8 @@ class Cause:
     `parts` are what it consists of, where that is several. It is no alarm of its own but a part of another as long as
     one of those is there that it `follows` from. `past` is its `text` once it is over, `past_parts` are its parts then,
     `resources` and `topics` where to look, `of` the resources whose devices fail with it, and `about` the variables of
-    which it is doubted what is believed. A device that `waits` has nothing to do itself.
+    which it is doubted what is believed. A device that `waits` has nothing to do itself. Where the text becomes another
+    as it lasts, `stage` says which it is, and `since` is counted from there.
     """
 
     key: str
@@ -89,6 +92,7 @@ class Cause:
     of: frozenset[str] = field(default=frozenset(), kw_only=True)
     about: frozenset[str] = field(default=frozenset(), kw_only=True)
     waits: bool = field(default=False, kw_only=True)
+    stage: str = field(default="", kw_only=True)
 
 
 KINDS: Final[dict[str, AlarmKind]] = {}

@@ -21,6 +21,8 @@ export const mimic = {
 	unknownPlace: 'Nobody knows where it is',
 	/** Of what stands where an operation has stopped. */
 	standsWaiting: 'waits',
+	/** Of a device with an alarm that it does not do what it should. */
+	stuck: 'Does not go on',
 	between: 'Between two places',
 	notHeard: 'Not heard',
 	rests: 'Nothing runs',

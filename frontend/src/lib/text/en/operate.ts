@@ -132,6 +132,7 @@ export const operate = {
 		plural: (word: string): string => (word.endsWith('s') ? word : `${word}s`),
 		/** Of one that does not begin as its goal holds already. */
 		startFirst: 'Begins once production is started',
+		modeFirst: 'Waits for automatic mode',
 		soAlready: 'Not needed now',
 		doneOf: (done: number, all: number): string => `${done} of ${all} done`,
 		of: (done: number, all: number): string => `${done} of ${all}`,

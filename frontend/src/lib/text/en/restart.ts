@@ -202,6 +202,8 @@ export const restart = {
 		you: (n: number): string => `You, ${count(n, 'step', 'steps')}`,
 		corrections: (n: number, what: string): string => `${count(n, 'correction', 'corrections')}: ${what}`,
 		proven: 'Proven',
+		/** Of a plan that counts on what is not heard. */
+		provenIf: 'Proven if nothing has changed',
 		provenMeaning: 'Taken step by step from the state as it is, to a plan for what is to be done.',
 		unproven: 'Not proven',
 		outsideShort: 'Starts outside the safe states',

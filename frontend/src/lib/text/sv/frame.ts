@@ -13,7 +13,7 @@ export const frame: Text['frame'] = {
 	mode: {
 		automatic: 'Automatik',
 		paused: 'Pausad',
-		hold: 'Stannad',
+		hold: 'Stoppad',
 		restart: 'Omstart'
 	},
 	meaning: {
@@ -53,7 +53,7 @@ export const frame: Text['frame'] = {
 	atBreakpoint: 'brytpunkt',
 	pausesBy: (who, why) => `Stationen pausar när produkten är klar, som ${who} bad om${why === '' ? '.' : `: ${why}`}`,
 	pause: 'Pausa',
-	hold: 'Stanna',
+	hold: 'Stoppa',
 	holdMeans: 'Pausa, och avbryt det som pågår',
 	notRecorded: 'Stoppad. Journalen har det inte än; stationen behåller det så länge.',
 	goOn: 'Fortsätt',
@@ -65,7 +65,7 @@ export const frame: Text['frame'] = {
 	noAlarms: 'Inga larm',
 	alarmsWhenHeard: (n) => (n === 0 ? 'Inga larm när den senast hördes' : `${n} larm när den senast hördes`),
 	moreAlarms: (n) => `+${n}`,
-	alarmsOver: (n) => `${n} över, inte kvitterade`,
+	alarmsOver: (n) => `${n} upphörda, okvitterade`,
 	notAcknowledged: (n) => `${n} okvitterade`,
 	notLive: 'Inte direkt',
 	notLiveFor: (age) => `Inte direkt · ${age} gammalt`,
@@ -107,7 +107,7 @@ export const frame: Text['frame'] = {
 			{ title: 'Stationen', text: 'Bilden är stationen som den är nu: vad varje enhet gör och hur långt produkten har kommit. Tryck på något i den för att se dess värden och varför det väntar.' },
 			{ title: 'Planen', text: 'Vad som pågår, vad som kommer sedan och vad som väntar på vad. När stationen ändras görs planen om.' },
 			{ title: 'Din uppgift', text: 'Här står vad stationen ber dig om. Gör det och tryck sedan på Klart. Går det inte, tryck på Problem: någon kommer, och inget stannar.' },
-			{ title: 'Pausa och Stanna', text: 'Pausa: pågående steg görs klara, inget nytt startar. Stanna: det som kan stoppas stannar genast. Båda finns på varje sida och frågar inget. Ingen av dem är ett nödstopp.' },
+			{ title: 'Pausa och Stoppa', text: 'Pausa: pågående steg görs klara, inget nytt startar. Stoppa: det som kan stoppas stannar genast. Båda finns på varje sida och frågar inget. Ingen av dem är ett nödstopp.' },
 			{ title: 'När det stannar', text: 'Ett larm säger vad som är fel och vad du kan göra. Sidan Omstart leder sedan tillbaka till produktion, ett steg i taget.' }
 		]
 	},
@@ -116,7 +116,7 @@ export const frame: Text['frame'] = {
 	search: 'Sök eller gör',
 	arrived: {
 		paused: 'Paus har nått stationen. Det som visas är fortfarande gammalt.',
-		hold: 'Stanna har nått stationen. Det som visas är fortfarande gammalt.'
+		hold: 'Stoppa har nått stationen. Det som visas är fortfarande gammalt.'
 	},
 	palette: {
 		title: 'Sök eller agera',

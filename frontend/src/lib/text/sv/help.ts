@@ -25,7 +25,7 @@ export const help: Helped = {
 				'Planen visar vad som pågår, vad som kommer sedan och vad som väntar på vad.',
 				'Din uppgift: gör den och tryck sedan på Klart. Går det inte, tryck på Problem: någon kommer.',
 				'Operationer: vad som är klart, vad som pågår och vad de andra väntar på. Varför? säger mer.',
-				'Pausa: pågående steg görs klara, inget nytt startar. Stanna: det som kan stoppas stannar. Ingen av dem är ett nödstopp.'
+				'Pausa: pågående steg görs klara, inget nytt startar. Stoppa: det som kan stoppas stannar. Ingen av dem är ett nödstopp.'
 			]
 		},
 		restart: {

@@ -130,7 +130,7 @@ export const history: Text['history'] = {
 			'stands by itself': 'Larm står för sig självt',
 			'became part of another': 'Larm blev del av ett annat',
 			ended: 'Larm upphörde',
-			returned: 'Larm över, inte kvitterat',
+			returned: 'Larm upphört, okvitterat',
 			acknowledged: 'Larm kvitterat',
 			shelved: 'Larm undanlagt',
 			unshelved: 'Undanlagt larm taget fram',

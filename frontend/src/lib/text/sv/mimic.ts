@@ -19,6 +19,7 @@ export const mimic = {
 	andMore: (named: string, more: number): string => `${named} och ${more} till`,
 	unknownPlace: 'Ingen vet var den är',
 	standsWaiting: 'väntar',
+	stuck: 'Kommer inte vidare',
 	between: 'Mellan två platser',
 	notHeard: 'Hörs inte',
 	rests: 'Inget körs',

@@ -127,6 +127,7 @@ export const operate: Text['operate'] = {
 		title: 'Operationer',
 		plural: (word) => word,
 		startFirst: 'Börjar när produktionen har startats',
+		modeFirst: 'Väntar på automatik',
 		soAlready: 'Behövs inte nu',
 		doneOf: (done, all) => `${done} av ${all} klara`,
 		of: (done, all) => `${done} av ${all}`,

@@ -54,7 +54,7 @@ export const orders: Text['orders'] = {
 	expectedEnd: 'Väntas vara klar',
 	operations: 'Operationer',
 	steps: { waiting: 'väntar', eligible: 'kan börja', active: 'pågår', completed: 'klar', skipped: 'behövs inte' },
-	pauseMeans: 'Av en pausad order påbörjas ingen operation; det som pågår får bli klart. Stationen stoppas med Pausa eller Stanna ovan.',
+	pauseMeans: 'Av en pausad order påbörjas ingen operation; det som pågår får bli klart. Stationen stoppas med Pausa eller Stoppa ovan.',
 	states: {
 		NotAllowedToStart: 'inte släppt',
 		AllowedToStart: 'väntar',

@@ -18,7 +18,7 @@ export const pages: Text['pages'] = {
 	watch: 'Operatörsvy',
 	account: 'Konto',
 	journal: 'Journal',
-	watches: 'Bärbara',
+	watches: 'Klockor',
 	people: 'Användare',
 	keys: 'API-nycklar',
 	webhooks: 'Webhooks',

@@ -199,6 +199,7 @@ export const restart: Text['restart'] = {
 		hand: 'Inget för hand',
 		you: (n) => `Du, ${count(n, 'steg', 'steg')}`,
 		corrections: (n, what) => `${count(n, 'rättelse', 'rättelser')}: ${what}`,
+		provenIf: 'Bevisad om inget har ändrats',
 		proven: 'Bevisad',
 		provenMeaning: 'Prövad steg för steg från tillståndet som det är, till en plan för det som ska göras.',
 		unproven: 'Inte bevisad',
@@ -228,8 +229,8 @@ export const restart: Text['restart'] = {
 			out: (title) => `${title} är fortfarande ur drift`,
 			other: (so, now) => `det är inte så än att ${so} ${now}`
 		},
-		holdFirst: 'Stanna stationen först. Annars rör den sig av sig själv så snart detta är gjort. När den står kan vägarna vara andra.',
-		hold: 'Stanna stationen',
+		holdFirst: 'Stoppa stationen först. Annars rör den sig av sig själv så snart detta är gjort. Då kan andra vägar finnas.',
+		hold: 'Stoppa stationen',
 		goOn: 'Inget behöver utföras.'
 	},
 	plan: {
