@@ -2,6 +2,11 @@
 export const figures = {
 	title: 'Figures of the day',
 	unknown: 'Not known yet',
+	/** What a figure waits for, where there is nothing to count yet. */
+	notCounted: 'Not counted',
+	howCounted: 'A work master in the model says when a product is done',
+	afterFirst: 'After the first product',
+	afterWork: (seconds: number): string => `After ${seconds} s of work`,
 	inWork: 'In work',
 	orderOf: (n: number, all: number): string => `In work · order ${n} of ${all}`,
 	more: (n: number): string => `+${n}`,

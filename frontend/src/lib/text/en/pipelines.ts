@@ -47,7 +47,7 @@ export const pipelines = {
 		find: 'Find a stage',
 		none: (wanted: string): string => `No stage has “${wanted}” in its name or in what it does.`,
 		where: (record: string, pipeline: string): string => `Drag one onto a wire, or press one: it is put at ${record} of ${pipeline}.`,
-		touch: (record: string, pipeline: string): string => `Tap a wire or a box of the picture, then a stage: it is put there, now at ${record} of ${pipeline}.`,
+		touch: (record: string, pipeline: string): string => `Tap a wire or a box of the picture, then a stage: it is put there, now at ${record} of ${pipeline}. With a mouse, drag one onto a wire.`,
 		nowhere: 'Drag one onto a wire.',
 		groups: { names: 'Names and types', values: 'Values', time: 'Time and records', other: 'Others' }
 	},

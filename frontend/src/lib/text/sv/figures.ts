@@ -3,6 +3,10 @@ import type { Text } from '../text.svelte.ts';
 export const figures: Text['figures'] = {
 	title: 'Dagens siffror',
 	unknown: 'Ännu inte känt',
+	notCounted: 'Räknas inte',
+	howCounted: 'En arbetsmall i modellen säger när en produkt är klar',
+	afterFirst: 'Efter den första produkten',
+	afterWork: (seconds) => `Efter ${seconds} s arbete`,
 	inWork: 'I arbete',
 	orderOf: (n, all) => `I arbete · order ${n} av ${all}`,
 	more: (n) => `+${n}`,

@@ -49,7 +49,7 @@ export const pipelines: Text['pipelines'] = {
 		find: 'Sök ett steg',
 		none: (wanted) => `Inget steg har ”${wanted}” i sitt namn eller i vad det gör.`,
 		where: (record, pipeline) => `Dra ett till en ledning, eller tryck på ett: det sätts vid ${record} i ${pipeline}.`,
-		touch: (record, pipeline) => `Tryck på en ledning eller en ruta i bilden, sedan på ett steg: det sätts där, nu vid ${record} i ${pipeline}.`,
+		touch: (record, pipeline) => `Tryck på en ledning eller en ruta i bilden, sedan på ett steg: det sätts där, nu vid ${record} i ${pipeline}. Med mus, dra ett till en ledning.`,
 		nowhere: 'Dra ett till en ledning.',
 		groups: { names: 'Namn och typer', values: 'Värden', time: 'Tid och poster', other: 'Övriga' }
 	},
