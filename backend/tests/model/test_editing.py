@@ -161,10 +161,8 @@ def test_what_is_added_stands_as_it_is_written_with_its_comments() -> None:
     written = "# why\n# and how\nlimit: # rarely\n  every: 2 # s\n  note: |\n    one\n\n    two\n"
     value = {"limit": {"every": 2, "note": "one\n\ntwo\n"}}
     new = insert(STAGES, (*PIPELINE, 0), value, before=1, written=written)
-    assert (
-        "      # why\n      # and how\n      - limit: # rarely\n          every: 2 # s\n          note: |\n            one\n\n            two\n"
-        in new
-    )
+    lines = ["# why", "# and how", "- limit: # rarely", "    every: 2 # s", "    note: |", "      one", "", "      two"]
+    assert "".join(f"      {line}".rstrip() + "\n" for line in lines) in new
     assert value_at(new, (*PIPELINE, 1)) == value
     assert (
         insert("m:\n  a: 1\n", ("m", "b"), {"c": 2}, written="# d\nc: 2 # e\n")

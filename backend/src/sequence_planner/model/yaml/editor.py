@@ -480,18 +480,18 @@ def move(text: str, path: EntryPath, *, before: str | int | None = None, after: 
     if position == here:
         return text
 
-    def put(content: Content) -> Content:
+    def reordered(content: Content) -> Content:
         return move_entry(content, parent, here, position)
 
     try:
-        return _verified(text, moved(text, path, position), put)
+        return _verified(text, moved(text, path, position), reordered)
     except EditError:
         layout, way = _found(text, path)
         layout.refuse_shared(way, layout.entry(way))  # which says what stands in the way
         spelled = _spelled_out(text, path)
         if spelled == text:
             raise
-        return _verified(spelled, moved(spelled, path, position), put)
+        return _verified(spelled, moved(spelled, path, position), reordered)
 
 
 def _spelled_out(text: str, path: EntryPath) -> str:
