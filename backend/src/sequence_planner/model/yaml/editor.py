@@ -534,8 +534,8 @@ def _replace_list(text: str, path: EntryPath, old: list[Content], new: list[Cont
     for index in range(above, shared - below):
         text = replace(text, (*path, index), new[index])
     for index in range(shared - below, len(new) - below):
-        beside = {"before": index} if index < len(old) + index - shared + below else {}
-        text = insert(text, (*path, index), new[index], **beside)
+        before = index if index < len(old) + index - shared + below else None
+        text = insert(text, (*path, index), new[index], before=before)
     for index in reversed(range(shared - below, len(old) - below)):
         text = remove(text, (*path, index))
     return text

@@ -3,8 +3,8 @@ export const figures = {
 	title: 'Figures of the day',
 	unknown: 'Not known yet',
 	/** What a figure waits for, where there is nothing to count yet. */
-	notCounted: 'Not counted',
-	howCounted: 'A work master in the model says when a product is done',
+	notMeasured: 'Not measured',
+	howCounted: 'Counted once a work master tells when one is done',
 	afterFirst: 'After the first product',
 	afterWork: (seconds: number): string => `After ${seconds} s of work`,
 	inWork: 'In work',

@@ -3,8 +3,8 @@ import type { Text } from '../text.svelte.ts';
 export const figures: Text['figures'] = {
 	title: 'Dagens siffror',
 	unknown: 'Ännu inte känt',
-	notCounted: 'Räknas inte',
-	howCounted: 'En arbetsmall i modellen säger när en produkt är klar',
+	notMeasured: 'Mäts inte',
+	howCounted: 'Räknas när en arbetsmall säger när en är klar',
 	afterFirst: 'Efter den första produkten',
 	afterWork: (seconds) => `Efter ${seconds} s arbete`,
 	inWork: 'I arbete',
