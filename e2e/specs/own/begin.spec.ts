@@ -304,7 +304,7 @@ test('two tabs write one station: each goes on from the other, none overwrites i
 	// Nothing is counted before there is something that counts.
 	await page.goto('/');
 	const figures = page.getByRole('region', { name: 'Figures of the day' });
-	await expect(figures.locator('[data-figure="made"]')).toHaveText('Counted once a work master tells when one is done');
+	await expect(figures.locator('[data-figure="made"]')).toHaveText('Counted with a work master');
 	await expect(figures.locator('[data-figure="cycle"]')).toHaveText('Not measured');
 	expect(complaints).toEqual([]);
 });

@@ -4,7 +4,8 @@ export const figures = {
 	unknown: 'Not known yet',
 	/** What a figure waits for, where there is nothing to count yet. */
 	notMeasured: 'Not measured',
-	howCounted: 'Counted once a work master tells when one is done',
+	counted: 'Counted with a work master',
+	howCounted: 'Products are counted once the model has a work master that tells when one is done',
 	afterFirst: 'After the first product',
 	afterWork: (seconds: number): string => `After ${seconds} s of work`,
 	inWork: 'In work',
