@@ -1,5 +1,6 @@
 import { assert, asyncProperty, constantFrom, integer, jsonValue, property, record, uniqueArray } from 'fast-check';
 import { describe, expect, it } from 'vitest';
+import * as yaml from 'yaml';
 import type { DraftPipeline, DraftStage, Edit, Json } from '#lib/contract.ts';
 import { insertion, relocation, removal, shift } from './making.ts';
 import { stagesIn, textOf, type Written } from './written.ts';
@@ -87,7 +88,7 @@ describe('a stage in the clipboard', () => {
 		await assert(
 			asyncProperty(stages, async ({ kind, value }) => {
 				const stage: Json = { [kind]: value };
-				expect((await stagesIn(await textOf(stage, '', [0])))?.map((each) => each.value)).toEqual([stage]);
+				expect((await stagesIn(textOf(yaml, stage, '', [0])))?.map((each) => each.value)).toEqual([stage]);
 			})
 		);
 		expect(await stagesIn('limit: {seconds: 1}')).toEqual([asWritten({ limit: { seconds: 1 } })]);

@@ -1,4 +1,5 @@
 import { expect, test } from 'vitest';
+import * as yaml from 'yaml';
 import { parse } from 'yaml';
 import type { Json } from '#lib/contract.ts';
 import { stagesIn, textOf } from './written.ts';
@@ -25,33 +26,33 @@ topics:
 `;
 const PATH = ['topics', '/robot/state', 'pipeline'];
 const stage = (at: number): Json => (parse(FILE) as { topics: Record<string, { pipeline: Json[] }> }).topics['/robot/state']?.pipeline[at] ?? null;
-const copied = (at: number): Promise<string> => textOf(stage(at), FILE, [...PATH, at]);
+const copied = (at: number): string => textOf(yaml, stage(at), FILE, [...PATH, at]);
 
-test('a stage is copied with the comments in it and directly above, and no anchor', async () => {
-	expect(await copied(0)).toBe(`# near enough,
+test('a stage is copied with the comments in it and directly above, and no anchor', () => {
+	expect(copied(0)).toBe(`# near enough,
 # as measured
 - discretise: # by hand
     field: joints
     tolerance: 0.1 # rad
     points: {home: [0, 1]}
 `);
-	expect(await copied(1)).toBe('# at most this often\n- limit: {every: 1.0} # s\n');
+	expect(copied(1)).toBe('# at most this often\n- limit: {every: 1.0} # s\n');
 });
 
-test('what an alias stands for is written where it stood', async () => {
-	const text = await copied(2);
+test('what an alias stands for is written where it stood', () => {
+	const text = copied(2);
 	expect(text).toContain('    # as near as that\n    seconds: 0.1\n');
 	expect(text).not.toContain('at most');
-	expect(await copied(3)).toBe('- map: {home: [0, 1]}\n');
+	expect(copied(3)).toBe('- map: {home: [0, 1]}\n');
 });
 
-test('what the file does not have so is copied as it is known', async () => {
-	expect(await textOf({ limit: { every: 2 } }, FILE, [...PATH, 1])).toBe('- limit:\n    every: 2\n');
-	expect(await textOf({ limit: { every: 2 } }, 'a: [', [...PATH, 1])).toBe('- limit:\n    every: 2\n');
+test('what the file does not have so is copied as it is known', () => {
+	expect(textOf(yaml, { limit: { every: 2 } }, FILE, [...PATH, 1])).toBe('- limit:\n    every: 2\n');
+	expect(textOf(yaml, { limit: { every: 2 } }, 'a: [', [...PATH, 1])).toBe('- limit:\n    every: 2\n');
 });
 
 test('pasted stages keep their comments, each its own, whatever names and aliases there were', async () => {
-	const all = await stagesIn((await Promise.all([0, 1, 3].map(copied))).join(''));
+	const all = await stagesIn([0, 1, 3].map(copied).join(''));
 	expect(all?.map(({ value }) => value)).toEqual([stage(0), stage(1), stage(3)]);
 	expect(all?.map(({ text }) => text)).toEqual([
 		'# near enough,\n# as measured\ndiscretise: # by hand\n  field: joints\n  tolerance: 0.1 # rad\n  points: {home: [0, 1]}\n',

@@ -4,7 +4,7 @@ import type { Json } from '#lib/contract.ts';
 import { asJson, isMapping, type Path } from '#lib/model/content.ts';
 import { PARTS } from '#lib/model/documents.ts';
 
-type Yaml = typeof import('yaml');
+export type Yaml = typeof import('yaml');
 
 /** A stage that is to be written: what it says, and how, where that is known. */
 export interface Written {
@@ -14,8 +14,7 @@ export interface Written {
 }
 
 /** A stage at `path` of a file as it would be written in a list of stages; what it says alone where the file has it otherwise. */
-export async function textOf(stage: Json, file: string, path: Path): Promise<string> {
-	const yaml = await import('yaml');
+export function textOf(yaml: Yaml, stage: Json, file: string, path: Path): string {
 	const document = yaml.parseDocument(file);
 	const text = entryOf(yaml, file, document, document.errors.length > 0 ? null : document.getIn(path.slice(0, -1), true), Number(path.at(-1)));
 	return text !== null && isSame(readBy(yaml, text), [stage]) ? text : yaml.stringify([stage]);
