@@ -123,7 +123,7 @@ test('a graph of 500 boxes is moved', async ({ browser }) => {
 	const text = [
 		'# The graph of 500 boxes in Chromium',
 		'',
-		`Made by \`make figures\` at commit ${commit} on ${cpus().length} cores, beside all processes of a station of 504 boxes whose messages pass ten times a second, and of which 252 variables are others with each; drawn to and fro by the pointer for ${SECONDS} seconds. The load of the machine was ${load.toFixed(1)} before. From further away than values can be read none is drawn. The processor time of the page does not depend on what else the machine does: less than 18 ms a frame leave 55 frames a second.`,
+		`Made by \`make figures\` at commit ${commit} on ${cpus().length} cores, beside all processes of a station of 504 boxes whose messages pass ten times a second, and of which 252 variables are others with each; drawn to and fro by the pointer for ${SECONDS} seconds. The load of the machine was ${load.toFixed(1)} before. From further away than values can be read none is drawn. Where the load is above the number of cores the frames are those that others left to it; then the processor time of the page’s own thread says more, of which 18 ms a frame would leave 55 frames a second.`,
 		'',
 		...rows,
 		''
