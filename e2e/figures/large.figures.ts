@@ -59,7 +59,7 @@ async function rounds(count: number, round: (number: number) => Promise<number>)
 
 /** The check of the draft has ended. */
 const checked = (page: Page): Promise<void> =>
-	expect(page.locator('[data-check="done"]')).toBeVisible({ timeout: 120_000 });
+	expect(page.getByTestId('check')).toHaveAttribute('data-verdict', /./, { timeout: 120_000 });
 
 async function typed(page: Page, text: string): Promise<void> {
 	await page.keyboard.press('Control+a');

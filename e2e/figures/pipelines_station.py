@@ -17,8 +17,9 @@ from sequence_planner.ros.qos import QualityOfService
 NODES = 500
 PERIOD = 0.1  # seconds
 TYPE = "pipeline_messages/msg/Reading"
-# Of each unit: a topic, three stages and two variables, and a flow of it and the unit before with a stage and a variable.
-BOXES = 9
+# Of each unit: a topic, three stages and five variables, and a flow of it and the unit before with a stage and a variable.
+# All of these variables are others with each message.
+BOXES = 12
 UNITS = -(-NODES // BOXES)
 
 RESOURCE = """\
@@ -30,7 +31,7 @@ topics:
     deadline: 5.0
     pipeline:
       - discretise: {{field: level, variable: load, ranges: {{none: [null, 1], light: [1, 20], heavy: [20, null]}}}}
-      - debounce: {{fields: [load], seconds: 0.1}}
+      - fold: [load]
       - expression: {{is_far: position > 0.5}}
 flows:
   both:
@@ -40,6 +41,9 @@ flows:
 measured:
   load: {{type: load}}
   is_far: {{type: bool}}
+  count: {{type: 0..99}}
+  rest: {{type: 0..99}}
+  half: {{type: 0..99}}
   clash: {{type: bool}}
 """
 
@@ -53,7 +57,8 @@ def write(folder: Path) -> None:
     """Write the model into an empty folder."""
     (folder / "resources").mkdir(parents=True)
     (folder / "messages" / "pipeline_messages" / "msg").mkdir(parents=True)
-    (folder / "messages" / "pipeline_messages" / "msg" / "Reading.msg").write_text("float64 level\nfloat64 position\n")
+    message = folder / "messages" / "pipeline_messages" / "msg" / "Reading.msg"
+    message.write_text("float64 level\nfloat64 position\nuint8 count\nuint8 rest\nuint8 half\n")
     station = f"name: pipelines\ntitle: Station of {UNITS * BOXES} boxes\nenumerations:\n  load: [none, light, heavy]\n"
     (folder / "station.yaml").write_text(station)
     (folder / "operations.yaml").write_text("{}\n")
@@ -76,7 +81,14 @@ async def speak(folder: Path) -> None:
     began, step = loop.time(), 0
     while True:
         for number, topic in enumerate(topics):
-            value = {"level": float((number + step) % 30), "position": (number + step) % 10 / 10}
+            count = (number + step) % 100
+            value = {
+                "level": float(10 * (step % 3)),
+                "position": float(step % 2),
+                "count": count,
+                "rest": 99 - count,
+                "half": (count + 50) % 100,
+            }
             transport.publish(topic, TYPE, registry.encode(TYPE, value))
         step += 1
         await asyncio.sleep(max(0.0, began + step * PERIOD - loop.time()))

@@ -8,7 +8,7 @@ import pytest
 
 from sequence_planner.model.paths import EditError, parse_path, shown_path
 from sequence_planner.model.yaml.content import Content
-from sequence_planner.model.yaml.editor import insert, move, remove, rename, replace
+from sequence_planner.model.yaml.editor import insert, move, remove, rename, replace, value_at
 from sequence_planner.model.yaml.reader import EntryPath, read_text
 from support.places import BOLT_TIGHTENING
 
@@ -138,3 +138,57 @@ def test_a_path_is_names_and_indices() -> None:
 def test_what_is_no_path(written: str) -> None:
     with pytest.raises(EditError, match=r"path"):
         parse_path(written)
+
+
+STAGES = """\
+topics:
+  /robot/state:
+    pipeline:
+      # near enough
+      - discretise: # by hand
+          field: joints
+          within: &near 0.1 # rad
+      - limit: {every: 1.0}
+
+      # as near as that
+      - debounce:
+          seconds: *near
+"""
+PIPELINE = ("topics", "/robot/state", "pipeline")
+
+
+def test_what_is_added_stands_as_it_is_written_with_its_comments() -> None:
+    written = "# why\n# and how\nlimit: # rarely\n  every: 2 # s\n  note: |\n    one\n\n    two\n"
+    value = {"limit": {"every": 2, "note": "one\n\ntwo\n"}}
+    new = insert(STAGES, (*PIPELINE, 0), value, before=1, written=written)
+    lines = ["# why", "# and how", "- limit: # rarely", "    every: 2 # s", "    note: |", "      one", "", "      two"]
+    assert "".join(f"      {line}".rstrip() + "\n" for line in lines) in new
+    assert value_at(new, (*PIPELINE, 1)) == value
+    assert (
+        insert("m:\n  a: 1\n", ("m", "b"), {"c": 2}, written="# d\nc: 2 # e\n")
+        == "m:\n  a: 1\n  # d\n  b:\n    c: 2 # e\n"
+    )
+    assert insert("m:\n  a: 1\n", ("m", "b"), [2], written="[2] # e") == "m:\n  a: 1\n  b: [2] # e\n"
+
+
+@pytest.mark.parametrize(
+    "written", ["limit: {every: 3}", "limit: {every: *near", "limit: *nobody", "", "# only this", "- limit: {every: 2}"]
+)
+def test_what_is_written_otherwise_than_it_says_is_added_without_it(written: str) -> None:
+    plain = insert(STAGES, (*PIPELINE, 0), {"limit": {"every": 2}}, before=1)
+    assert insert(STAGES, (*PIPELINE, 0), {"limit": {"every": 2}}, before=1, written=written) == plain
+
+
+def test_an_anchor_goes_along_with_what_is_moved_where_it_still_stands_before_its_aliases() -> None:
+    new = move(STAGES, (*PIPELINE, 0), after=1)
+    assert "      - limit: {every: 1.0}\n      # near enough\n      - discretise: # by hand\n" in new
+    assert "within: &near 0.1 # rad" in new
+    with pytest.raises(EditError, match="anchor"):
+        move(STAGES, (*PIPELINE, 0), after=2)
+
+
+def test_what_stands_behind_an_alias_is_written_out_where_it_moves_before_its_anchor() -> None:
+    new = move(STAGES, (*PIPELINE, 2), before=0)
+    assert "      # as near as that\n      - debounce:\n          seconds: 0.1\n" in new
+    assert "within: &near 0.1 # rad" in new
+    assert value_at(new, (*PIPELINE, 0)) == {"debounce": {"seconds": 0.1}}

@@ -244,6 +244,71 @@ test('what is wrong is said at its field once that was left, and leads there; no
 	expect(complaints.filter((each) => !each.includes('net::ERR_INTERNET_DISCONNECTED'))).toEqual([]);
 });
 
+test('two tabs write one station: each goes on from the other, none overwrites it, and what is called otherwise and made is said in words', async ({ browse, station, complaints }) => {
+	test.setTimeout(200_000);
+	const page = await browse(ERIK, '/begin');
+	await page.getByRole('button', { name: 'A bolt is tightened' }).click();
+	const title = page.getByLabel('Title of the station');
+	await title.fill('First tab');
+	const other = await page.context().newPage();
+	await other.goto(new URL('/begin', page.url()).href);
+	const otherTitle = other.getByLabel('Title of the station');
+	await expect(otherTitle).toHaveValue('First tab');
+	await otherTitle.fill('Second tab');
+	await expect(title).toHaveValue('Second tab');
+	await expect(page.getByRole('status').filter({ hasText: 'Another tab has gone on' })).toBeVisible();
+
+	// One of them has not heard of what the other one wrote: nothing is overwritten, and a reload loses neither.
+	const missed = async (called: string): Promise<void> =>
+		page.evaluate((title) => {
+			const key = Object.keys(localStorage).find((each) => each.startsWith('begin:')) ?? '';
+			const stored = JSON.parse(localStorage.getItem(key) ?? '{}') as { revision: number; sketch: { title: string } };
+			localStorage.setItem(key, JSON.stringify({ ...stored, revision: stored.revision + 1, tab: 'asleep', sketch: { ...stored.sketch, title } }));
+		}, called);
+	await missed('While it slept');
+	await title.fill('Written here');
+	const split = page.getByRole('alert').filter({ hasText: 'also written in another tab' });
+	await expect(split).toBeVisible();
+	await expect(otherTitle).toHaveValue('While it slept');
+	await page.reload();
+	await expect(title).toHaveValue('Written here');
+	await expect(split).toBeVisible();
+	await examine(page, 'begin-two-tabs');
+	await split.getByRole('button', { name: 'Go on with what is here' }).click();
+	await expect(split).toBeHidden();
+	await expect(otherTitle).toHaveValue('Written here');
+	await missed('While it slept again');
+	await title.fill('Given up');
+	await split.getByRole('button', { name: 'Go on with the other tab' }).click();
+	await expect(title).toHaveValue('While it slept again');
+	await page.reload();
+	await expect(title).toHaveValue('While it slept again');
+	await other.close();
+
+	// Two steps that are called so too: what their operations are called is said, and is what the documents have.
+	await toStep(page, 'product').click();
+	const names = part(page).locator('.between').getByRole('textbox', { name: 'Name' });
+	await names.first().fill('do_it');
+	await names.last().fill('do_it');
+	await expect(part(page).getByRole('status').filter({ hasText: 'the operation of this one is called do_it_by_operator.' })).toBeVisible();
+	await toStep(page, 'look').click();
+	await known(page);
+	await expect(part(page)).toContainText('Several steps are called do_it: in the documents the operation of this one is called do_it_by_nutrunner.');
+	await put(page).click();
+	await checked(page);
+	expect((await (await Drafting.of(station)).files()).get('operations.yaml')).toMatch(/^do_it_by_operator:[^]*^do_it_by_nutrunner:/m);
+
+	// Nobody has made a dozen changes: what was made is said.
+	await page.goto('/review');
+	await expect(page.getByText('draft, new: 4 resources, operations, what must never be')).toBeVisible();
+	// Nothing is counted before there is something that counts.
+	await page.goto('/');
+	const figures = page.getByRole('region', { name: 'Figures of the day' });
+	await expect(figures.locator('[data-figure="made"]')).toHaveText('Counted with a work master');
+	await expect(figures.locator('[data-figure="cycle"]')).toHaveText('Not measured');
+	expect(complaints).toEqual([]);
+});
+
 test.describe('with a node on the network', () => {
 	test.use({ beside: { program: EXECUTABLE, given: ['emulate', 'models/single_bolt'] } });
 

@@ -30,8 +30,8 @@ test.describe('of a station without shifts', () => {
 		const strip = eva.getByRole('region', { name: 'Figures of the day' });
 		await expect(strip.locator('dt')).toHaveText(['In work', 'Made today', 'Cycle time', 'Available today']);
 		await expect(strip.locator('[data-figure="in-work"]')).toHaveText('No product');
-		await expect(strip.locator('[data-figure="cycle"]')).toHaveText('Not known yet');
-		await expect(strip.locator('[data-figure="availability"]')).toHaveText('Not known yet');
+		await expect(strip.locator('[data-figure="cycle"]')).toHaveText('After the first product');
+		await expect(strip.locator('[data-figure="availability"]')).toHaveText('After 15 s of work');
 		await expect(strip.locator('[data-figure="made"]')).toHaveText('0');
 
 		await order(eva, '4711');

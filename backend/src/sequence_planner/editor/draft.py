@@ -84,12 +84,14 @@ class SetEntry(EditBase):
 
 class AddEntry(EditBase):
     """Add an entry beside a sibling, or else where documents have it: before what belongs behind it, or at the end.
-    Mappings on the way that are not there yet are made.
+    Mappings on the way that are not there yet are made. `text` is the YAML of its value with comments: in a block of
+    others it is written so, where it says the same.
     """
 
     kind: Literal["add"] = "add"
     path: Annotated[Steps, Field(min_length=1)]
     value: JsonValue
+    text: Text | None = None
     before: Step | None = None
     after: Step | None = None
 
@@ -189,7 +191,7 @@ def _added(text: str, edit: AddEntry, path: EntryPath) -> str:
         before = edit.before
         if before is None and edit.after is None:
             before = _next(edit.file, path, content)
-        return editor.insert(text, path, edit.value, before=before, after=edit.after)
+        return editor.insert(text, path, edit.value, before=before, after=edit.after, written=edit.text)
     value: JsonValue = edit.value
     for step in reversed(path[depth + 1 :]):
         value = [value] if isinstance(step, int) else {step: value}

@@ -37,6 +37,10 @@ export class Begin {
 	#answered = $state<string | null>(null);
 	#asked = 0;
 	readonly #kept: Kept;
+	/** Another tab has written something else than this one, which neither takes the place of: a person chooses. */
+	split = $state(false);
+	/** Another tab has gone on, and its answers are here now. */
+	follows = $state(false);
 	readonly #go: (step: Step) => Promise<void>;
 
 	readonly things: readonly Thing[] = $derived.by(() => thingsOf(this.sketch, say().begin.values));
@@ -62,7 +66,10 @@ export class Begin {
 		this.#kept = kept;
 		this.#go = go;
 		const before = kept.read();
-		if (before !== null) this.sketch = before;
+		const aside = kept.aside();
+		this.split = aside !== null && JSON.stringify(aside) !== JSON.stringify(before);
+		const begun = this.split ? aside : before;
+		if (begun !== null) this.sketch = begun;
 	}
 
 	/** Reads what one can begin with. */
@@ -74,9 +81,39 @@ export class Begin {
 
 	/** Keeps what is written, for when this page is opened again. */
 	keep(): void {
+		const now = this.#now;
+		if (!this.split && this.#kept.keep(now)) return;
+		this.split = true;
+		this.#kept.setAside(now);
+	}
+
+	/** What is to be kept; null for nothing. */
+	get #now(): Sketch | null {
 		const { sketch } = this;
-		const isBlank = sketch.title === '' && !this.isWritten && sketch.template === null;
-		this.#kept.keep(isBlank ? null : sketch);
+		return sketch.title === '' && !this.isWritten && sketch.template === null ? null : sketch;
+	}
+
+	/** Looks at what another tab has written: this one goes on from that, unless both wrote at the same moment. */
+	meet(): void {
+		const found = this.split ? null : this.#kept.elsewhere();
+		if (found === null) return;
+		if (found.newer) return this.#follow();
+		this.split = true;
+		this.#kept.setAside(this.#now);
+	}
+
+	#follow(): void {
+		this.sketch = this.#kept.read() ?? blank();
+		this.follows = true;
+	}
+
+	/** Which of both stays, where two tabs have written something else: what is here, or what the other one wrote. */
+	settle(which: 'here' | 'there'): void {
+		this.split = false;
+		if (which === 'there') {
+			this.#kept.setAside(null);
+			this.#follow();
+		} else this.#kept.force($state.snapshot(this.sketch) as Sketch);
 	}
 
 	/** Asks what becomes of `asked` when nothing is typed for a moment; the result takes that back. */
@@ -161,7 +198,8 @@ export class Begin {
 	/** Lets go of all that was written. */
 	startOver(): void {
 		this.#start(blank());
-		this.#kept.keep(null);
+		this.split = this.follows = false;
+		this.#kept.force(null);
 	}
 
 	#start(sketch: Sketch): void {

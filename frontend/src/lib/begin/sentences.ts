@@ -2,7 +2,7 @@
 import type { Text } from '#lib/text/text.svelte.ts';
 import type { DeviceSketch, NeverSketch, Sketch, StepSketch } from './sketch.ts';
 import type { Step } from './steps.ts';
-import { factText, thingsOf, titled, type Thing } from './things.ts';
+import { factText, operationOf, thingsOf, titled, type Thing } from './things.ts';
 
 export interface Sentence {
 	readonly step: Step;
@@ -59,6 +59,10 @@ export function sentences(sketch: Sketch, text: Text): Sentence[] {
 	const [first] = product.states;
 	if (first) found.push({ step: 'product', text: words.first(titled(product), titled(first)) });
 	found.push(...product.steps.map((step, at): Sentence => ({ step: 'product', text: stepText(step, at, sketch, text) })));
+	for (const step of product.steps) {
+		const operation = operationOf(step, sketch);
+		if (operation !== step.name) found.push({ step: 'product', text: text.begin.product.calledBy(step.name, operation) });
+	}
 	if (product.states.length > 1) found.push({ step: 'product', text: words.then[product.then](titled(product)) });
 	const things = thingsOf(sketch, text.begin.values);
 	found.push(...never.map((each): Sentence => ({ step: 'never', text: neverSentence(each, things, text) })));

@@ -1,6 +1,6 @@
 /** What a *Never* can be about: devices, the product and its steps, each with what it can be. */
 import type { Text } from '#lib/text/text.svelte.ts';
-import type { Called, FactSketch, Sketch } from './sketch.ts';
+import type { Called, FactSketch, Sketch, StepSketch } from './sketch.ts';
 
 export type ThingKind = 'robot' | 'tool' | 'clamp' | 'person' | 'product' | 'step';
 
@@ -42,4 +42,11 @@ export function factText(fact: FactSketch, things: readonly Thing[], words: Text
 	const say = meanwhile ? words.sentence.during : words.sentence.fact;
 	const said = thing.kind === 'robot' ? words.sentence.inPose(value) : value;
 	return say(thing.title, said, fact.holds);
+}
+
+/** What the operation of a step is called in the documents: as the step, and by its device too where another step is called so. */
+export function operationOf(step: Pick<StepSketch, 'name' | 'by'>, { devices, product }: Pick<Sketch, 'devices' | 'product'>): string {
+	const isTwice = product.steps.filter(({ name }) => name === step.name).length > 1;
+	const by = devices.find(({ id }) => id === step.by)?.name ?? '';
+	return isTwice && by !== '' && step.name !== '' ? `${step.name}_by_${by}` : step.name;
 }

@@ -72,7 +72,7 @@ export interface Worked {
 }
 
 /** Seconds: of fewer a share says nothing. */
-const LEAST = 15;
+export const LEAST = 15;
 
 /** The availability of the shift that is on, or else of the day; times are told as seen `now`. */
 export function worked(figures: Figures | null, now: number): Worked {

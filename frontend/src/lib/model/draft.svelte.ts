@@ -55,6 +55,8 @@ export class Draft {
 	readonly #read = new Map<string, number>();
 	#reading = false;
 	#asked = 0;
+	/** What this page did last. */
+	#done = -1;
 
 	constructor(example: string | null = null) {
 		this.example = example;
@@ -80,6 +82,11 @@ export class Draft {
 	/** The number of the last change; null before anything was heard. */
 	get number(): number | null {
 		return this.seen.view?.number ?? null;
+	}
+
+	/** The number of the last change that is known of, also where the stream has not told of it yet. */
+	get latest(): number {
+		return Math.max(this.number ?? -1, this.#done);
 	}
 
 	get marks(): Readonly<Record<string, FileMark>> {
@@ -219,6 +226,7 @@ export class Draft {
 	}
 
 	#take({ number, files }: FilesView): void {
+		this.#done = Math.max(this.#done, number);
 		const shown = { ...this.files };
 		const contents = { ...this.contents };
 		for (const [path, file] of Object.entries(files)) {

@@ -12,6 +12,28 @@ export interface Join {
 	readonly sources: boolean;
 }
 
+/** As what two boxes are connected already; null where they are not. */
+export interface Joined {
+	readonly pipeline: string;
+	/** The field that passes there; null for whole records. */
+	readonly field: string | null;
+}
+
+export function joinedBy(from: Box, to: Box, { pipelines }: Pick<DraftPipelines, 'pipelines'>): Joined | null {
+	const [source, target] = [pipelines[from.pipeline], pipelines[to.pipeline]];
+	if (to.kind === 'flow' && from.kind !== 'variable' && target?.sources.some(({ pipeline }) => pipeline === from.pipeline) === true)
+		return { pipeline: to.pipeline, field: null };
+	if (to.kind === 'variable' && from.kind !== 'variable' && source && source.role !== 'outgoing') {
+		const end = source.ends.find(({ becomes }) => becomes === to.name);
+		return end ? { pipeline: from.pipeline, field: end.field } : null;
+	}
+	if (from.kind === 'variable' && to.kind !== 'variable' && target?.role === 'outgoing') {
+		const read = target.first.find(({ variable, sent }) => sent && variable === from.name);
+		return read ? { pipeline: target.id, field: read.field } : null;
+	}
+	return null;
+}
+
 /** The join that is meant; null where it means nothing. Whether it fits is the server's to say. */
 export function joinOf(from: Box, to: Box, { pipelines }: Pick<DraftPipelines, 'pipelines'>): Join | null {
 	const ended = (id: string): number => (pipelines[id]?.edges.length ?? 1) - 1;

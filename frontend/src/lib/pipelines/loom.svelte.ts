@@ -9,6 +9,7 @@ import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { language, say } from '#lib/text/text.svelte.ts';
 import type { Looked, PartAt } from './address.ts';
+import { followed } from './following.ts';
 import type { Passing } from './passing.svelte.ts';
 
 const ADDRESS = '/api/v1/model/pipelines';
@@ -29,20 +30,20 @@ export class Loom {
 	readonly bench: Bench;
 	readonly passing: Passing;
 	readonly #looked: () => Looked;
-	readonly #look: (looked: Looked) => void;
+	readonly #look: (looked: Looked, replace: boolean) => void;
 	/** Leads to where a finding is written. */
 	readonly goTo: (finding: Finding) => Promise<void>;
 	view = $state.raw<DraftPipelines | null>(null);
 	refusal = $state.raw<Refusal | null>(null);
 	shown = $state.raw<Shown | null>(null);
-	#asking = false;
+	#reading: Promise<void> | null = null;
 	#wanted = -1;
 
 	constructor(
 		bench: Bench,
 		passing: Passing,
 		looked: () => Looked,
-		look: (looked: Looked) => void,
+		look: (looked: Looked, replace: boolean) => void,
 		goTo: (finding: Finding) => Promise<void>
 	) {
 		this.goTo = goTo;
@@ -68,7 +69,7 @@ export class Loom {
 	}
 
 	choose(pipeline: string | null, part: PartAt | null = null): void {
-		this.#look({ ...this.looked, pipeline, part });
+		this.#look({ ...this.looked, pipeline, part }, false);
 	}
 
 	/** The step of the run that is shown of a pipeline; null where what passes now is. */
@@ -118,24 +119,37 @@ export class Loom {
 		return found?.id ?? null;
 	}
 
-	/** Carries edits out that were offered; why not, or null. */
+	/** Carries edits out that were offered, and waits for what becomes of the pipelines; why not, or null. */
 	async change(title: string, edits: readonly object[]): Promise<Refusal | null> {
-		return this.bench.draft.change(title, edits as readonly Edit[]);
+		const { draft } = this.bench;
+		const refusal = await draft.change(title, edits as readonly Edit[]);
+		if (refusal === null) await this.follow(draft.latest);
+		return refusal;
 	}
 
-	/** Asks for the pipelines as they are after change `number`. */
-	async follow(number: number): Promise<void> {
+	/** Asks for the pipelines as they are after change `number`, unless these are known; resolves when they are. */
+	follow(number: number): Promise<void> {
 		this.#wanted = Math.max(this.#wanted, number);
-		if (this.#asking) return;
-		this.#asking = true;
-		let asked = -1;
+		this.#reading ??= this.#read().finally(() => (this.#reading = null));
+		return this.#reading;
+	}
+
+	async #read(): Promise<void> {
+		let asked = this.view?.number ?? -1;
 		while (asked < this.#wanted) {
 			asked = this.#wanted;
 			const answer = await request<DraftPipelines>('GET', askedOf(ADDRESS, this.bench.draft.example), { patience: PATIENCE });
 			this.refusal = answer.ok ? null : answer.refusal;
-			if (answer.ok) this.view = answer.value;
+			if (answer.ok) this.#take(answer.value);
 		}
-		this.#asking = false;
+	}
+
+	/** What is chosen stays so, wherever it stands then; where it is gone, what it was in is chosen. */
+	#take(view: DraftPipelines): void {
+		const { looked, view: before } = this;
+		this.view = view;
+		const now = before === null ? looked : followed(looked, before.pipelines, view.pipelines);
+		if (now !== looked) this.#look(now, true);
 	}
 }
 

@@ -1,8 +1,9 @@
 import { assert, asyncProperty, constantFrom, integer, jsonValue, property, record, uniqueArray } from 'fast-check';
 import { describe, expect, it } from 'vitest';
+import * as yaml from 'yaml';
 import type { DraftPipeline, DraftStage, Edit, Json } from '#lib/contract.ts';
 import { insertion, relocation, removal, shift } from './making.ts';
-import { stagesIn, textOf } from './written.ts';
+import { stagesIn, textOf, type Written } from './written.ts';
 
 const FILE = 'resources/robot.yaml';
 const PATH = ['topics', '/robot/state', 'pipeline'];
@@ -35,6 +36,8 @@ function edited(list: readonly Json[], edits: readonly Edit[]): Json[] {
 	return now;
 }
 
+const asWritten = (value: Json): Written => ({ value, text: null });
+
 const lists = uniqueArray(integer({ min: 0, max: 50 }), { minLength: 1, maxLength: 6 });
 
 describe('what is done to stages', () => {
@@ -65,10 +68,10 @@ describe('what is done to stages', () => {
 			property(uniqueArray(integer({ min: 0, max: 50 }), { maxLength: 5 }), lists, integer({ min: 0, max: 5 }), (list, values, to) => {
 				const edge = to % (list.length + 1);
 				const wanted = [...list.slice(0, edge), ...values, ...list.slice(edge)];
-				expect(edited(list, insertion(pipelineOf(list), edge, values))).toEqual(wanted);
+				expect(edited(list, insertion(pipelineOf(list), edge, values.map(asWritten)))).toEqual(wanted);
 			})
 		);
-		expect(insertion({ ...pipelineOf([1]), stages_path: null }, 0, [2])).toEqual([]);
+		expect(insertion({ ...pipelineOf([1]), stages_path: null }, 0, [asWritten(2)])).toEqual([]);
 	});
 
 	it('takes the stage out that was there', () => {
@@ -85,10 +88,10 @@ describe('a stage in the clipboard', () => {
 		await assert(
 			asyncProperty(stages, async ({ kind, value }) => {
 				const stage: Json = { [kind]: value };
-				expect(await stagesIn(await textOf(stage))).toEqual([stage]);
+				expect((await stagesIn(textOf(yaml, stage, '', [0])))?.map((each) => each.value)).toEqual([stage]);
 			})
 		);
-		expect(await stagesIn('limit: {seconds: 1}')).toEqual([{ limit: { seconds: 1 } }]);
+		expect(await stagesIn('limit: {seconds: 1}')).toEqual([asWritten({ limit: { seconds: 1 } })]);
 		expect(await stagesIn('- limit: {seconds: 1}\n- tick: {every: 2}\n')).toHaveLength(2);
 		for (const none of ['', 'hello', '- 1', '[]', 'nonsense: 1', '{limit: 1, tick: 2}', '- limit: [', 'a: &a [*a]'])
 			expect(await stagesIn(none)).toBeNull();

@@ -1,5 +1,6 @@
 /** What is moved, taken out and joined: each as the edits that do it. */
-import type { DraftExample, DraftPipeline, DraftStage, Edit, Json } from '#lib/contract.ts';
+import type { DraftExample, DraftPipeline, DraftStage, Edit } from '#lib/contract.ts';
+import type { Written } from './written.ts';
 
 /** Edits that take a stage out. */
 export function removal({ place, written }: Pick<DraftStage | DraftExample, 'place' | 'written'>): Edit[] {
@@ -26,13 +27,13 @@ export function relocation(pipeline: Stages, index: number, edge: number): Edit[
 export const shift = (pipeline: Stages, index: number, by: 1 | -1): Edit[] =>
 	pipeline.stages[index + by]?.place ? relocation(pipeline, index, by < 0 ? index - 1 : index + 2) : [];
 
-/** Edits that write stages at an edge, as they are. */
-export function insertion(pipeline: Pick<DraftPipeline, 'stages' | 'place' | 'stages_path'>, edge: number, values: readonly Json[]): Edit[] {
+/** Edits that write stages at an edge, as they are, with their comments. */
+export function insertion(pipeline: Pick<DraftPipeline, 'stages' | 'place' | 'stages_path'>, edge: number, stages: readonly Written[]): Edit[] {
 	const { place, stages_path: path } = pipeline;
 	if (path === null) return [];
 	const beside = besideOf(pipeline, edge);
-	const add = (value: Json, where: object): Edit => ({ kind: 'add', file: place.file, path: [...path, 0], value, ...where });
-	if (beside !== null && 'before' in beside) return values.map((value, at) => add(value, { before: Number(beside.before) + at }));
+	const add = ({ value, text }: Written, where: object): Edit => ({ kind: 'add', file: place.file, path: [...path, 0], value, ...(text !== null && { text }), ...where });
+	if (beside !== null && 'before' in beside) return stages.map((stage, at) => add(stage, { before: Number(beside.before) + at }));
 	// Each stands before what was put there already.
-	return values.toReversed().map((value, at) => add(value, beside ?? (at === 0 ? {} : { before: 0 })));
+	return stages.toReversed().map((stage, at) => add(stage, beside ?? (at === 0 ? {} : { before: 0 })));
 }

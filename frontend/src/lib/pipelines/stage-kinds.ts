@@ -20,6 +20,7 @@ import Limit from '@lucide/svelte/icons/gauge';
 import Tick from '@lucide/svelte/icons/timer';
 import Timeout from '@lucide/svelte/icons/alarm-clock-off';
 import { PARTS } from '#lib/model/documents.ts';
+import type { Text } from '#lib/text/text.svelte.ts';
 
 const GROUPS = {
 	names: { rename: Rename, map: MapIcon, table: Table, one_of: OneOf, match: Match, member: Member },
@@ -33,6 +34,11 @@ export type Icon = Component<{ size?: string; strokeWidth?: number; 'aria-hidden
 const ICONS: Readonly<Record<string, Icon>> = Object.assign({}, ...Object.values(GROUPS));
 
 export const iconOf = (kind: string): Icon => ICONS[kind] ?? Python;
+
+/** What a kind is called by people; its name in files where that is not known. */
+export const kindTitle = (kind: string, { pipelines: { kindTitles } }: Pick<Text, 'pipelines'>): string => (isTitled(kind, kindTitles) ? kindTitles[kind] : kind);
+
+const isTitled = <Titles extends object>(kind: string, titles: Titles): kind is keyof Titles & string => Object.hasOwn(titles, kind);
 
 /** What a kind does, in a sentence. */
 export const helpOf = (kind: string): string => PARTS['stage']?.fields[kind]?.help ?? '';

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString, SingleQuotedScalarString
 
 from sequence_planner.model.paths import EditError, missing, shown_path
@@ -24,7 +25,7 @@ from sequence_planner.model.yaml.content import (
     take_entry,
 )
 from sequence_planner.model.yaml.layout import Layout, YamlEntry
-from sequence_planner.model.yaml.reader import EntryPath, Node, read_text
+from sequence_planner.model.yaml.reader import EntryPath, Node, compose, read_text
 from sequence_planner.texts.message import message
 
 # How values are written in YAML documents: two spaces, indented lists, short lists in one line, long texts folded.
@@ -213,16 +214,35 @@ def renamed(text: str, path: EntryPath, name: str) -> str:
     return _splice(text, layout.skip_properties(key), layout.end_of(key), written)
 
 
-def inserted(text: str, parent: EntryPath, position: int, name: str | None, value: object) -> str:
-    """`text` with a new entry in the mapping or list at `parent`, before the one at `position` or at the end."""
+def inserted(
+    text: str, parent: EntryPath, position: int, name: str | None, value: object, written: str | None = None
+) -> str:
+    """`text` with a new entry in the mapping or list at `parent`, before the one at `position` or at the end.
+
+    In a block it is `written` so, where that is said.
+    """
     head = "-" if name is None else f"{scalar(name)}:"
     flat = in_brackets(value) if name is None else f"{scalar(name, '', True)}: {in_brackets(value)}"
 
     def block(column: int, like_neighbour: bool) -> list[str]:
+        if written is not None:
+            return _as_written(written, head, column)
         line = " " * column + f"{head} {in_brackets(value)}"
         return [line] if like_neighbour and value and len(line) <= WIDTH else lines(value, head, column)
 
     return _splice_in(text, parent, position, flat, block)
+
+
+def _as_written(written: str, head: str, column: int) -> list[str]:
+    """The lines of an entry at `column` whose value is `written` so; comments it begins with stand above it."""
+    body = written.strip("\n").split("\n")
+    start = next((at for at, line in enumerate(body) if line and not line.startswith("#")), 0)
+    margin, inner = " " * column, " " * (column + 2)
+    above = [f"{margin}{line}".rstrip() for line in body[:start]]
+    root = compose(written)
+    is_below = head != "-" and root is not None and root.kind != "scalar" and not root.style
+    first = [f"{margin}{head}", f"{inner}{body[start]}"] if is_below else [f"{margin}{head} {body[start]}"]
+    return [*above, *first, *(f"{inner}{line}" if line else "" for line in body[start + 1 :])]
 
 
 def moved(text: str, path: EntryPath, position: int) -> str:
@@ -232,7 +252,8 @@ def moved(text: str, path: EntryPath, position: int) -> str:
     """
     layout, way = _found(text, path)
     parent, here = way[-1]
-    layout.refuse_shared(way, layout.entry(way))
+    if len(way) > 1:  # an anchor goes along; that it still stands before its aliases is seen when it is read again
+        layout.refuse_shared(way[:-1], None)
     extents = layout.extents(parent)
     entries = [text[begin:end] for begin, end in extents]
     between = [text[end:begin] for (_, end), (begin, _) in pairwise(extents)]
@@ -381,11 +402,18 @@ def replace(text: str, path: EntryPath, value: object) -> str:
 
 
 def insert(
-    text: str, path: EntryPath, value: object, *, before: str | int | None = None, after: str | int | None = None
+    text: str,
+    path: EntryPath,
+    value: object,
+    *,
+    before: str | int | None = None,
+    after: str | int | None = None,
+    written: str | None = None,
 ) -> str:
     """Add an entry at the end of its mapping or list, or beside the sibling named. Raises `EditError`.
 
     In a list the last step of `path` is not looked at: the entry gets the index of the place where it is inserted.
+    `written` is the YAML of its value with comments: it stands so, where it says there what `value` says.
     """
     parent = path[:-1]
     content = content_at(_content(text), parent)
@@ -395,11 +423,16 @@ def insert(
         raise EditError(message("edit.there-already-replace", path=shown_path(path)))
     position = _position(content, parent, before, after)
     name = str(path[-1]) if isinstance(content, dict) else None
-    return _verified(
-        text,
-        inserted(text, parent, position, name, value),
-        lambda old: add_entry(old, parent, position, name, value),
-    )
+
+    def added(old: Content) -> Content:
+        return add_entry(old, parent, position, name, value)
+
+    if written is not None and written.strip():
+        try:
+            return _verified(text, inserted(text, parent, position, name, value, written), added)
+        except (EditError, YAMLError):
+            pass  # comments are not worth that nothing is added
+    return _verified(text, inserted(text, parent, position, name, value), added)
 
 
 def remove(text: str, path: EntryPath) -> str:
@@ -446,7 +479,36 @@ def move(text: str, path: EntryPath, *, before: str | int | None = None, after: 
     position -= here < position
     if position == here:
         return text
-    return _verified(text, moved(text, path, position), lambda content: move_entry(content, parent, here, position))
+
+    def reordered(content: Content) -> Content:
+        return move_entry(content, parent, here, position)
+
+    try:
+        return _verified(text, moved(text, path, position), reordered)
+    except EditError:
+        layout, way = _found(text, path)
+        layout.refuse_shared(way, layout.entry(way))  # which says what stands in the way
+        spelled = _spelled_out(text, path)
+        if spelled == text:
+            raise
+        return _verified(spelled, moved(spelled, path, position), reordered)
+
+
+def _spelled_out(text: str, path: EntryPath) -> str:
+    """`text` with the values in the entry at `path` for which aliases stand there."""
+    layout, way = _found(text, path)
+    content = plain(_content(text))
+    for each in list(_alias_paths(layout, layout.entry(way), path)):
+        text = _verified(text, replaced(text, each, content_at(content, each)), lambda same_as_before: same_as_before)
+    return text
+
+
+def _alias_paths(layout: Layout, entry: YamlEntry, path: EntryPath) -> Iterator[EntryPath]:
+    if entry.is_alias:
+        yield path
+    elif entry.node.kind != "scalar":
+        for index, inner in enumerate(layout.entries(entry.node)):
+            yield from _alias_paths(layout, inner, (*path, index if inner.key is None else str(inner.key.value)))
 
 
 def value_at(text: str, path: EntryPath) -> Content:
@@ -472,8 +534,8 @@ def _replace_list(text: str, path: EntryPath, old: list[Content], new: list[Cont
     for index in range(above, shared - below):
         text = replace(text, (*path, index), new[index])
     for index in range(shared - below, len(new) - below):
-        beside = {"before": index} if index < len(old) + index - shared + below else {}
-        text = insert(text, (*path, index), new[index], **beside)
+        before = index if index < len(old) + index - shared + below else None
+        text = insert(text, (*path, index), new[index], before=before)
     for index in reversed(range(shared - below, len(old) - below)):
         text = remove(text, (*path, index))
     return text

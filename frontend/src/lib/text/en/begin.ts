@@ -4,6 +4,12 @@ import { count } from '../count.ts';
 export const begin = {
 	title: 'First station',
 	kept: 'Kept in this browser.',
+	tabs: {
+		split: 'This station is also written in another tab, and both have said something else since. Nothing is lost: choose which of both goes on.',
+		there: 'Go on with the other tab',
+		here: 'Go on with what is here',
+		follows: 'Another tab has gone on with this station: its answers are here now.'
+	},
 	stepsLabel: 'Steps',
 	choose: 'Choose…',
 	steps: { station: 'Station', devices: 'Devices', poses: 'Poses', product: 'Product', never: 'Never', look: 'Look and begin' },
@@ -118,6 +124,7 @@ export const begin = {
 	},
 	product: {
 		states: 'Its states, in order',
+		calledBy: (name: string, operation: string): string => `Several steps are called ${name}: in the documents the operation of this one is called ${operation}.`,
 		none: 'No state yet. Begin with how it comes: missing, raw, in the tray.',
 		state: (n: number): string => `State ${n}`,
 		add: 'Add a state',

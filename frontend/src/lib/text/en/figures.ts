@@ -2,6 +2,12 @@
 export const figures = {
 	title: 'Figures of the day',
 	unknown: 'Not known yet',
+	/** What a figure waits for, where there is nothing to count yet. */
+	notMeasured: 'Not measured',
+	counted: 'Counted with a work master',
+	howCounted: 'Products are counted once the model has a work master that tells when one is done',
+	afterFirst: 'After the first product',
+	afterWork: (seconds: number): string => `After ${seconds} s of work`,
 	inWork: 'In work',
 	orderOf: (n: number, all: number): string => `In work · order ${n} of ${all}`,
 	more: (n: number): string => `+${n}`,

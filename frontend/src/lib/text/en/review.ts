@@ -19,6 +19,18 @@ export const review = {
 		howToBegin: 'Change something in Model. What will be different then stands here, before it reaches the station.',
 		brings: (by: string): string => `${by} wants to bring`,
 		draft: (changes: number): string => `draft, ${count(changes, 'change', 'changes')}`,
+		first: 'A new station',
+		draftNew: (made: string): string => `draft, new: ${made}`,
+		/** What the draft of a station that had no devices makes. */
+		made: {
+			devices: (n: number): string => count(n, 'resource', 'resources'),
+			operations: 'operations',
+			never: 'what must never be',
+			order: 'the order of work',
+			tests: (n: number): string => count(n, 'scenario', 'scenarios'),
+			messages: (n: number): string => count(n, 'message definition', 'message definitions'),
+			others: (n: number): string => count(n, 'other file', 'other files')
+		},
 		to: 'to',
 		station: 'station',
 		revision: (number: number): string => `station, revision ${number}`,

@@ -4,6 +4,12 @@ import type { Text } from '../text.svelte.ts';
 export const begin: Text['begin'] = {
 	title: 'Första stationen',
 	kept: 'Behålls i den här webbläsaren.',
+	tabs: {
+		split: 'Den här stationen skrivs också i en annan flik, och båda har sagt något annat sedan dess. Inget är förlorat: välj vilken av dem som gäller.',
+		there: 'Fortsätt med den andra fliken',
+		here: 'Fortsätt med det som står här',
+		follows: 'En annan flik har gått vidare med stationen: dess svar står här nu.'
+	},
 	stepsLabel: 'Steg',
 	choose: 'Välj …',
 	steps: { station: 'Station', devices: 'Enheter', poses: 'Lägen', product: 'Produkt', never: 'Aldrig', look: 'Titta och börja' },
@@ -117,6 +123,7 @@ export const begin: Text['begin'] = {
 	},
 	product: {
 		states: 'Dess tillstånd, i ordning',
+		calledBy: (name, operation) => `Flera steg heter ${name}: i dokumenten heter operationen för det här ${operation}.`,
 		none: 'Inget tillstånd än. Börja med hur den kommer: saknas, rå, i lådan.',
 		state: (n) => `Tillstånd ${n}`,
 		add: 'Lägg till ett tillstånd',

@@ -3,6 +3,11 @@ import type { Text } from '../text.svelte.ts';
 export const figures: Text['figures'] = {
 	title: 'Dagens siffror',
 	unknown: 'Ännu inte känt',
+	notMeasured: 'Mäts inte',
+	counted: 'Räknas med en arbetsmall',
+	howCounted: 'Produkter räknas när modellen har en arbetsmall som säger när en är klar',
+	afterFirst: 'Efter den första produkten',
+	afterWork: (seconds) => `Efter ${seconds} s arbete`,
 	inWork: 'I arbete',
 	orderOf: (n, all) => `I arbete · order ${n} av ${all}`,
 	more: (n) => `+${n}`,

@@ -19,6 +19,17 @@ export const review: Text['review'] = {
 		howToBegin: 'Ändra något i Modell. Vad som blir annorlunda står sedan här, innan det når stationen.',
 		brings: (by) => `${by} vill föra`,
 		draft: (changes) => `utkast, ${count(changes, 'ändring', 'ändringar')}`,
+		first: 'En ny station',
+		draftNew: (made) => `utkast, nytt: ${made}`,
+		made: {
+			devices: (n) => count(n, 'resurs', 'resurser'),
+			operations: 'operationer',
+			never: 'det som aldrig får vara',
+			order: 'arbetsordningen',
+			tests: (n) => count(n, 'scenario', 'scenarier'),
+			messages: (n) => count(n, 'meddelandedefinition', 'meddelandedefinitioner'),
+			others: (n) => count(n, 'annan fil', 'andra filer')
+		},
 		to: 'till',
 		station: 'station',
 		revision: (number) => `station, revision ${number}`,
