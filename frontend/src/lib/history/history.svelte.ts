@@ -15,6 +15,8 @@ const SOON = 20_000;
 /** Seconds of a record of which not all is shown at once, and of a day. */
 const LONG = 12 * 3600;
 const DAY = 24 * 3600;
+/** Seconds for which the line goes on to now although nothing comes. */
+const QUIET = 3600;
 
 /** What a person wants to see: a record by its number, or the one at a time. */
 interface Wish {
@@ -95,8 +97,9 @@ export class History {
 		this.line = answer.value;
 		this.acts = acts === null ? [] : actsOf(acts.records);
 		if (this.follows && last.time < window.from) {
-			this.follows = false;
-			this.window = within({ from: last.time - USUAL, to: last.time }, first.time, last.time);
+			// Of what was lately it is seen how long nothing has come since; what is long ago is looked at by itself.
+			this.follows = now - last.time < QUIET;
+			this.window = this.follows ? { from: Math.max(first.time, last.time - USUAL), to: now } : within({ from: last.time - USUAL, to: last.time }, first.time, last.time);
 			this.#again = true;
 		}
 	}
@@ -119,7 +122,7 @@ export class History {
 	stretch(length: number): void {
 		const { first, last } = this.line ?? {};
 		if (!Number.isFinite(length)) {
-			if (first && last) this.see({ from: first.time, to: last.time });
+			if (first && last) this.see({ from: first.time, to: Math.max(last.time, this.follows ? Date.now() / 1000 : last.time) });
 			return;
 		}
 		if (this.place === null && this.follows) {

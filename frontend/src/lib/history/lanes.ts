@@ -20,6 +20,8 @@ export interface Bar {
 	readonly failed?: boolean;
 	/** What was wrong with its device meanwhile, in a few words. */
 	readonly cause?: string;
+	/** How urgent that was. */
+	readonly priority?: Priority;
 	/** It is not as usual: not the mode in which the station works by itself. */
 	readonly other?: boolean;
 }
@@ -100,6 +102,7 @@ const BROKEN: ReadonlySet<unknown> = new Set(['overdue', 'still', 'given-up', 's
 interface Trouble {
 	readonly time: number;
 	readonly cause: string;
+	readonly priority: Priority;
 }
 
 /** When a device of a resource did not go on, and what was told of it. */
@@ -107,18 +110,23 @@ function troublesOf({ marks }: TimeLine, resource: string): Trouble[] {
 	return marks.flatMap(({ kind, time, content }) => {
 		const what = partOf(content, 'what') ?? content;
 		if (kind !== 'alarm' || what['event'] !== 'came' || !BROKEN.has(what['kind']) || !textsOf(what['resources']).includes(resource)) return [];
-		return [{ time, cause: leading(wordsOf(what as unknown as Alarm).text)[0] }];
+		const alarm = what as unknown as Alarm;
+		return [{ time, cause: leading(wordsOf(alarm).text)[0], priority: alarm.priority }];
 	});
 }
 
 /** What ran when its device did not go on, marked so: of several at once the one that was started last. */
 function broken(bars: readonly Bar[], troubles: readonly Trouble[]): Bar[] {
-	const found = new Map<Bar, string>();
-	for (const { time, cause } of troubles) {
+	const found = new Map<Bar, Trouble>();
+	for (const trouble of troubles) {
+		const { time } = trouble;
 		const [bar] = bars.filter(({ from, to }) => from <= time && time <= to).sort((a, b) => b.from - a.from);
-		if (bar) found.set(bar, cause);
+		if (bar) found.set(bar, trouble);
 	}
-	return bars.map((bar) => (found.has(bar) ? { ...bar, failed: true, cause: found.get(bar) ?? '' } : bar));
+	return bars.map((bar) => {
+		const trouble = found.get(bar);
+		return trouble ? { ...bar, failed: true, cause: trouble.cause, priority: trouble.priority } : bar;
+	});
 }
 
 function actSpot(act: Act, names: Names): Spot {
