@@ -1,7 +1,8 @@
 """What a recording says of a station: its messages through the pipelines of a draft, as a controller hears them.
 
 Time is that of the recording. What no message has said so far is as the model begins, which is not what a controller
-takes it for: that of a station that runs knows nothing before it has heard something.
+takes it for: that of a station that runs knows nothing before it has heard something. Recorded commands are read as the
+devices behind them read them.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from sequence_planner.editor.recordings.files import RecordingError
 from sequence_planner.language.types import Value
 from sequence_planner.process.budget import Budget
 from sequence_planner.ros.transport import Sample
+from sequence_planner.ros.types.errors import MalformedMessageError
+from sequence_planner.simulation.devices import CommandReader, NotUnderstoodError
 from sequence_planner.station import ReadyStation
 from sequence_planner.texts.message import message
 
@@ -30,7 +33,7 @@ AFTER: Final = 1e-6  # seconds after a deadline at which it has passed for certa
 
 
 class Standing(StrEnum):
-    """Whence a measured variable has its value at a moment of a recording."""
+    """Whence a variable has its value at a moment of a recording."""
 
     RECORDED = "recorded"
     STALE = "stale"  # something was said, and counts no more: the deadline of a topic has passed
@@ -38,14 +41,14 @@ class Standing(StrEnum):
 
 
 class SaidValue(NamedTuple):
-    """The value of a measured variable at a moment, none where it is unknown, and whence it has it."""
+    """The value of a variable at a moment, none where it is unknown, and whence it has it."""
 
     value: Value | None
     standing: Standing
 
 
 class RecordedMoment(NamedTuple):
-    """A moment, so many seconds after the recording began, at which measured variables have become others."""
+    """A moment, so many seconds after the recording began, at which variables have become others."""
 
     at: float
     changes: Mapping[str, tuple[SaidValue, SaidValue]]
@@ -141,7 +144,8 @@ def read_recording(
         with closing(bag.heard(choice.heard)) as heard:
             is_whole = all(ear.take(each, _seconds(each.at, bag)) for each in heard) and ear.let_pass(end)
         incomplete = None if is_whole else Incomplete.TIME if budget.spent else Incomplete.MOMENTS
-        until = end if is_whole else ear.now
+        until = end if is_whole else max(0.0, ear.now - AFTER) if ear.is_cut else ear.now
+        moments = [each for each in ear.moments if each.at <= until]
         return RecordingReading(
             began=bag.begin / NS,
             seconds=end,
@@ -155,7 +159,7 @@ def read_recording(
             others=choice.others,
             troubles=tuple(ear.troubles()),
             beginning=ear.beginning,
-            moments=tuple(ear.moments),
+            moments=tuple(moments),
         )
     finally:
         ear.close()
@@ -177,25 +181,27 @@ class _Choice(NamedTuple):
 def _chosen(bag: Bag, station: ReadyStation) -> _Choice:
     """Raises `RecordingError` where no topic of the draft is in the recording: it is one of another station."""
     incoming = station.pipelines.incoming
+    types = {name: each.topic.type_name for name, each in incoming.items()}
+    types |= {name: each.topic.type_name for name, each in station.pipelines.outgoing.items()}
     heard: dict[str, RecordedTopic] = {}
     otherwise: dict[str, OtherTopic] = {}
     for topic in bag.topics:
-        if topic.name in incoming:
-            wanted = incoming[topic.name].topic.type_name
-            difference = _difference(topic, wanted, station)
-            if difference is None:
-                heard[topic.name] = topic
-            else:
-                otherwise[topic.name] = OtherTopic(topic, wanted, difference)
+        if (wanted := types.get(topic.name)) is None:
+            continue
+        difference = _difference(topic, wanted, station)
+        if difference is None:
+            heard[topic.name] = topic
+        else:
+            otherwise[topic.name] = OtherTopic(topic, wanted, difference)
     if not heard and not otherwise:
         names = [each.name for each in bag.topics]
         if not incoming:
             raise RecordingError(message("recording.nothing-incoming"))
-        raise RecordingError(message("recording.other-station", recorded=names, wanted=list(incoming)))
+        raise RecordingError(message("recording.other-station", recorded=names, wanted=list(types)))
     return _Choice(
         tuple(heard.values()),
         tuple(each for name, each in otherwise.items() if name not in heard),
-        tuple(each for each in bag.topics if each.name not in incoming),
+        tuple(each for each in bag.topics if each.name not in types),
         tuple(name for name in incoming if name not in heard and name not in otherwise),
     )
 
@@ -217,6 +223,7 @@ class _Ear:
 
     def __init__(self, station: ReadyStation, budget: Budget, most_moments: int) -> None:
         pipelines, automaton = station.pipelines, station.automaton
+        self._station = station
         self._budget, self._most_moments = budget, most_moments
         self._inputs = Inputs(pipelines, station.registry, automaton.initial_valuation, patient=True)
         self._running = self._inputs.running
@@ -226,28 +233,57 @@ class _Ear:
         self.beginning = {
             name: SaidValue(automaton.initial_valuation.get(name), Standing.NOT_RECORDED) for name in measured
         }
+        self._commands = _readers(station)
+        self.beginning |= {
+            name: SaidValue(automaton.initial_valuation.get(name), Standing.NOT_RECORDED)
+            for names, _ in self._commands.values()
+            for name in names
+        }
         self._said = dict(self.beginning)
+        self._reports = self._inputs.reports
+        self._commanded: dict[str, bytes] = {}  # the last message of each topic
         self._timed = {name: each for name, each in self._inputs.topics.items() if each.pipeline.deadline is not None}
         self._expired: set[str] = set()
         self._looked = 0
+        self.is_cut = False
         self.now = 0.0
         self.moments: list[RecordedMoment] = []
         self.counts: dict[str, int] = {}
 
     def take(self, each: RecordedMessage, at: float) -> bool:
         """Hear a message, where what is due before it can happen; whether it could."""
-        if not self.let_pass(at) or not self._goes_on():
+        if not self._goes_on() or not self.let_pass(at):
+            self.is_cut = at <= self.now  # within a moment
             return False
+        self.counts[each.topic] = self.counts.get(each.topic, 0) + 1
+        if each.topic not in self._inputs.topics:
+            self._take_command(each, at)
+            return True
         feed = self._inputs.topics[each.topic]
         says_the_same = _repeats(feed, each, at) and self._running.repeats[each.topic]
         self._inputs.take([Sample(each.topic, each.data, at, trouble=each.trouble)])
-        self.counts[each.topic] = self.counts.get(each.topic, 0) + 1
         self._expired.discard(each.topic)
         if not says_the_same:
             self._spoken[each.topic] = True
             self._inputs.wake(at)
             self._note(at)
         return True
+
+    def _take_command(self, each: RecordedMessage, at: float) -> None:
+        """Note what a message of an outgoing topic commands; one that makes no sense commands nothing new."""
+        if each.topic not in self._commands or self._commanded.get(each.topic) == each.data:
+            return
+        self._commanded[each.topic] = each.data
+        names, reader = self._commands[each.topic]
+        type_name = self._station.pipelines.outgoing[each.topic].topic.type_name
+        try:
+            values, troubles = reader.read(self._station.registry.decode(type_name, each.data))
+        except MalformedMessageError as error:
+            values, troubles = {}, [str(error)]
+        if trouble := each.trouble or "; ".join(troubles):
+            self._reports.note(each.topic, trouble, at)
+        known = {name: value for name in names if (value := values.get(name)) is not None}
+        self._become({name: SaidValue(value, Standing.RECORDED) for name, value in known.items()}, at)
 
     def let_pass(self, until: float) -> bool:
         """Let time pass until a moment; whether it could. All that is due before happens."""
@@ -292,7 +328,7 @@ class _Ear:
         """Note which variables are others now."""
         values = self._inputs.measured(at)
         fresh = {name: each.fresh(at) for name, each in self._sources()}
-        changes: dict[str, tuple[SaidValue, SaidValue]] = {}
+        became: dict[str, SaidValue] = {}
         standings: dict[str, Standing] = {}
         for name, feed in self._feeds.items():
             standing = standings.get(feed)
@@ -300,15 +336,16 @@ class _Ear:
                 standing = standings[feed] = self._standing(feed, fresh)
             if standing is Standing.NOT_RECORDED:
                 continue
-            said = SaidValue(values.get(name), standing)
-            if said != self._said[name]:
-                changes[name] = self._said[name], said
-                self._said[name] = said
-        if not changes:
-            return
-        if self.moments and self.moments[-1].at == at:
-            self.moments[-1] = _together(self.moments[-1], changes)
-        else:
+            became[name] = SaidValue(values.get(name), standing)
+        self._become(became, at)
+
+    def _become(self, became: Mapping[str, SaidValue], at: float) -> None:
+        """Note what is otherwise now."""
+        changes = {name: (self._said[name], said) for name, said in became.items() if said != self._said[name]}
+        self._said.update(became)
+        if changes and self.moments and self.moments[-1].at == at:
+            changes = _together(self.moments.pop().changes, changes)
+        if changes:
             self.moments.append(RecordedMoment(at, changes))
 
     def _sources(self) -> Iterable[tuple[str, InputTopic]]:
@@ -320,14 +357,29 @@ class _Ear:
         return Standing.RECORDED if self._running.is_fresh(feed, fresh) else Standing.STALE
 
 
+def _readers(station: ReadyStation) -> dict[str, tuple[tuple[str, ...], CommandReader]]:
+    """Return who reads the commands of each topic, with the outputs that they say; none where they cannot be read."""
+    outputs, found = station.automaton.outputs, {}
+    for name, pipeline in station.pipelines.outgoing.items():
+        try:
+            reader = CommandReader(pipeline, station.automaton)
+        except NotUnderstoodError:
+            continue
+        if names := tuple(sorted(reader.variables & outputs)):
+            found[name] = names, reader
+    return found
+
+
 def _repeats(feed: InputTopic, each: RecordedMessage, at: float) -> bool:
     """Return whether a message says what the one before has said, which still counts."""
     return feed.data is not None and feed.data == each.data and not each.trouble and feed.fresh(at)
 
 
-def _together(moment: RecordedMoment, changes: Mapping[str, tuple[SaidValue, SaidValue]]) -> RecordedMoment:
-    """Return a moment at which these happened, too."""
-    merged = dict(moment.changes)
-    for name, (before, after) in changes.items():
+def _together(
+    earlier: Mapping[str, tuple[SaidValue, SaidValue]], later: Mapping[str, tuple[SaidValue, SaidValue]]
+) -> dict[str, tuple[SaidValue, SaidValue]]:
+    """Return what all changes of a moment come to."""
+    merged = dict(earlier)
+    for name, (before, after) in later.items():
         merged[name] = (merged[name][0] if name in merged else before), after
-    return RecordedMoment(moment.at, merged)
+    return {name: (before, after) for name, (before, after) in merged.items() if before != after}

@@ -9,7 +9,9 @@ from sequence_planner.texts.message import Message
 
 
 class RecordedTopicView(View):
-    """A topic of the draft with the `messages` that were read of it, and the measured variables that they feed."""
+    """A topic of the draft with the `messages` that were read of it, and the variables that they tell: those that are
+    measured, or commanded.
+    """
 
     name: str
     type: str
@@ -18,7 +20,7 @@ class RecordedTopicView(View):
 
 
 class MissingTopicView(View):
-    """A topic of the draft that was not recorded, and the measured variables that it feeds."""
+    """A topic of the draft that was not recorded, and the measured variables that it tells."""
 
     name: str
     type: str
@@ -50,7 +52,7 @@ class RecordedTroubleView(View):
 
 
 class RecordedChangeView(View):
-    """A measured variable that became another, or of which what was said counts no more or for the first time."""
+    """A variable that became another, or of which what was said counts no more or for the first time."""
 
     name: str
     before: ShownValue | None
@@ -59,7 +61,7 @@ class RecordedChangeView(View):
 
 
 class RecordedMomentView(View):
-    """A moment, so many seconds after the beginning, at which measured variables became others."""
+    """A moment, so many seconds after the beginning, at which variables became others."""
 
     at: float
     changes: list[RecordedChangeView]
@@ -96,12 +98,14 @@ class RecordingView(View):
 
 
 class RecordedVariableView(View):
-    """A measured variable at a moment: its value, null where it is unknown, and whence it has it.
+    """A variable that is measured, or `commanded`, at a moment: its value, null where it is unknown, and whence it has
+    it.
 
     `last` is what it was when it was known last, `since` when.
     """
 
     name: str
+    commanded: bool
     value: ShownValue | None
     standing: Standing
     last: ShownValue | None
@@ -111,7 +115,7 @@ class RecordedVariableView(View):
 
 class RecordedStateView(View):
     """The state of the draft at a moment of a recording: `values` of all variables, as What-if begins with them, and
-    whence those that are measured have theirs. All others are as the model begins.
+    whence those that are measured or commanded have theirs. All others are as the model begins.
     """
 
     id: str

@@ -180,10 +180,18 @@ def state_view(number: int, id: str, station: ReadyStation, read: RecordingReadi
     variables = []
     for name, each in said.items():
         last, since = known.get(name, (None, None))
-        topics = sorted(pipelines.topics_of(feeds[name])) if name in feeds else []
+        commanded = name in station.automaton.outputs
+        carriers = [topic for topic, each in pipelines.outgoing.items() if commanded and name in each.variables]
+        topics = sorted(pipelines.topics_of(feeds[name])) if name in feeds else carriers
         variables.append(
             RecordedVariableView(
-                name=name, value=each.value, standing=each.standing, last=last, since=since, topics=topics
+                name=name,
+                commanded=commanded,
+                value=each.value,
+                standing=each.standing,
+                last=last,
+                since=since,
+                topics=topics,
             )
         )
     state = transferred(station.automaton, {name: each.value for name, each in said.items()})
@@ -200,8 +208,10 @@ def _moment(moment: RecordedMoment) -> RecordedMomentView:
 
 
 def _fed(station: ReadyStation, topic: str) -> list[str]:
-    """The measured variables that come of a topic, by itself or with others."""
+    """The variables that a topic tells, by itself or with others."""
     pipelines = station.pipelines
+    if topic in pipelines.outgoing:
+        return [name for name in pipelines.outgoing[topic].variables if name in station.automaton.outputs]
     return [name for name, feed in pipelines.feeds.items() if topic in pipelines.topics_of(feed)]
 
 
