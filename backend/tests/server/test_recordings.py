@@ -117,7 +117,9 @@ def test_only_moments_after_one_are_told_when_they_are_asked_for(eva: httpx.Clie
 
 def test_it_is_read_with_the_draft_as_it_is(eva: httpx.Client, drive: Path) -> None:
     found = taken(eva, next(drive.glob("*.mcap")))
-    was = eva.get(f"{MODEL}/files", params={"path": "resources/robot.yaml"}).json()["files"]["resources/robot.yaml"]["text"]
+    was = eva.get(f"{MODEL}/files", params={"path": "resources/robot.yaml"}).json()["files"]["resources/robot.yaml"][
+        "text"
+    ]
     text = was.replace("above_engine: [0.6, -1.2", "above_engine: [0.7, -1.2")
     edit = {"kind": "write", "file": "resources/robot.yaml", "was": was, "text": text}
     assert eva.post(f"{MODEL}/changes", json={"title": "another pose", "edits": [edit]}).status_code == 200
