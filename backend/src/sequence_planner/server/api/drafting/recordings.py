@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Final
 
-from fastapi import Path, Query, Request, Response
+from fastapi import Depends, Path, Query, Request, Response
 from starlette.requests import ClientDisconnect
 
 from sequence_planner.auth.roles import Role
@@ -29,10 +29,17 @@ RecordingId = Annotated[str, Path(pattern="^[0-9a-f]{1,64}$")]
 Seconds = Annotated[float, Query(ge=0, le=1e10, allow_inf_nan=False)]
 
 
+async def octets_only(request: Request) -> None:
+    """A file is sent as such: no page of somebody else can do so without being asked first."""
+    media, _, _ = request.headers.get("content-type", "").partition(";")
+    if media.strip().lower() != OCTETS:
+        raise ProblemFound(415, "not-octets", message("refused.not-octets.header"))
+
+
 @router.post(
     "",
     status_code=201,
-    dependencies=[ENGINEER],
+    dependencies=[ENGINEER, Depends(octets_only)],
     response_model=RecordingView,
     responses=refused(400, 408, 413, 415, 422, 507),
     openapi_extra=BODY,
@@ -44,9 +51,6 @@ async def bring_recording(name: FileName, shelf: TheRecordings, request: Request
     The last four are kept, each for an hour after it was used. One that cannot be used is not: 422 `recording-unread`
     says what is wrong with which file, and what to do.
     """
-    media, _, _ = request.headers.get("content-type", "").partition(";")
-    if media.strip().lower() != OCTETS:
-        raise ProblemFound(415, "not-octets", message("refused.not-octets.header"))
     try:
         answer = found(await shelf.take(name, request.stream()))
     except ClientDisconnect:
