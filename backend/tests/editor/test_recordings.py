@@ -22,17 +22,15 @@ from sequence_planner.automaton.automaton import State
 from sequence_planner.editor.recordings import bag as bags
 from sequence_planner.editor.recordings.bag import Bag
 from sequence_planner.editor.recordings.files import RecordingError, lay_out
-from sequence_planner.editor.recordings.reading import (
-    Difference,
-    Incomplete,
-    RecordingReading,
-    SaidValue,
-    Standing,
-    read_recording,
-)
-from sequence_planner.editor.recordings.schemas import RecordedStateView
+from sequence_planner.editor.recordings.reading import RecordingReading, SaidValue, read_recording
 from sequence_planner.editor.recordings.worker import RecordingService
-from sequence_planner.editor.schemas.what_if import transferred
+from sequence_planner.editor.schemas.what_if import (
+    RecordedOtherwise,
+    RecordedStanding,
+    RecordedStateView,
+    RecordingEnd,
+    transferred,
+)
 from sequence_planner.language.types import Value
 from sequence_planner.model.files import read_files
 from sequence_planner.pipelines.chain_runtime import first_message
@@ -134,17 +132,17 @@ def test_where_the_station_was_is_what_devices_had_said_by_then(bolts: ReadyStat
     assert (found.began, found.seconds, found.until, found.incomplete) == (float(BEGAN), 5.0, 5.0, None)
     assert (found.messages, found.counts) == (71, {ROBOT: 51, TOOL: 20})
     assert found.missing == (SCENE,)
-    before, after = found.at(2.9), found.at(3.0)
-    assert before["robot.pose"] == SaidValue("home", Standing.RECORDED)
-    assert after["robot.pose"] == SaidValue("above_engine", Standing.RECORDED)
+    before, after = found.said_by(2.9), found.said_by(3.0)
+    assert before["robot.pose"] == SaidValue("home", RecordedStanding.RECORDED)
+    assert after["robot.pose"] == SaidValue("above_engine", RecordedStanding.RECORDED)
     # Its topic has a deadline of a second, and said nothing after 1.95 s.
-    assert found.at(2.9)["nutrunner.tool_is_idle"] == SaidValue(True, Standing.RECORDED)
-    assert found.at(3.0)["nutrunner.tool_is_idle"] == SaidValue(None, Standing.STALE)
+    assert found.said_by(2.9)["nutrunner.tool_is_idle"] == SaidValue(True, RecordedStanding.RECORDED)
+    assert found.said_by(3.0)["nutrunner.tool_is_idle"] == SaidValue(None, RecordedStanding.STALE)
     assert found.last_known(3.0)["nutrunner.tool_is_idle"] == (True, 0.05)
     # What no message gave is as the model begins, although a station that runs would know nothing of it.
-    assert after["robot.tool_is_attached"] == SaidValue(False, Standing.NOT_RECORDED)
-    assert after["operator.acknowledged"] == SaidValue(False, Standing.NOT_RECORDED)
-    assert found.at(0.0)["nutrunner.tool_is_idle"].standing is Standing.NOT_RECORDED
+    assert after["robot.tool_is_attached"] == SaidValue(False, RecordedStanding.NOT_RECORDED)
+    assert after["operator.acknowledged"] == SaidValue(False, RecordedStanding.NOT_RECORDED)
+    assert found.said_by(0.0)["nutrunner.tool_is_idle"].standing is RecordedStanding.NOT_RECORDED
     assert [round(each.at, 3) for each in found.moments] == [0.0, 0.05, 2.95, 3.0]
     assert not found.troubles
 
@@ -157,7 +155,7 @@ def test_what_if_begins_with_the_values_of_the_moment(bolts: ReadyStation, tmp_p
     files: dict[str, str | None] = {**read_files(BOLT_TIGHTENING)}
     assert service.found_for((files, "lay_out", (source, "drive.mcap", folder, PLENTY))) is None
     kept = "1", "drive.mcap", 1000, folder
-    state = service.found_for(({}, "state", (7, BOLT_TIGHTENING, kept, 4.0)))
+    state = service.found_for(({}, "recorded_state", (7, BOLT_TIGHTENING, kept, 4.0)))
     assert isinstance(state, RecordedStateView)
     assert state.values["robot.pose"] == "above_engine"
     assert state.values["robot.target_pose"] == "bolt_pair_2"  # as it was commanded
@@ -169,9 +167,12 @@ def test_what_if_begins_with_the_values_of_the_moment(bolts: ReadyStation, tmp_p
     assert told["robot.target_pose"].commanded
     assert told["robot.target_pose"].topics == [COMMAND]
     assert (told["robot.pose"].since, told["robot.pose"].topics) == (3.0, [ROBOT])
-    assert (told["nutrunner.tool_is_idle"].last, told["nutrunner.tool_is_idle"].standing) == (True, Standing.STALE)
+    assert (told["nutrunner.tool_is_idle"].last, told["nutrunner.tool_is_idle"].standing) == (
+        True,
+        RecordedStanding.STALE,
+    )
     with pytest.raises(RecordingError) as refused:
-        service.found_for(({}, "state", (7, BOLT_TIGHTENING, kept, 6.0)))
+        service.found_for(({}, "recorded_state", (7, BOLT_TIGHTENING, kept, 6.0)))
     assert _id(refused.value) == "recording.not-in-it"
 
 
@@ -292,12 +293,12 @@ def folded(station: ReadyStation, sequence: Sequence[Said], moment: float) -> di
     for topic, names in TOLD.items():
         for name in names:
             if topic not in last:
-                expected[name] = SaidValue(initial[name], Standing.NOT_RECORDED)
+                expected[name] = SaidValue(initial[name], RecordedStanding.NOT_RECORDED)
             elif moment - last[topic][0] > DEADLINE + 5e-7:
-                expected[name] = SaidValue(None, Standing.STALE)
+                expected[name] = SaidValue(None, RecordedStanding.STALE)
             else:
                 values = last[topic][1].values
-                expected[name] = SaidValue(None if values is None else dict(values)[name], Standing.RECORDED)
+                expected[name] = SaidValue(None if values is None else dict(values)[name], RecordedStanding.RECORDED)
     return expected
 
 
@@ -322,7 +323,7 @@ def test_at_each_moment_the_state_is_a_fold_of_the_messages_until_then(
     assert times == sorted(set(times))
     for moment in [*times, *(time + 0.5 for time in times), end]:
         if moment <= end:
-            state, expected = found.at(moment), folded(bolts, sequence, moment)
+            state, expected = found.said_by(moment), folded(bolts, sequence, moment)
             assert {name: state[name] for name in expected} == expected, moment
     # Each moment that is offered is one at which something became another.
     for each in found.moments:
@@ -340,7 +341,7 @@ def test_what_comes_later_makes_no_difference_to_a_moment(sequence: list[Said], 
     until = [each for each in recorded if each[2] <= recorded[number - 1][2]]
     with TemporaryDirectory() as folder:
         found, part = (reading_of(bolts, Path(folder), *each) for each in (recorded, until))
-    assert part.at(part.until) == found.at(part.until)
+    assert part.said_by(part.until) == found.said_by(part.until)
 
 
 # What a recording lacks, and what in it makes no sense.
@@ -365,14 +366,14 @@ def test_what_is_missing_or_recorded_otherwise_is_told(bolts: ReadyStation, tmp_
         TOOL,
         STRING,
         state[1],
-        Difference.TYPE,
+        RecordedOtherwise.TYPE,
     )
     assert [each.name for each in found.others] == ["/talk"]
     assert found.messages == 4
     assert [(each.topic, each.first, each.count) for each in found.troubles] == [(ROBOT, 0.6, 1), (ROBOT, 0.7, 1)]
     assert all("RobotState" in each.text for each in found.troubles)
-    assert found.at(0.65)["robot.pose"] == SaidValue(None, Standing.RECORDED)
-    assert found.at(0.8)["robot.pose"] == SaidValue("home", Standing.RECORDED)
+    assert found.said_by(0.65)["robot.pose"] == SaidValue(None, RecordedStanding.RECORDED)
+    assert found.said_by(0.8)["robot.pose"] == SaidValue("home", RecordedStanding.RECORDED)
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -389,8 +390,8 @@ def test_a_type_that_had_another_definition_is_not_read(storage: Storage, bolts:
     with opened(folder, tmp_path) as bag:
         found = read_recording(bag, bolts, Budget.seconds(60.0))
     (tool,) = found.otherwise
-    assert (tool.topic.name, tool.difference) == (TOOL, Difference.DEFINITION)
-    assert found.at(0.5)["nutrunner.tool_is_idle"].standing is Standing.NOT_RECORDED
+    assert (tool.topic.name, tool.difference) == (TOOL, RecordedOtherwise.DEFINITION)
+    assert found.said_by(0.5)["nutrunner.tool_is_idle"].standing is RecordedStanding.NOT_RECORDED
     assert found.counts == {ROBOT: 1}
 
 
@@ -400,13 +401,13 @@ def test_what_takes_too_long_or_has_too_many_moments_is_read_as_far_as_it_goes(
     poses = [said(bolts, ROBOT, robot__pose=pose) for pose in ("home", "above_engine")]
     many = [at(number / 100, poses[number % 2]) for number in range(400)]
     few = reading_of(bolts, tmp_path, *many, most=50)
-    assert (few.incomplete, len(few.moments), few.until) == (Incomplete.MOMENTS, 50, 0.49)
+    assert (few.incomplete, len(few.moments), few.until) == (RecordingEnd.MOMENTS, 50, 0.49)
     twice = [each for number, one in enumerate(many) for each in (one, at(number / 100, said(bolts, TOOL)))]
     for most in (40, 41, 42):
         cut, whole = (reading_of(bolts, tmp_path, *twice, most=each) for each in (most, 20_000))
-        assert cut.at(cut.until) == whole.at(cut.until)
+        assert cut.said_by(cut.until) == whole.said_by(cut.until)
     late = reading_of(bolts, tmp_path, *many, budget=0.0)
-    assert late.incomplete is Incomplete.TIME
+    assert late.incomplete is RecordingEnd.TIME
     assert late.messages < 100
     assert late.until < 1.0
 

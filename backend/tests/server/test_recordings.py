@@ -12,7 +12,7 @@ import httpx
 import pytest
 
 from sequence_planner.auth.roles import Role
-from sequence_planner.server.services.recordings import MOST_KEPT
+from sequence_planner.server.recordings.shelf import MOST_KEPT
 from sequence_planner.server.settings import Settings
 from sequence_planner.simulation.messages import spoken
 from sequence_planner.station import ReadyStation, prepare_station

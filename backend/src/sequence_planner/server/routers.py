@@ -19,7 +19,7 @@ from sequence_planner.server.api import (
     webhooks,
     what_if,
 )
-from sequence_planner.server.api.drafting import attachments, outlines, recordings, talk
+from sequence_planner.server.api.drafting import attachments, outlines, talk
 from sequence_planner.server.stream import endpoints
 
 ROUTERS: Final = (
@@ -59,6 +59,6 @@ ROUTERS: Final = (
     model.draft_pipelines_router,
     revisions.router,
     what_if.router,
-    recordings.router,
+    what_if.recordings_router,
     openapi_document.router,
 )

@@ -13,8 +13,8 @@ from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import FINDINGS, AsJson, StationFolder, print_json, refuse
 from sequence_planner.editor.recordings.bag import Bag
 from sequence_planner.editor.recordings.files import MB, RecordingError, lay_out
-from sequence_planner.editor.recordings.reading import RecordingReading, SaidValue, Standing, read_recording
-from sequence_planner.editor.schemas.what_if import transferred
+from sequence_planner.editor.recordings.reading import RecordingReading, SaidValue, read_recording
+from sequence_planner.editor.schemas.what_if import RecordedStanding, transferred
 from sequence_planner.language.printer import print_value
 from sequence_planner.process.budget import Budget
 from sequence_planner.station import ReadyStation
@@ -49,7 +49,7 @@ def recording(
             lay_out(path, path.name, Path(folder), MOST_UNPACKED * MB)
             with Bag(Path(folder)) as bag:
                 read = read_recording(bag, station, Budget.seconds(deadline), MOST_MOMENTS)
-        said = None if at is None else read.at(at)
+        said = None if at is None else read.said_by(at)
     except RecordingError as error:
         refuse(str(error.why))
     if said is not None:
@@ -70,8 +70,8 @@ def _tell_state(station: ReadyStation, said: Mapping[str, SaidValue], as_json: b
         print_json({"state": {name: state[name] for name in station.automaton.variables}, "active": []})
         return
     for name in station.automaton.variables:
-        standing = said[name].standing if name in said else Standing.NOT_RECORDED
-        note = "" if standing is Standing.RECORDED else f"  ({standing.value.replace('-', ' ')})"
+        standing = said[name].standing if name in said else RecordedStanding.NOT_RECORDED
+        note = "" if standing is RecordedStanding.RECORDED else f"  ({standing.value.replace('-', ' ')})"
         typer.echo(f"{name} == {_shown(state[name])}{note}")
 
 
@@ -89,7 +89,7 @@ def _lines(station: ReadyStation, read: RecordingReading) -> Iterator[str]:
         yield f"  read to {read.until:.3f} s only: too many {read.incomplete.value}"
     for moment in read.moments:
         changes = (
-            f"{name} := {_shown(after.value)}" + (" (stale)" if after.standing is Standing.STALE else "")
+            f"{name} := {_shown(after.value)}" + (" (stale)" if after.standing is RecordedStanding.STALE else "")
             for name, (_, after) in moment.changes.items()
         )
         yield f"{moment.at:.3f}  {', '.join(changes)}"

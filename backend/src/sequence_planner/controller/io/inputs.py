@@ -63,7 +63,7 @@ class InputErrors:
         """Note that what came last makes sense."""
         self._troubled.discard(place)
 
-    def all(self) -> Iterator[tuple[str, InputError]]:
+    def every_report(self) -> Iterator[tuple[str, InputError]]:
         """Each report with its place; none is forgotten."""
         for place, causes in self._places.items():
             for report in causes.values():

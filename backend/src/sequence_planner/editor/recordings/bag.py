@@ -65,7 +65,7 @@ class Bag:
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    def heard(self, topics: Collection[RecordedTopic]) -> Generator[RecordedMessage]:
+    def messages_of(self, topics: Collection[RecordedTopic]) -> Generator[RecordedMessage]:
         """Yield the messages of topics."""
         wanted = {(each.name, each.type_name) for each in topics}
         streams = [self._of_file(reader, file, wanted) for reader, file in self._readers]

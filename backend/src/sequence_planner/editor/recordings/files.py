@@ -10,10 +10,10 @@ import json
 import os
 import zipfile
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.model.paths import EditError
@@ -50,7 +50,7 @@ class _Allowance:
     def __init__(self, name: str, most: int) -> None:
         self._name, self._most, self._left = name, most, most
 
-    def take(self, number: int) -> None:
+    def use(self, number: int) -> None:
         """Take so many. Raises `RecordingError` where there are not so many."""
         self._left -= number
         if self._left < 0:
@@ -188,7 +188,7 @@ def _unzip(archive: Path, name: str, folder: Path, allowance: _Allowance) -> Non
             wanted = list(_members(members, name))
             for member, within in wanted:
                 with opened.open(member) as packed, (folder / within.name).open("xb") as plain:
-                    _copy(packed, plain, allowance)
+                    _copy(packed.read, plain.write, allowance)
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         # RuntimeError and NotImplementedError: it is encrypted, or packed in a way that Python does not know.
         raise RecordingError(message("recording.zip", file=name, why=_plain(error))) from None
@@ -218,7 +218,7 @@ def _placed(file: Path, name: str, place: Path, packed: bool, allowance: _Allowa
 
         whole = place.with_suffix(".whole")
         with zstd.open(file, "rb") as compressed, whole.open("xb") as plain:
-            _copy(compressed, plain, allowance)
+            _copy(compressed.read, plain.write, allowance)
         file, form = whole, form_of(whole)
     if form not in ("mcap", "db3"):
         raise RecordingError(_unusable(file, form, name))
@@ -237,15 +237,7 @@ def _check_end(file: Path, name: str) -> None:
             raise RecordingError(message("recording.cut-off", file=name))
 
 
-class _Readable(Protocol):
-    def read(self, size: int, /) -> bytes: ...
-
-
-class _Writable(Protocol):
-    def write(self, data: bytes, /) -> object: ...
-
-
-def _copy(source: _Readable, target: _Writable, allowance: _Allowance) -> None:
-    while piece := source.read(PIECE):
-        allowance.take(len(piece))
-        target.write(piece)
+def _copy(read: Callable[[int], bytes], write: Callable[[bytes], object], allowance: _Allowance) -> None:
+    while piece := read(PIECE):
+        allowance.use(len(piece))
+        write(piece)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Final, NamedTuple
 
 from sequence_planner.automaton.automaton import Kind
@@ -18,6 +17,7 @@ from sequence_planner.controller.io.inputs import Inputs, InputTopic
 from sequence_planner.core.immutable import Immutable
 from sequence_planner.editor.recordings.bag import NS, Bag, RecordedMessage, RecordedTopic
 from sequence_planner.editor.recordings.files import RecordingError
+from sequence_planner.editor.schemas.what_if import RecordedOtherwise, RecordedStanding, RecordingEnd
 from sequence_planner.language.types import Value
 from sequence_planner.process.budget import Budget
 from sequence_planner.ros.transport import Sample
@@ -32,19 +32,11 @@ MOST_AT_ONCE: Final = 100  # times that a stage has something to do at one momen
 AFTER: Final = 1e-6  # seconds after a deadline at which it has passed for certain, however floats are rounded
 
 
-class Standing(StrEnum):
-    """Whence a variable has its value at a moment of a recording."""
-
-    RECORDED = "recorded"
-    STALE = "stale"  # something was said, and counts no more: the deadline of a topic has passed
-    NOT_RECORDED = "not-recorded"  # no message has said anything so far: it is as the model begins
-
-
 class SaidValue(NamedTuple):
     """The value of a variable at a moment, none where it is unknown, and whence it has it."""
 
     value: Value | None
-    standing: Standing
+    standing: RecordedStanding
 
 
 class RecordedMoment(NamedTuple):
@@ -54,20 +46,12 @@ class RecordedMoment(NamedTuple):
     changes: Mapping[str, tuple[SaidValue, SaidValue]]
 
 
-class Difference(StrEnum):
-    """Why the messages of a topic that was recorded are not read."""
-
-    TYPE = "type"  # they are of another type
-    DEFINITION = "definition"  # the type of this name was another one
-    ENCODING = "encoding"  # they are not in CDR
-
-
 class OtherTopic(Immutable):
     """A topic of the draft that was recorded as something else."""
 
     topic: RecordedTopic
     wanted: str
-    difference: Difference
+    difference: RecordedOtherwise
 
 
 class RecordedTrouble(Immutable):
@@ -77,13 +61,6 @@ class RecordedTrouble(Immutable):
     text: str
     count: int
     first: float
-
-
-class Incomplete(StrEnum):
-    """Why a recording was not read to its end."""
-
-    TIME = "time"
-    MOMENTS = "moments"
 
 
 @dataclass(frozen=True)
@@ -97,7 +74,7 @@ class RecordingReading:
     began: float
     seconds: float
     until: float
-    incomplete: Incomplete | None
+    incomplete: RecordingEnd | None
     messages: int
     counts: Mapping[str, int]
     heard: tuple[RecordedTopic, ...]
@@ -108,7 +85,7 @@ class RecordingReading:
     beginning: Mapping[str, SaidValue]
     moments: tuple[RecordedMoment, ...]
 
-    def at(self, seconds: float) -> dict[str, SaidValue]:
+    def said_by(self, seconds: float) -> dict[str, SaidValue]:
         """Return what all messages until a moment say, and since when. Raises `RecordingError` for one that was not
         read.
         """
@@ -128,7 +105,7 @@ class RecordingReading:
             if moment.at > seconds:
                 break
             for name, (_, after) in moment.changes.items():
-                if after.standing is Standing.RECORDED and after.value is not None:
+                if after.standing is RecordedStanding.RECORDED and after.value is not None:
                     known[name] = after.value, moment.at
         return known
 
@@ -141,9 +118,9 @@ def read_recording(
     ear = _Ear(station, budget, most_moments)
     try:
         end = _seconds(bag.end, bag)
-        with closing(bag.heard(choice.heard)) as heard:
-            is_whole = all(ear.take(each, _seconds(each.at, bag)) for each in heard) and ear.let_pass(end)
-        incomplete = None if is_whole else Incomplete.TIME if budget.spent else Incomplete.MOMENTS
+        with closing(bag.messages_of(choice.heard)) as heard:
+            is_whole = all(ear.listen(each, _seconds(each.at, bag)) for each in heard) and ear.let_pass(end)
+        incomplete = None if is_whole else RecordingEnd.TIME if budget.spent else RecordingEnd.MOMENTS
         until = end if is_whole else max(0.0, ear.now - AFTER) if ear.is_cut else ear.now
         moments = [each for each in ear.moments if each.at <= until]
         return RecordingReading(
@@ -206,13 +183,13 @@ def _chosen(bag: Bag, station: ReadyStation) -> _Choice:
     )
 
 
-def _difference(topic: RecordedTopic, wanted: str, station: ReadyStation) -> Difference | None:
+def _difference(topic: RecordedTopic, wanted: str, station: ReadyStation) -> RecordedOtherwise | None:
     if topic.type_name != wanted:
-        return Difference.TYPE
+        return RecordedOtherwise.TYPE
     if topic.encoding != "cdr":
-        return Difference.ENCODING
+        return RecordedOtherwise.ENCODING
     if topic.type_hash is not None and topic.type_hash != station.registry.type_hash(wanted):
-        return Difference.DEFINITION
+        return RecordedOtherwise.DEFINITION
     return None
 
 
@@ -231,11 +208,11 @@ class _Ear:
         measured = automaton.names(Kind.MEASURED)
         self._feeds = {name: feed for name, feed in pipelines.feeds.items() if name in measured}
         self.beginning = {
-            name: SaidValue(automaton.initial_valuation.get(name), Standing.NOT_RECORDED) for name in measured
+            name: SaidValue(automaton.initial_valuation.get(name), RecordedStanding.NOT_RECORDED) for name in measured
         }
         self._commands = _readers(station)
         self.beginning |= {
-            name: SaidValue(automaton.initial_valuation.get(name), Standing.NOT_RECORDED)
+            name: SaidValue(automaton.initial_valuation.get(name), RecordedStanding.NOT_RECORDED)
             for names, _ in self._commands.values()
             for name in names
         }
@@ -250,7 +227,7 @@ class _Ear:
         self.moments: list[RecordedMoment] = []
         self.counts: dict[str, int] = {}
 
-    def take(self, each: RecordedMessage, at: float) -> bool:
+    def listen(self, each: RecordedMessage, at: float) -> bool:
         """Hear a message, where what is due before it can happen; whether it could."""
         if not self._goes_on() or not self.let_pass(at):
             self.is_cut = at <= self.now  # within a moment
@@ -283,7 +260,7 @@ class _Ear:
         if trouble := each.trouble or "; ".join(troubles):
             self._reports.note(each.topic, trouble, at)
         known = {name: value for name in names if (value := values.get(name)) is not None}
-        self._become({name: SaidValue(value, Standing.RECORDED) for name, value in known.items()}, at)
+        self._become({name: SaidValue(value, RecordedStanding.RECORDED) for name, value in known.items()}, at)
 
     def let_pass(self, until: float) -> bool:
         """Let time pass until a moment; whether it could. All that is due before happens."""
@@ -301,7 +278,7 @@ class _Ear:
 
     def troubles(self) -> Iterator[RecordedTrouble]:
         """Yield what made no sense."""
-        for topic, cause in self._inputs.reports.all():
+        for topic, cause in self._inputs.reports.every_report():
             yield RecordedTrouble(topic, cause.text, cause.count, cause.first)
 
     def close(self) -> None:
@@ -329,12 +306,12 @@ class _Ear:
         values = self._inputs.measured(at)
         fresh = {name: each.fresh(at) for name, each in self._sources()}
         became: dict[str, SaidValue] = {}
-        standings: dict[str, Standing] = {}
+        standings: dict[str, RecordedStanding] = {}
         for name, feed in self._feeds.items():
             standing = standings.get(feed)
             if standing is None:
                 standing = standings[feed] = self._standing(feed, fresh)
-            if standing is Standing.NOT_RECORDED:
+            if standing is RecordedStanding.NOT_RECORDED:
                 continue
             became[name] = SaidValue(values.get(name), standing)
         self._become(became, at)
@@ -351,10 +328,10 @@ class _Ear:
     def _sources(self) -> Iterable[tuple[str, InputTopic]]:
         return (*self._inputs.topics.items(), *self._inputs.answers.items())
 
-    def _standing(self, feed: str, fresh: Mapping[str, bool]) -> Standing:
+    def _standing(self, feed: str, fresh: Mapping[str, bool]) -> RecordedStanding:
         if not self._running.is_fresh(feed, self._spoken):
-            return Standing.NOT_RECORDED
-        return Standing.RECORDED if self._running.is_fresh(feed, fresh) else Standing.STALE
+            return RecordedStanding.NOT_RECORDED
+        return RecordedStanding.RECORDED if self._running.is_fresh(feed, fresh) else RecordedStanding.STALE
 
 
 def _readers(station: ReadyStation) -> dict[str, tuple[tuple[str, ...], CommandReader]]:

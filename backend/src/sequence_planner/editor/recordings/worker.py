@@ -13,18 +13,18 @@ from sequence_planner.editor.processes import encoded
 from sequence_planner.editor.recordings.bag import Bag, RecordedTopic
 from sequence_planner.editor.recordings.files import RecordingError, lay_out
 from sequence_planner.editor.recordings.reading import RecordedMoment, RecordingReading, read_recording
-from sequence_planner.editor.recordings.schemas import (
+from sequence_planner.editor.schemas.what_if import (
     MissingTopicView,
     OtherTopicView,
     RecordedChangeView,
     RecordedMomentView,
     RecordedStateView,
     RecordedTopicView,
+    RecordedTrafficView,
     RecordedTroubleView,
     RecordedVariableView,
-    RecordingView,
+    transferred,
 )
-from sequence_planner.editor.schemas.what_if import transferred
 from sequence_planner.editor.usable import KeptDraft, UnusableModelError, station_of
 from sequence_planner.process.budget import Budget
 from sequence_planner.process.memory_limit import memory_limit
@@ -49,7 +49,7 @@ class RecordingService:
         self._news: dict[str, str | None] = {}  # of the draft, that no answer has needed so far
         self._read: tuple[ReadyStation, str, RecordingReading] | None = None
 
-    def found_for(self, question: RecordingQuestion) -> RecordingView | RecordedStateView | None:
+    def found_for(self, question: RecordingQuestion) -> RecordedTrafficView | RecordedStateView | None:
         """Return what a question asks for. Raises `RecordingError`."""
         changed, name, asked = question
         self._news |= changed
@@ -59,14 +59,14 @@ class RecordingService:
         """Lay out a recording that has come."""
         lay_out(source, name, folder, most)
 
-    def overview(self, number: int, stages: Path, kept: Kept, since: float) -> RecordingView:
+    def overview(self, number: int, stages: Path, kept: Kept, since: float) -> RecordedTrafficView:
         """Return what a recording has for the draft, with its moments after one."""
         meant = self._meant(stages)
         if isinstance(meant, UnusableModelError):
             return unread_view(number, kept, meant.why)
         return recording_view(number, kept, meant, self._reading(meant, kept), since)
 
-    def state(self, number: int, stages: Path, kept: Kept, at: float) -> RecordedStateView:
+    def recorded_state(self, number: int, stages: Path, kept: Kept, at: float) -> RecordedStateView:
         """Return the state of the draft at a moment of a recording."""
         meant = self._meant(stages)
         if isinstance(meant, UnusableModelError):
@@ -89,15 +89,16 @@ class RecordingService:
         return self._read[2]
 
 
-_ANSWERS: Mapping[str, Callable[..., RecordingView | RecordedStateView | None]] = {
-    each.__name__: each for each in (RecordingService.lay_out, RecordingService.overview, RecordingService.state)
+_ANSWERS: Mapping[str, Callable[..., RecordedTrafficView | RecordedStateView | None]] = {
+    each.__name__: each
+    for each in (RecordingService.lay_out, RecordingService.overview, RecordingService.recorded_state)
 }
 
 
-def unread_view(number: int, kept: Kept, why: Message) -> RecordingView:
+def unread_view(number: int, kept: Kept, why: Message) -> RecordedTrafficView:
     """A recording that cannot be read, as the draft cannot be used."""
     id, name, size, _ = kept
-    return RecordingView(
+    return RecordedTrafficView(
         id=id,
         number=number,
         name=name,
@@ -122,7 +123,7 @@ def unread_view(number: int, kept: Kept, why: Message) -> RecordingView:
 
 def recording_view(
     number: int, kept: Kept, station: ReadyStation, read: RecordingReading, since: float
-) -> RecordingView:
+) -> RecordedTrafficView:
     """A recording as it was read, with the moments after one."""
     id, name, size, _ = kept
     incoming = station.pipelines.incoming
@@ -130,14 +131,14 @@ def recording_view(
     first = bisect_right(read.moments, since, key=lambda each: each.at)
     shown = read.moments[first : first + MOST_SHOWN]
 
-    def missing(topic: str) -> MissingTopicView:
+    def _lacking(topic: str) -> MissingTopicView:
         return MissingTopicView(name=topic, type=incoming[topic].topic.type_name, variables=fed(topic))
 
-    def heard(topic: RecordedTopic) -> RecordedTopicView:
+    def _was_heard(topic: RecordedTopic) -> RecordedTopicView:
         count = read.counts.get(topic.name, 0)
         return RecordedTopicView(name=topic.name, type=topic.type_name, messages=count, variables=fed(topic.name))
 
-    return RecordingView(
+    return RecordedTrafficView(
         id=id,
         number=number,
         name=name,
@@ -149,8 +150,8 @@ def recording_view(
         incomplete=read.incomplete,
         messages=read.messages,
         passed_over=sum(each.messages for each in read.others),
-        topics=[heard(each) for each in read.heard],
-        missing=[missing(each) for each in read.missing],
+        topics=[_was_heard(each) for each in read.heard],
+        missing=[_lacking(each) for each in read.missing],
         otherwise=[
             OtherTopicView(
                 name=each.topic.name,
@@ -175,7 +176,7 @@ def recording_view(
 
 def state_view(number: int, id: str, station: ReadyStation, read: RecordingReading, at: float) -> RecordedStateView:
     """The state of a station at a moment of what was read. Raises `RecordingError` for one that was not."""
-    said, known = read.at(at), read.last_known(at)
+    said, known = read.said_by(at), read.last_known(at)
     feeds, pipelines = station.pipelines.feeds, station.pipelines
     variables = []
     for name, each in said.items():
@@ -223,10 +224,10 @@ def answering(folder: Path) -> Callable[[RecordingQuestion, object], object]:
     resource.setrlimit(resource.RLIMIT_DATA, (most, most))
     service = RecordingService(folder)
 
-    def answer(question: RecordingQuestion, _: object) -> object:
+    def _answered(question: RecordingQuestion, _: object) -> object:
         return encoded(service.found_for(question))
 
-    return answer
+    return _answered
 
 
 def _data() -> int:

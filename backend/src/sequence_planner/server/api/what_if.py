@@ -5,10 +5,11 @@ its own, or all that it can come to.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any, Final
 
-from fastapi import Path, Request, Response
+from fastapi import Depends, Path, Query, Request, Response
 from pydantic import Field
+from starlette.requests import ClientDisconnect
 
 from sequence_planner.auth.roles import Role
 from sequence_planner.editor.processes import worked
@@ -22,7 +23,7 @@ from sequence_planner.editor.schemas.simulation import (
     WrittenScenarioView,
 )
 from sequence_planner.editor.schemas.state_space import StateSpaceQuestion, StateSpaceView
-from sequence_planner.editor.schemas.what_if import WhatIfView
+from sequence_planner.editor.schemas.what_if import RecordedStateView, RecordedTrafficView, WhatIfView
 from sequence_planner.language.types import Value
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.api.history import looked_back
@@ -35,6 +36,7 @@ from sequence_planner.server.services.drafts import (
     DRAFT,
     HASH,
     RUNNING,
+    TheRecordings,
     TheWorkshop,
     recording_shelf,
     version_files,
@@ -45,13 +47,22 @@ SIMULATING = 40.0  # seconds of work
 SCENARIOS = 200.0  # seconds until all scenarios are known to have passed or not
 ENGINEER = allowed(Role.ENGINEER)
 
+OCTETS: Final = "application/octet-stream"
+BODY: Final[dict[str, Any]] = {
+    "requestBody": {"required": True, "content": {OCTETS: {"schema": {"type": "string", "format": "binary"}}}}
+}
+
 router = interface("/model", tags=["model"], responses=refused(409, 503))
+recordings_router = interface("/model/recordings", tags=["model"], responses=refused(409, 503))
+FileName = Annotated[str, Query(min_length=1, max_length=255, pattern=r"^[^\x00-\x1f\x7f]*$")]
+RecordingId = Annotated[str, Path(pattern="^[0-9a-f]{1,64}$")]
+Seconds = Annotated[float, Query(ge=0, le=1e10, allow_inf_nan=False)]
 RecordNumber = Annotated[int | None, Field(ge=1, le=2**53 - 1, strict=True)]
 ScenarioName = Annotated[str, Field(min_length=1, max_length=200)]
 SimulationId = Annotated[str, Path(pattern="^[0-9a-f]{1,64}$")]
 
 
-class RecordedMoment(Body):
+class RecordingPlace(Body):
     """A moment of a recording of ROS 2 traffic that was brought: its `id`, and `at` how many seconds after it began."""
 
     id: Annotated[str, Field(pattern="^[0-9a-f]{1,64}$")]
@@ -66,7 +77,7 @@ class WhatIfBody(Body):
     seconds: Annotated[float, Field(gt=0, le=600.0, strict=True)]
     version: Annotated[str, Field(pattern=f"^({DRAFT}|{RUNNING}|{HASH})$")] = DRAFT
     number: RecordNumber = None
-    recording: RecordedMoment | None = None
+    recording: RecordingPlace | None = None
     present: dict[str, Value | None] | None = None
 
 
@@ -80,7 +91,7 @@ class StepsBody(Body):
 
     steps: Annotated[tuple[StepView, ...], Field(max_length=2000)] = ()
     number: RecordNumber = None
-    recording: RecordedMoment | None = None
+    recording: RecordingPlace | None = None
     present: dict[str, Value | None] | None = None
     follow: bool = False
     until: Annotated[str, Field(min_length=1, max_length=2000)] | None = None
@@ -124,7 +135,7 @@ class StateSpaceBody(Body):
 
     question: StateSpaceQuestion = StateSpaceQuestion()
     number: RecordNumber = None
-    recording: RecordedMoment | None = None
+    recording: RecordingPlace | None = None
     present: dict[str, Value | None] | None = None
 
 
@@ -153,7 +164,7 @@ class SimulationBody(Body):
     """
 
     number: RecordNumber = None
-    recording: RecordedMoment | None = None
+    recording: RecordingPlace | None = None
     present: dict[str, Value | None] | None = None
     fresh: bool = False
     scenario: ScenarioName | None = None
@@ -267,3 +278,65 @@ async def _beginning(
         return (await looked_back(request, body.number)).past.values
     view = await live_view(await controller(request))
     return {name: variable.value for name, variable in view.variables.items()}
+
+
+# Recordings of ROS 2 traffic, from which it can begin.
+
+
+async def octets_only(request: Request) -> None:
+    """A file is sent as such: no page of somebody else can do so without being asked first."""
+    media, _, _ = request.headers.get("content-type", "").partition(";")
+    if media.strip().lower() != OCTETS:
+        raise ProblemFound(415, "not-octets", message("refused.not-octets.header"))
+
+
+@recordings_router.post(
+    "",
+    status_code=201,
+    dependencies=[ENGINEER, Depends(octets_only)],
+    response_model=RecordedTrafficView,
+    responses=refused(400, 408, 413, 415, 422, 507),
+    openapi_extra=BODY,
+)
+async def bring_recording(name: FileName, shelf: TheRecordings, request: Request) -> Response:
+    """Bring a recording of the station's topics, as `ros2 bag record` makes it: a file .mcap or .db3, or a zip of its
+    folder. It is read with the pipelines of the draft.
+
+    The last four are kept, each for an hour after it was used. One that cannot be used is not: 422 `recording-unread`
+    says what is wrong with which file, and what to do.
+    """
+    try:
+        answer = found(await shelf.bring(name, request.stream()))
+    except ClientDisconnect:
+        raise ProblemFound(400, "recording-incomplete", message("refused.recording-incomplete.again")) from None
+    answer.status_code = 201
+    return answer
+
+
+@recordings_router.get(
+    "/{id}", dependencies=[ENGINEER], response_model=RecordedTrafficView, responses=refused(404, 422)
+)
+async def read_recording(
+    id: RecordingId, shelf: TheRecordings, request: Request, since: Seconds | None = None
+) -> Response:
+    """Return what a recording has for the draft as it is now, with at most 2000 moments, those after `since`."""
+    text = await while_waited_for(request, shelf.overview(id, -1.0 if since is None else since))
+    return Response(status_code=204) if text is None else found(text)  # that nobody reads the one
+
+
+@recordings_router.get(
+    "/{id}/state", dependencies=[ENGINEER], response_model=RecordedStateView, responses=refused(404, 422)
+)
+async def recorded_state(id: RecordingId, at: Seconds, shelf: TheRecordings, request: Request) -> Response:
+    """Return the state of the draft that all messages give until so many seconds after the recording began.
+
+    What no message gave is as the model begins, and said to be `not-recorded`.
+    """
+    text = await while_waited_for(request, shelf.state_then(id, at))
+    return Response(status_code=204) if text is None else found(text)  # that nobody reads the one
+
+
+@recordings_router.delete("/{id}", status_code=204, dependencies=[ENGINEER], responses=refused(404))
+async def put_recording_away(id: RecordingId, shelf: TheRecordings) -> None:
+    """Put a recording away before its time."""
+    await shelf.put_away(id)

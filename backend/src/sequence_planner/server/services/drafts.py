@@ -15,12 +15,12 @@ from sequence_planner.editor.draft import PartChangedError
 from sequence_planner.model.files import Files
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.errors import ProblemFound
+from sequence_planner.server.recordings.shelf import RecordingShelf
 from sequence_planner.server.services.deployments import revision_of
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.examples import ExampleShelf
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.reading import ReadableWorkshop
-from sequence_planner.server.services.recordings import RecordingShelf
 from sequence_planner.server.settings import Settings
 from sequence_planner.texts.message import message
 

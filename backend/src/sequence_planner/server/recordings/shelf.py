@@ -63,8 +63,8 @@ class RecordingShelf:
         self._kept.clear()
         await run_in_threadpool(shutil.rmtree, self._folder, ignore_errors=True)
 
-    async def take(self, name: str, pieces: AsyncIterator[bytes]) -> str:
-        """Take a recording as it comes, and read it; JSON of a `RecordingView`.
+    async def bring(self, name: str, pieces: AsyncIterator[bytes]) -> str:
+        """Take a recording as it comes, and read it; JSON of a `RecordedTrafficView`.
 
         Raises `ProblemFound` for one that cannot be used, of which nothing stays, and `WorkerError`.
         """
@@ -90,21 +90,21 @@ class RecordingShelf:
 
     async def overview(self, id: str, since: float) -> str:
         """Return what a recording has for the draft as it is now, with its moments after one; JSON of a
-        `RecordingView`.
+        `RecordedTrafficView`.
 
         Raises `ProblemFound` where it is kept no more or cannot be read, and `WorkerError`.
         """
         return await self._found("overview", id, since)
 
-    async def state(self, id: str, at: float) -> str:
+    async def state_then(self, id: str, at: float) -> str:
         """Return the state of the draft at a moment of a recording; JSON of a `RecordedStateView`. Raises as
         `overview` does.
         """
-        return await self._found("state", id, at)
+        return await self._found("recorded_state", id, at)
 
     async def present(self, id: str, at: float) -> Mapping[str, Value | None]:
         """Return the values with which What-if begins at a moment of a recording. Raises as `overview` does."""
-        values: dict[str, Value | None] = json.loads(await self.state(id, at))["values"]
+        values: dict[str, Value | None] = json.loads(await self.state_then(id, at))["values"]
         return values
 
     async def put_away(self, id: str) -> None:
