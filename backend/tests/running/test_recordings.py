@@ -12,7 +12,7 @@ from support.recordings import STORAGES, recording
 from support.station import RunningStation, station
 from support.waiting import until
 
-QUIET = 0.7  # seconds before and after a moment at which nothing changes: a busy machine's clocks agree within it
+QUIET = 0.4  # seconds before and after a moment at which nothing changes: a busy machine's clocks agree within it
 MOMENTS = 6
 OCTETS = {"Content-Type": "application/octet-stream"}
 
@@ -22,9 +22,12 @@ def test_at_each_moment_a_recording_tells_what_the_journal_of_the_station_tells(
     ready = prepare_station(BOLT_TIGHTENING)
     measured = [name for name in ready.automaton.names(Kind.MEASURED) if name in ready.pipelines.feeds]
     outputs = sorted(ready.automaton.outputs)
-    with recording(ready) as recorder, station(tmp_path, "--emulator", "--start", "--emulator-speed", "2") as running:
-        _work(running)
-        time.sleep(2 * QUIET)
+    with station(tmp_path, "--emulator", "--start", "--emulator-speed", "1") as running:
+        # Who listens to commands before is taken for a device that is no emulated one.
+        until(lambda: running.get("production", "station") == "started")
+        with recording(ready) as recorder:
+            _work(running)
+            time.sleep(2 * QUIET)
         for storage in STORAGES:
             file = recorder.write(tmp_path / storage, storage)
             params = {"name": file.name}
