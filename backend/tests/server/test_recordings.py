@@ -121,13 +121,13 @@ def test_it_is_read_with_the_draft_as_it_is(eva: httpx.Client, drive: Path) -> N
         "text"
     ]
     text = was.replace("above_engine: [0.6, -1.2", "above_engine: [0.7, -1.2")
-    edit = {"kind": "write", "file": "resources/robot.yaml", "was": was, "text": text}
+    edit = {"kind": "text", "file": "resources/robot.yaml", "was": was, "text": text}
     assert eva.post(f"{MODEL}/changes", json={"title": "another pose", "edits": [edit]}).status_code == 200
     again = eva.get(f"{RECORDINGS}/{found['id']}").json()
     assert again["number"] == found["number"] + 1
     change = {each["name"]: each for each in again["moments"][1]["changes"]}["robot.pose"]
     assert change["after"] == "unknown"
-    broken = {"kind": "write", "file": "resources/robot.yaml", "was": text, "text": "topics: 1"}
+    broken = {"kind": "text", "file": "resources/robot.yaml", "was": text, "text": "topics: 1"}
     assert eva.post(f"{MODEL}/changes", json={"title": "nonsense", "edits": [broken]}).status_code == 200
     unusable = eva.get(f"{RECORDINGS}/{found['id']}").json()
     assert "robot.yaml" in json.dumps(unusable["obstacle"])
