@@ -68,6 +68,7 @@ def _work(running: RunningStation) -> None:
         for id, task in running.get("tasks").items():
             running.browser.post(f"tasks/{id}/acknowledgement", json={"revision": task["revision"]})
         bolts = running.get("variables", "state")
-        return sum(each["value"] == "tightened" for name, each in bolts.items() if name.startswith("bolts[")) > 1
+        tight = [name for name, each in bolts.items() if name.startswith("bolts[") and each["value"] == "tightened"]
+        return len(tight) > 1
 
     until(is_tight, seconds=90)
