@@ -32,7 +32,7 @@ from sequence_planner.process.service_manager import ServiceManager
 from sequence_planner.process.unix_socket import LONGEST_PATH
 from sequence_planner.retention.settings import Retention
 from sequence_planner.server.binding import bind, check_demonstration, check_endpoint, trusting_context
-from sequence_planner.server.settings import Endpoint, SettingsError, address_of
+from sequence_planner.server.settings import LARGEST_RECORDING, Endpoint, SettingsError, address_of
 from sequence_planner.simulation.device_state import standing_file
 from sequence_planner.startup.deployment import UnderWay
 from sequence_planner.startup.preloads import CONTROLLER, EMULATOR, NETWORK, SERVER
@@ -114,6 +114,7 @@ class Launch:
     webhooks: Targets = field(default_factory=Targets)
     backups: Keeping = field(default_factory=Keeping)
     retention: Retention = field(default_factory=Retention)
+    largest_recording: int = LARGEST_RECORDING
     new: bool = False
     memory: float = USUAL  # GB, for each process that checks a model
     cut_off: DeploymentNote | None = None
@@ -203,6 +204,7 @@ class _Launcher:
         server += ["--webhook-loopback"] if request.webhooks.loopback else []
         server += request.backups.arguments()
         server += request.retention.arguments()
+        server += [f"--largest-recording={request.largest_recording}"]
         # It listens as long as this process lives: whoever connects while a server has died waits for the next one.
         listening = fcntl.fcntl(listener, fcntl.F_DUPFD_CLOEXEC, LISTENER)
         server += [*_options(request.endpoint), f"--listener={listening}"]

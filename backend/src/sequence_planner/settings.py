@@ -86,6 +86,7 @@ class Configuration(DataModel):
     archive_folder: str | None = None
     archive_days: Annotated[float, Field(ge=1, le=MOST_DAYS)] | None = None
     archive_gb: Annotated[float, Field(ge=0.001, le=MOST_GB)] | None = None
+    largest_recording: Annotated[int, Field(ge=1, le=100_000)] | None = None
     log_format: LogFormat | None = None
     memory: Annotated[float, Field(ge=LEAST, le=MOST)] | None = None
 

@@ -111,14 +111,17 @@ def test_json_may_name_its_encoding(client: httpx.Client) -> None:
     assert client.put("/api/v1/mode", content=b'{"mode": "paused"}', headers=headers).status_code == 204
 
 
+FILES = ("/api/v1/model/recordings",)  # each is brought as it is, and a foreign page can send no such type either
+
+
 def test_every_route_that_changes_something_reads_json_only(administrator: httpx.Client) -> None:
     paths = administrator.get("/api/v1/openapi.json").json()["paths"]
     changing = [(path, verb) for path, verbs in paths.items() for verb in verbs if verb not in ("get", "delete")]
-    assert len(changing) == 89
+    assert len(changing) == 90
     for path, verb in changing:
         address = path.replace("{", "").replace("}", "")
         answer = administrator.request(verb.upper(), address, headers={"Content-Type": "text/plain"})
-        problem(answer, 415, "not-json")
+        problem(answer, 415, "not-octets" if path in FILES else "not-json")
 
 
 def in_pieces(size: int) -> Iterator[bytes]:

@@ -1,5 +1,10 @@
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
 import { examine } from '../../station/barriers.ts';
 import { restsOnPerson, variable } from '../../station/seen.ts';
+import { EXECUTABLE, ROOT } from '../../station/station.ts';
 import { expect, test } from '../../station/test.ts';
 
 /** The server prepares the model, then simulates, with what the machine has to spare. */
@@ -189,4 +194,67 @@ test('the state space of the draft is folded by chosen variables, with the plan 
 		await main.getByRole('button', { name: 'Look at all again' }).click();
 		await expect(picture.locator('[data-mark="cut"]')).toHaveCount(0, SIMULATED);
 	});
+});
+
+test('what-if begins from a moment of a recording of the traffic, with what it lacks', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	const folder = mkdtempSync(join(tmpdir(), 'recording-'));
+	const script = join(import.meta.dirname, '../../station/recording.py');
+	const made = spawnSync(join(dirname(EXECUTABLE), 'python'), [script, join(ROOT, 'models/bolt_tightening'), join(folder, 'drive')], { encoding: 'utf8' });
+	expect(made.stderr).toBe('');
+	await operate.getByRole('link', { name: 'What-if' }).click();
+	const main = operate.locator('main');
+	const moment = main.getByRole('slider', { name: 'Moment of the recording' });
+	const pose = main.locator('[data-variable="robot.pose"]');
+
+	await test.step('what is no recording is refused, with what to do', async () => {
+		await main.getByRole('combobox', { name: 'Where it begins' }).selectOption('A recording of ROS 2 traffic', SIMULATED);
+		writeFileSync(join(folder, 'note.mcap'), 'hello');
+		await main.locator('input[type=file]').setInputFiles(join(folder, 'note.mcap'));
+		await expect(main.getByRole('alert').filter({ hasText: 'note.mcap is no recording: choose a .mcap or a .db3 file' })).toBeVisible(SIMULATED);
+	});
+
+	await test.step('a recording is read, and says what it lacks', async () => {
+		await main.locator('input[type=file]').setInputFiles(join(folder, 'drive', 'drive.mcap'));
+		await expect(main.getByRole('heading', { name: 'drive.mcap' })).toBeVisible(SIMULATED);
+		const lacks = main.locator('details');
+		await expect(lacks).toContainText('/ur10/planning_scene/state');
+		await expect(lacks).toContainText('1 message, the first at 0:00.750');
+		await expect(main.getByText('1 other topic with 1 message passed over')).toBeVisible();
+	});
+
+	await test.step('a moment is chosen, and tells where the station was', async () => {
+		await moment.focus();
+		await moment.press('Home');
+		await expect(pose).toHaveAttribute('data-value', 'home');
+		await moment.press('End');
+		await expect(pose).toHaveAttribute('data-value', 'above_engine');
+		await expect(main.locator('[data-variable="nutrunner.tool_is_idle"]')).toHaveAttribute('data-standing', 'stale');
+		await expect(main.locator('[data-variable="robot.tool_is_attached"]')).toHaveAttribute('data-standing', 'not-recorded');
+	});
+	await examine(operate, 'what-if-recording');
+
+	await test.step('it begins there, and a step is taken', async () => {
+		await main.getByRole('button', { name: 'Begin from here' }).click();
+		const step = main.getByRole('slider', { name: 'Step' });
+		await expect(step).toHaveAttribute('aria-valuenow', '0', SIMULATED);
+		const state = main.getByRole('region', { name: 'State' });
+		await state.getByRole('button', { name: /^All/ }).click();
+		await expect(state).toContainText('above the engine');
+		await main.getByRole('button', { name: /^Take: / }).first().click();
+		await expect(step).toHaveAttribute('aria-valuenow', '1', SIMULATED);
+		await main.getByRole('button', { name: 'Choose another moment' }).click();
+		await expect(moment).toBeVisible();
+	});
+
+	await test.step('and in simulated time', async () => {
+		await main.getByRole('button', { name: 'In simulated time' }).click();
+		await main.getByRole('combobox', { name: 'Begins with' }).selectOption('a recording of ROS 2 traffic', SIMULATED);
+		await main.getByRole('button', { name: 'Begin from here' }).click(SIMULATED);
+		await expect(main.getByTestId('simulated-time')).toHaveAttribute('data-seconds', '0', SIMULATED);
+		const state = main.getByRole('region', { name: 'State' });
+		await state.getByRole('button', { name: /^All/ }).click();
+		await expect(state).toContainText('above the engine');
+	});
+	rmSync(folder, { recursive: true });
 });

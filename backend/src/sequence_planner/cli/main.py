@@ -70,6 +70,11 @@ COMMANDS = (
         "Plan the goals of operations from the initial state, or from that of --state: what `tick --json` prints.",
     ),
     LazyCommand(
+        "recording",
+        "recordings.recording:recording",
+        "Say what a recording of ROS 2 traffic has for a station, or with --at where the station was at a moment.",
+    ),
+    LazyCommand(
         "export",
         "model.export:export",
         "Write a model for other tools, as a plain automaton or in CIF; "

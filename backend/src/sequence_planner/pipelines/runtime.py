@@ -151,17 +151,18 @@ class RunningPipelines:
             self._changed = set(self._nodes)
         for name in self._changed:
             node = self._nodes[name]
-            own = node.values if self._is_fresh(name, fresh) else {}
+            own = node.values if self.is_fresh(name, fresh) else {}
             for writing in node.description.writings:
                 self._values[writing.variable] = own.get(writing.variable)
         self._changed = set()
         return dict(self._values)
 
-    def _is_fresh(self, name: str, fresh: Mapping[str, bool]) -> bool:
+    def is_fresh(self, name: str, fresh: Mapping[str, bool]) -> bool:
+        """Return whether what a topic or a flow says counts, where these topics are `fresh`."""
         description = self._nodes[name].description
         if isinstance(description, IncomingPipeline):
             return fresh[name]
-        sources = (self._is_fresh(source, fresh) for source in description.sources.values())
+        sources = (self.is_fresh(source, fresh) for source in description.sources.values())
         return any(sources) if description.joining is Joining.INTERLEAVE else all(sources)
 
     def trouble(self, topic: str) -> str | None:

@@ -113,8 +113,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.history = looking_back = (
             None if folder is None else HistoryProcess(folder, settings.database, archives)
         )
-        shop, examples = furnish(office, settings)
-        app.state.workshop, app.state.examples = shop, examples
+        shop, examples, recordings = furnish(office, settings)
+        app.state.workshop, app.state.examples, app.state.recordings = shop, examples, recordings
         app.state.deployments = deployments = None if shop is None else DeploymentService(shop, controller)
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
@@ -135,7 +135,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
             await asyncio.gather(*running, return_exceptions=True)
             if looking_back is not None:
                 looking_back.close()
-            await examples.close()
+            await asyncio.gather(*(each.close() for each in (examples, recordings) if each is not None))
             if deployments is not None:
                 await deployments.close()
             await run_in_threadpool(office.close)
@@ -176,7 +176,7 @@ def _surround(app: FastAPI, settings: Settings) -> None:
     """Add what each request passes before its route, and each answer after it; the last is outermost."""
     app.add_middleware(GZipMiddleware, minimum_size=LONG, compresslevel=1)
     app.add_middleware(Remembering)
-    app.add_middleware(RequestGuard, endpoint=settings)
+    app.add_middleware(RequestGuard, endpoint=settings, largest_recording=settings.largest_recording)
     if settings.proxies:
         app.add_middleware(Forwarded, proxies=settings.proxies)
     app.add_middleware(ErrorMiddleware)

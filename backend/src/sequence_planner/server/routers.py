@@ -59,5 +59,6 @@ ROUTERS: Final = (
     model.draft_pipelines_router,
     revisions.router,
     what_if.router,
+    what_if.recordings_router,
     openapi_document.router,
 )

@@ -20,6 +20,7 @@ LOOPBACK_NAMES = ("127.0.0.1", LOCALHOST, "[::1]")
 NAME = re.compile(
     r"(?P<host>[a-z0-9]([a-z0-9._-]{0,251}[a-z0-9])?|\[[0-9a-f:.]+\])(:(?P<port>[1-9][0-9]{0,4}))?", re.IGNORECASE
 )
+LARGEST_RECORDING = 500  # MB
 STANDARD_PORTS = {"http": 80, "https": 443}
 
 
@@ -117,7 +118,8 @@ class Settings(Endpoint):
     is the URL of where identity and journal are kept; `start` is how the station is run. With `demonstration` one may
     be opened without signing in, with `provider` people may sign in there. `webhooks` is where events may be sent to,
     `backups` how they are kept, and `retention` how long all else is. `examples` is a folder of example stations in
-    place of those that come with the program.
+    place of those that come with the program. A recording that an engineer brings has at most `largest_recording`
+    MB, as it comes and unpacked.
     """
 
     controller_socket: Path
@@ -133,6 +135,7 @@ class Settings(Endpoint):
     backups: Keeping = field(default_factory=Keeping)
     retention: Retention = field(default_factory=Retention)
     examples: Path | None = None
+    largest_recording: int = LARGEST_RECORDING
 
     @property
     def revisions(self) -> Path | None:

@@ -341,6 +341,23 @@ REFUSALS: Final[dict[str, str]] = {
         "Somebody has changed the draft since you looked at it. Look at it again, then repeat this."
     ),
     "refused.no-simulation": "There is no such simulation any more",
+    "refused.recording-unread": "The recording cannot be used",
+    "refused.recording-too-large": "The recording is too large",
+    "refused.recording-too-large.most": (
+        "It has more than {most} MB. Record fewer topics or a shorter time, or start the station with a larger "
+        "`--largest-recording`."
+    ),
+    "refused.not-octets": "The body is not a file",
+    "refused.not-octets.header": "Send the file as it is, with the header `Content-Type: application/octet-stream`.",
+    "refused.recording-incomplete": "The recording did not come whole",
+    "refused.recording-incomplete.again": "Its end did not arrive. Send it again.",
+    "refused.no-recording": "There is no such recording any more",
+    "refused.no-recording.again": (
+        "The station keeps the last {most} recordings, each for {minutes} minutes after it was used. Choose the file "
+        "again."
+    ),
+    "refused.no-room": "There is no room for it",
+    "refused.no-room.disk": "The disk of the station has no room for the recording: {why}. Make room there.",
     "refused.not-simulated": "That cannot be simulated",
     "refused.not-folded": "The state space cannot be shown like that",
     "refused.no-revision": "There is no such revision",

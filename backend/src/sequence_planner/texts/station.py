@@ -168,6 +168,52 @@ STATION: Final[dict[str, str]] = {
     "step.not-set": "{name} is written by the station itself: only measured and estimated variables can be set",
     "step.always-known": "{name} is not measured, and so always known",
     "step.no-simulation": "this simulation is no more: begin it again",
+    # A recording of ROS 2 traffic that What-if is to begin from.
+    "recording.no-bytes": "{file} is empty: record once more, or copy it again",
+    "recording.form": (
+        "{file} is no recording: choose a .mcap or a .db3 file, or a .zip of the folder that `ros2 bag record` has made"
+    ),
+    "recording.ros-1": "{file} is a recording of ROS 1: convert it with `rosbags-convert`",
+    "recording.only-metadata": "{file} only says what is in a recording: choose a .zip of its whole folder",
+    "recording.broken": "{file} cannot be read: {why}. Copy it again, or mend it with `ros2 bag reindex`",
+    "recording.cut-off": (
+        "{file} lacks its end, as where the recorder was killed, or the file was copied in part. Copy it again, or "
+        "mend it with `mcap recover`"
+    ),
+    "recording.memory": "{file} takes more memory than there is for it: record fewer topics or a shorter time",
+    "recording.library": (
+        "the library {library}, which recordings are read with, is missing here: install the program again with all "
+        "that belongs to it"
+    ),
+    "recording.unpacked": (
+        "{file} has more than {most} MB once it is unpacked: record fewer topics or a shorter time, or start the "
+        "station with a larger `--largest-recording`"
+    ),
+    "recording.no-room": "{file} has no room on the disk of the station: {why}. Make room there",
+    "recording.chunk": "{file} keeps more than {most} MB packed together: record with smaller chunks",
+    "recording.metadata": "{file} cannot be read: {why}. Make it again with `ros2 bag reindex`",
+    "recording.metadata-large": "{file} has more than {most} MB: make it again with `ros2 bag reindex`",
+    "recording.many-files": "{file} has more than {most} files: choose one recording alone",
+    "recording.compression": (
+        "{file} says that messages are packed as {form}, which cannot be unpacked: record with "
+        "`--compression-format zstd`, or without compression"
+    ),
+    "recording.zip": "{file} cannot be unpacked: {why}. Make the archive again, without a password",
+    "recording.zip-path": (
+        "{file} has a file that would lie outside of its folder: {path}. Make an archive of one recording's folder"
+    ),
+    "recording.several": "{file} has several recordings, in {folders}: make an archive of one of them",
+    "recording.no-files": (
+        "{file} has no .mcap and no .db3 file: choose one, or the folder that `ros2 bag record` has made"
+    ),
+    "recording.missing": "{file} lacks {names}, which its {metadata} names: add what is missing",
+    "recording.empty": "{file} has no message: record while the devices or their emulation run",
+    "recording.other-station": (
+        "no topic that the draft hears is in the recording: it hears {wanted}, and "
+        "what was recorded is {recorded}. Choose a recording of this station"
+    ),
+    "recording.nothing-incoming": "the draft hears no topic: give it a pipeline from a topic to variables first",
+    "recording.not-in-it": "the recording was read from 0 to {end} s, and has no moment at {at} s: choose another one",
     "step.not-by-device": "no emulated device tells {name}: only measured variables can be brought to a value by hand",
     # A scenario by which a station is tested.
     "scenario.no-task": "nobody has a task of {ability} at this moment",

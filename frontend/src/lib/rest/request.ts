@@ -14,6 +14,8 @@ type Method = 'GET' | 'POST' | 'PUT' | 'PATCH' | 'DELETE';
 export interface Rest {
 	/** Sent as JSON. */
 	readonly body?: object;
+	/** Sent as it is, piece by piece. */
+	readonly file?: Blob;
 	/** The revision that the change was made upon, in double quotes. */
 	readonly ifMatch?: string;
 	/** What is sent again with the same is done once. */
@@ -57,14 +59,15 @@ export function aheadOf(header: string | null, now: number): number {
 export async function request<Value = undefined>(
 	method: Method,
 	path: Address,
-	{ body, ifMatch, idempotencyKey, patience = PATIENCE, signal = AbortSignal.timeout(patience) }: Rest = {}
+	{ body, file, ifMatch, idempotencyKey, patience = PATIENCE, signal = AbortSignal.timeout(patience) }: Rest = {}
 ): Promise<Answer<Value>> {
 	const headers: Record<string, string> = {};
 	if (body !== undefined) headers['Content-Type'] = 'application/json';
+	if (file !== undefined) headers['Content-Type'] = 'application/octet-stream';
 	if (ifMatch !== undefined) headers['If-Match'] = ifMatch;
 	if (idempotencyKey !== undefined) headers['Idempotency-Key'] = idempotencyKey;
 	try {
-		const sent = body === undefined ? {} : { body: JSON.stringify(body) };
+		const sent = file !== undefined ? { body: file } : body === undefined ? {} : { body: JSON.stringify(body) };
 		const answer = await fetch(path, { method, headers, signal, ...sent });
 		const text = await answer.text();
 		if (answer.ok) {

@@ -58,9 +58,9 @@ export class Trail {
 	readonly values = $derived.by(() => this.#valuesAfter(this.at));
 	readonly changed = $derived(Object.fromEntries((this.moments[this.at]?.changes ?? []).map(({ name, before }) => [name, before])));
 
-	/** Begins anew: from the station as it is now, or from a record of its history. */
-	async begin(number: number | null): Promise<void> {
-		const told = await this.#ask(number === null ? {} : { number });
+	/** Begins anew: from a record of the history, from a moment of a recording, or without either from the station as it is now. */
+	async begin(from: Pick<Partial<StepsBody>, 'number' | 'recording'> = {}): Promise<void> {
+		const told = await this.#ask(from);
 		if (told === null) return;
 		this.branches = [];
 		this.#show({ id: this.#next++, from: null, steps: [], told }, 0);

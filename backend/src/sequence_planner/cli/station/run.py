@@ -42,7 +42,7 @@ from sequence_planner.retention.settings import (
 )
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.ros.transports.choice import TransportChoice, settled
-from sequence_planner.server.settings import Endpoint, Settings, SettingsError
+from sequence_planner.server.settings import LARGEST_RECORDING, Endpoint, Settings, SettingsError
 from sequence_planner.settings import ConfigurationError, has_password, url_in
 
 # The options of `run` about the provider with which people sign in, and what they mean.
@@ -224,6 +224,15 @@ ArchiveGb = Annotated[
         min=0.001, max=MOST_GB, metavar="GB", help="Remove the oldest from an archive with more; by default nothing is."
     ),
 ]
+LargestRecording = Annotated[
+    int,
+    typer.Option(
+        min=1,
+        max=100_000,
+        metavar="MB",
+        help="How large a recording may be that What-if is to begin from, as it comes and unpacked.",
+    ),
+]
 Demonstration = Annotated[
     bool,
     typer.Option(
@@ -283,6 +292,7 @@ def run(
     archive_folder: ArchiveFolder = None,
     archive_days: ArchiveDays = None,
     archive_gb: ArchiveGb = None,
+    largest_recording: LargestRecording = LARGEST_RECORDING,
     new: Annotated[
         bool,
         typer.Option(
@@ -352,6 +362,7 @@ def run(
         retention=Retention.from_options(
             journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb
         ),
+        largest_recording=largest_recording,
         new=new,
         memory=memory,
         cut_off=cut_off,
@@ -424,6 +435,7 @@ def server(
     archive_folder: ArchiveFolder = None,
     archive_days: ArchiveDays = None,
     archive_gb: ArchiveGb = None,
+    largest_recording: LargestRecording = LARGEST_RECORDING,
     launched: Launched = False,
     listener: Annotated[
         int | None, typer.Option("--listener", hidden=True, help="The descriptor of a socket that listens already.")
@@ -468,6 +480,7 @@ def server(
         retention=Retention.from_options(
             journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb
         ),
+        largest_recording=largest_recording,
     )
     listening = None if listener is None else ListeningSocket(fileno=listener)
     serve(settings, listening)

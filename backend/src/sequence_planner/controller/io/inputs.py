@@ -63,6 +63,12 @@ class InputErrors:
         """Note that what came last makes sense."""
         self._troubled.discard(place)
 
+    def every_report(self) -> Iterator[tuple[str, InputError]]:
+        """Each report with its place; none is forgotten."""
+        for place, causes in self._places.items():
+            for report in causes.values():
+                yield place, report
+
     def current(self, now: float) -> Iterator[tuple[str, str, InputError]]:
         """Each report with its place and a key for its cause; those that are long over are forgotten."""
         for place, causes in list(self._places.items()):
@@ -116,10 +122,17 @@ class Inputs:
     """All incoming topics of a station, and what becomes of their messages."""
 
     def __init__(
-        self, pipelines: StationPipelines, registry: MessageRegistry, initial: Mapping[str, Value | None] | None = None
+        self,
+        pipelines: StationPipelines,
+        registry: MessageRegistry,
+        initial: Mapping[str, Value | None] | None = None,
+        *,
+        patient: bool = False,
     ) -> None:
-        """`initial` has what the variables say that come of requests, as long as nothing is asked."""
-        self.running = RunningPipelines(pipelines)
+        """`initial` has what the variables say that come of requests, as long as nothing is asked. With `patient`,
+        stages that work beside are waited for.
+        """
+        self.running = RunningPipelines(pipelines, patient)
         self.topics = {name: InputTopic(pipeline, self.running) for name, pipeline in pipelines.incoming.items()}
         self.answers = {name: InputTopic(pipeline, self.running) for name, pipeline in pipelines.answers.items()}
         self.reports = InputErrors()

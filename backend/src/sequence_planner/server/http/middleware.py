@@ -28,7 +28,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.core.distribution import Distribution
 from sequence_planner.server.errors import FieldError, ProblemFound, refusal_response
-from sequence_planner.server.settings import LOOPBACK_NAMES, Endpoint, SettingsError, address_of, split_name
+from sequence_planner.server.settings import (
+    LARGEST_RECORDING,
+    LOOPBACK_NAMES,
+    Endpoint,
+    SettingsError,
+    address_of,
+    split_name,
+)
 from sequence_planner.texts.message import message
 
 # The answer to what stops a station: it was carried out, and whether the journal has it.
@@ -169,14 +176,18 @@ LARGEST_BODY = 64 * 1024  # bytes
 EDITS = 4 * 1024 * 1024  # bytes: files of a model, as they were and as they shall be
 LARGER_BODIES = {"/api/v1/model/changes": EDITS, "/api/v1/model/pipelines/preview": EDITS}
 BODY_SECONDS = 20.0  # in which a body must have come
+RECORDINGS = "/api/v1/model/recordings"
+RECORDING_SECONDS = 900.0  # in which a recording must have come
+MB = 1_000_000
 ABOUT_ITSELF = ("/healthz", "/readyz", "/metrics")  # what a machine asks a server that runs on it
 
 
 class RequestGuard:
     """Refuses requests that do not mean `endpoint`, and bodies that are too large or too slow."""
 
-    def __init__(self, app: ASGIApp, endpoint: Endpoint) -> None:
+    def __init__(self, app: ASGIApp, endpoint: Endpoint, largest_recording: int = LARGEST_RECORDING) -> None:
         self.app = app
+        self.largest = {**LARGER_BODIES, RECORDINGS: largest_recording * MB}
         self.hosts = endpoint.hosts
         self.origins = endpoint.origins
 
@@ -186,11 +197,13 @@ class RequestGuard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        largest = LARGER_BODIES.get(scope["path"], LARGEST_BODY)
+        largest = self.largest.get(scope["path"], LARGEST_BODY)
+        too_large = _recording_too_large if scope["path"] == RECORDINGS else _too_large
+        seconds = RECORDING_SECONDS if scope["path"] == RECORDINGS else BODY_SECONDS
         wrong = _framing(headers) or _address(scope) or self._host(scope, headers) or self._origin(scope, headers)
-        refused = wrong or _length(headers, largest)
+        refused = wrong or (too_large(largest) if _announced(headers) > largest else None)
         if refused is None:
-            await self.app(scope, _bounded(receive, largest), send)
+            await self.app(scope, _bounded(receive, largest, seconds, too_large), send)
             return
         response = refusal_response(refused)
         # Starlette turns the answer to a handshake into the messages of the "websocket.http.response" extension.
@@ -237,9 +250,15 @@ def _address(scope: Scope) -> ProblemFound | None:
     return None
 
 
-def _length(headers: Headers, largest: int) -> ProblemFound | None:
+def _announced(headers: Headers) -> int:
     announced = headers.get("content-length", "0")
-    return _too_large(largest) if announced.isdecimal() and int(announced) > largest else None
+    return int(announced) if announced.isdecimal() else 0
+
+
+def _recording_too_large(largest: int) -> ProblemFound:
+    return ProblemFound(
+        413, "recording-too-large", message("refused.recording-too-large.most", most=f"{largest // MB}")
+    )
 
 
 def _too_large(largest: int) -> ProblemFound:
@@ -264,10 +283,10 @@ def _means_loopback(host: str) -> bool:
         return False
 
 
-def _bounded(receive: Receive, largest: int) -> Receive:
+def _bounded(receive: Receive, largest: int, seconds: float, too_large: Callable[[int], ProblemFound]) -> Receive:
     """Count a body that did not say its length as it comes, and stop reading when it is too large or too slow."""
     size, complete = 0, False
-    due = asyncio.get_running_loop().time() + BODY_SECONDS
+    due = asyncio.get_running_loop().time() + seconds
 
     async def bounded() -> Message:
         nonlocal size, complete
@@ -276,12 +295,12 @@ def _bounded(receive: Receive, largest: int) -> Receive:
                 event = await receive()
         except TimeoutError:
             raise ProblemFound(
-                408, "body-too-slow", message("refused.body-too-slow.seconds", seconds=BODY_SECONDS)
+                408, "body-too-slow", message("refused.body-too-slow.seconds", seconds=seconds)
             ) from None
         complete = not event.get("more_body", False)
         size += len(event.get("body", b""))
         if size > largest:
-            raise _too_large(largest)
+            raise too_large(largest)
         return event
 
     return bounded

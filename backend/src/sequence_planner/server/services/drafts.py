@@ -15,6 +15,7 @@ from sequence_planner.editor.draft import PartChangedError
 from sequence_planner.model.files import Files
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.errors import ProblemFound
+from sequence_planner.server.recordings.shelf import RecordingShelf
 from sequence_planner.server.services.deployments import revision_of
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.examples import ExampleShelf
@@ -30,9 +31,17 @@ EXAMPLE = "example"  # what a question is about that is not about the draft
 ExampleName = Annotated[str, Query(pattern="^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
 
 
-def furnish(identity: IdentityService, settings: Settings) -> tuple[Workshop | None, ExampleShelf]:
-    """The workshop of the server's station, where it knows its model, and the example stations."""
-    return Workshop.for_model(identity, settings), ExampleShelf(settings.stream, settings.examples)
+def furnish(
+    identity: IdentityService, settings: Settings
+) -> tuple[Workshop | None, ExampleShelf, RecordingShelf | None]:
+    """The workshop of the server's station, where it knows its model, the example stations, and a place for recordings
+    of the station.
+    """
+    shop = Workshop.for_model(identity, settings)
+    # Where the launcher keeps what ends with it, however this process ends.
+    folder = settings.controller_socket.parent / "recordings"
+    recordings = None if shop is None else RecordingShelf(shop, folder, settings.largest_recording)
+    return shop, ExampleShelf(settings.stream, settings.examples), recordings
 
 
 async def workshop(connection: HTTPConnection) -> Workshop:
@@ -53,6 +62,16 @@ async def workshop(connection: HTTPConnection) -> Workshop:
 
 
 TheWorkshop = Annotated[Workshop, Depends(workshop)]
+
+
+async def recording_shelf(connection: HTTPConnection) -> RecordingShelf:
+    """The place for recordings of the station. Raises `ProblemFound` where there is no workshop."""
+    await workshop(connection)
+    shelf: RecordingShelf = connection.app.state.recordings
+    return shelf
+
+
+TheRecordings = Annotated[RecordingShelf, Depends(recording_shelf)]
 
 
 async def example_shelf(connection: HTTPConnection) -> ExampleShelf:

@@ -2,7 +2,7 @@
 export const tryOut = {
 	title: 'Simulated time',
 	from: 'Begins with',
-	begins: { present: 'the station as it is now', fresh: 'the model’s beginning', past: 'a record of its history', scenario: 'a test of the station' },
+	begins: { present: 'the station as it is now', fresh: 'the model’s beginning', past: 'a record of its history', recording: 'a recording of ROS 2 traffic', scenario: 'a test of the station' },
 	whichScenario: 'Test',
 	noScenarios: 'There are no tests yet.',
 	passed: 'Test passed',

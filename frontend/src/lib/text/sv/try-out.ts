@@ -2,7 +2,7 @@
 export const tryOut = {
 	title: 'Simulerad tid',
 	from: 'Börjar med',
-	begins: { present: 'stationen som den är nu', fresh: 'modellens början', past: 'en post i historiken', scenario: 'ett test av stationen' },
+	begins: { present: 'stationen som den är nu', fresh: 'modellens början', past: 'en post i historiken', recording: 'en inspelning av ROS 2-trafik', scenario: 'ett test av stationen' },
 	whichScenario: 'Test',
 	noScenarios: 'Det finns inga tester än.',
 	passed: 'Testet godkänt',

@@ -1,0 +1,1 @@
+"""Commands on recordings of ROS 2 traffic."""
