@@ -107,6 +107,36 @@ def test_a_peer_that_comes_during_a_look_at_the_network_has_its_name(monkeypatch
     play("cyclonedds", scenario)
 
 
+def test_what_was_lost_of_a_peer_s_nodes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody tells it once more by themselves: under load a station saw emulated devices without a name for ever."""
+    take = Discovery._take_nodes
+    lost: list[int] = []
+
+    async def scenario(network: Network) -> None:
+        station = network.join("station")
+
+        def lose(discovery: Discovery) -> None:
+            if len(lost) < 3 and discovery is station._discovery:  # type: ignore[attr-defined]
+                lost.append(len(list(cyclonedds_network.take_all(discovery._reader))))
+            else:
+                take(discovery)
+
+        monkeypatch.setattr(Discovery, "_take_nodes", lose)
+        device = network.join("device")
+        device.advertise("/pong", TEXT, RELIABLE)
+
+        def names() -> list[str | None]:
+            return [endpoint.node for endpoint in station.graph() if endpoint.topic == "/pong"]
+
+        await settle()
+        while len(lost) < 3:
+            assert names() == [None]
+        assert sum(lost) > 0
+        await until_async(lambda: names() == ["/device"], "the device is named")
+
+    play("cyclonedds", scenario)
+
+
 def test_a_publisher_that_is_not_of_ros_is_shown_as_it_is() -> None:
     async def scenario(network: Network) -> None:
         station = network.join("station")
