@@ -109,6 +109,14 @@ test('several parts are duplicated, cut, pasted and deleted, each as one change'
 		await expect.poll(() => text(page)).toBe(before);
 	};
 
+	// Of one a name is asked for, and the copy is chosen.
+	await page.keyboard.press('ControlOrMeta+d');
+	await expect(page.getByRole('dialog').getByRole('textbox')).toBeFocused();
+	await page.keyboard.press('Enter');
+	await expect.poll(() => selected(page)).toEqual([`${PREVIOUS}_2`]);
+	await undo(/^Undo: /);
+	await ability(page, PREVIOUS).click();
+
 	await ability(page, ATTACH).click({ modifiers: ['ControlOrMeta'] });
 	await page.keyboard.press('ControlOrMeta+d');
 	await expect.poll(() => order(page)).toEqual([POSITION, PREVIOUS, `${PREVIOUS}_2`, ATTACH, `${ATTACH}_2`, DETACH]);

@@ -1,6 +1,6 @@
 import * as yaml from 'yaml';
 import { describe, expect, test } from 'vitest';
-import { partText, pastedAt, type Pasted } from './clipboard.ts';
+import { partsText, pastedAt, type Pasted } from './clipboard.ts';
 import { idOf, lookupOf, treeOf } from './tree.ts';
 
 const ROBOT = 'resources/robot.yaml';
@@ -18,7 +18,8 @@ const node = (file: string, ...path: string[]) => {
 	if (!found) throw new Error(`${file} ${path.join()}`);
 	return found;
 };
-const text = (file: string, ...path: string[]): string => partText(node(file, ...path), CONTENTS, yaml) ?? '';
+const fileText = (file: string): string => yaml.stringify(CONTENTS[file as keyof typeof CONTENTS]);
+const text = (file: string, ...path: string[]): string => partsText([node(file, ...path)], CONTENTS, fileText, yaml) ?? '';
 const paste = (what: string, at: ReturnType<typeof node> | null) => pastedAt(what, at, LOOKUP, CONTENTS, yaml);
 const pasted = (what: string, at: ReturnType<typeof node> | null): Pasted => {
 	const found = paste(what, at);
@@ -33,6 +34,17 @@ describe('parts in the clipboard', () => {
 		expect(yaml.parse(text(ROBOT))).toEqual({ resources: { robot: CONTENTS[ROBOT] } });
 		expect(yaml.parse(text('operations.yaml', 'assemble'))).toEqual({ operations: CONTENTS['operations.yaml'] });
 		expect(yaml.parse(text('station.yaml', 'enumerations', 'pose'))).toEqual({ enumerations: { pose: ['home', 'away'] } });
+	});
+
+	test('keep their comments and their style, and what stands for something else is written out', () => {
+		const file = 'title: Robot\nabilities:\n  move:\n    # why\n    enabled: pose != home # not there\n    effects: {arrives: {kind: executing, when: true, do: ["pose := home"]}}\n';
+		const copied = partsText([node(ROBOT, 'abilities', 'move')], CONTENTS, () => file, yaml) ?? '';
+		expect(copied).toContain('    # why\n    enabled: pose != home # not there\n    effects: {');
+		const [edit] = pasted(copied, node(GRIPPER, 'abilities', 'close')).edits;
+		expect(edit).toMatchObject({ kind: 'add', value: move });
+		expect(edit?.kind === 'add' && edit.text).toContain('# why\nenabled: pose != home # not there\n');
+		const anchored = file.replace('enabled: pose != home # not there', 'enabled: &a pose != home');
+		expect(partsText([node(ROBOT, 'abilities', 'move')], CONTENTS, () => anchored, yaml)).toBe(yaml.stringify({ abilities: { move } }));
 	});
 
 	test('come to the resource that is chosen, and keep their name where it is free', () => {

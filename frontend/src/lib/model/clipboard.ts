@@ -1,10 +1,10 @@
 /** Parts of a model as they go through the clipboard: YAML, each by its name below the section in which files have it. */
 import type { Edit } from '#lib/contract.ts';
-import { isMapping, valueAt, type Json } from './content.ts';
+import { commentedAt, pairAt, type Yaml } from './commented.ts';
+import { isMapping, same, valueAt, type Json } from './content.ts';
 import { ownFile, placesAt, type Place } from './making.ts';
 import { around, SCENARIOS, type Lookup, type Node } from './tree.ts';
 
-type Yaml = Pick<typeof import('yaml'), 'parse' | 'stringify'>;
 type Contents = Readonly<Record<string, Json | undefined>>;
 
 /** The section of a part, as it stands above it; null for what is no entry of a file, such as a message. */
@@ -17,18 +17,21 @@ export function sectionOf({ kind, file, path }: Node): string | null {
 	return file === SCENARIOS || file.startsWith('tests/') ? 'tests' : file.replace(/\.yaml$/, '');
 }
 
-/** A part as text; null where it is written nowhere by itself. */
-export const partText = (node: Node, contents: Contents, yaml: Yaml): string | null => partsText([node], contents, yaml);
-
-/** Several parts as one text, each below its section; null where one of them is written nowhere by itself. */
-export function partsText(nodes: readonly Node[], contents: Contents, { stringify }: Yaml): string | null {
+/** Parts as one text, each below its section and with the comments of its file; null where one of them is written nowhere by itself. */
+export function partsText(nodes: readonly Node[], contents: Contents, textOf: (file: string) => string, yaml: Yaml): string | null {
 	const all: Record<string, Record<string, Json>> = {};
+	const written = new yaml.Document({});
 	for (const node of nodes) {
 		const [section, value] = [sectionOf(node), valueAt(contents[node.file], node.path)];
 		if (section === null || value === undefined || node.of !== undefined) return null;
 		(all[section] ??= {})[node.name] = value;
+		const pair = node.path.length > 0 ? pairAt(yaml, textOf(node.file), node.path) : null;
+		if (!written.has(section)) written.set(section, new yaml.YAMLMap());
+		const below = written.get(section);
+		if (yaml.isMap(below)) below.add(pair ?? written.createPair(node.name, value));
 	}
-	return stringify(all);
+	const text = written.toString({ lineWidth: 0 });
+	return same(yaml.parse(text) as Json, all) ? text : yaml.stringify(all);
 }
 
 /** What would be pasted: the edits, where each part is found then, and what they are called. */
@@ -42,10 +45,10 @@ export interface Pasted {
 export type NotPasted = { readonly section: string | null };
 
 /** Pastes parts at a node: into the resource around it where they belong to one, under names that are free. */
-export function pastedAt(text: string, node: Node | null, lookup: Lookup, contents: Contents, { parse }: Yaml): Pasted | NotPasted {
+export function pastedAt(text: string, node: Node | null, lookup: Lookup, contents: Contents, yaml: Yaml): Pasted | NotPasted {
 	let read: unknown;
 	try {
-		read = parse(text);
+		read = yaml.parse(text);
 	} catch {
 		return { section: null };
 	}
@@ -71,7 +74,8 @@ export function pastedAt(text: string, node: Node | null, lookup: Lookup, conten
 			edits.push(...Object.entries(value).map(([key, inner]): Edit => ({ kind: 'add', file, path: [key], value: inner })));
 			found.push({ file, path: [] });
 		} else {
-			edits.push({ kind: 'add', file: place.file, path: [...place.path, name], value });
+			const commented = commentedAt(yaml, text, [section, part.name], value);
+			edits.push({ kind: 'add', file: place.file, path: [...place.path, name], value, ...(commented !== null && { text: commented }) });
 			found.push({ file: place.file, path: [...place.path.map(String), name] });
 		}
 	}

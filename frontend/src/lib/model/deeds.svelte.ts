@@ -8,10 +8,9 @@ import { say } from '#lib/text/text.svelte.ts';
 import { toasts } from '#lib/ui/toasts.svelte.ts';
 import type { Bench } from './bench.svelte.ts';
 import { partsText, pastedAt } from './clipboard.ts';
+import type { Yaml } from './commented.ts';
 import { duplicatedAll, fewOf, fitting, hindrance, movedTo, removedAll, type Deed, type Hindrance, type Target } from './together.ts';
 import { idOf, type Node } from './tree.ts';
-
-type Yaml = Pick<typeof import('yaml'), 'parse' | 'stringify'>;
 
 /** What is to be done, made from the draft as it is at that moment. */
 interface Wanted {
@@ -92,7 +91,7 @@ export class Deeds {
 
 	/** The text of parts as they go to the clipboard; null where they do not, which is said. */
 	textOf(deed: 'copy' | 'cut', nodes: readonly Node[]): string | null {
-		return this.#yaml && this.#allows(deed, nodes) ? partsText(nodes, this.#bench.draft.contents, this.#yaml) : null;
+		return this.#yaml && this.#allows(deed, nodes) ? partsText(nodes, this.#bench.draft.contents, (file) => this.#bench.draft.text(file), this.#yaml) : null;
 	}
 
 	/** Pastes parts at a node. */
@@ -149,7 +148,7 @@ export class Deeds {
 		const title = say().model.together.duplicated(nodes.length, this.#names(nodes));
 		let at: ReturnType<typeof duplicatedAll>['at'] = [];
 		const make = (): readonly Edit[] => {
-			const made = duplicatedAll(this.#present(nodes), this.#bench.lookup, draft.contents, (file) => draft.text(file));
+			const made = duplicatedAll(this.#present(nodes), this.#bench.lookup, draft.contents, (file) => draft.text(file), this.#yaml);
 			at = made.at;
 			return made.edits;
 		};

@@ -41,10 +41,10 @@ describe('edits', () => {
 	});
 
 	test('a copy stands behind what it is a copy of; a resource is copied as it is written', () => {
-		expect(copied(node('abilities', 'move'), 'go', CONTENT, '')).toEqual([
+		expect(copied(node('abilities', 'move'), 'go', CONTENT, '', null)).toEqual([
 			{ kind: 'add', file: FILE, path: ['abilities', 'go'], value: CONTENT.abilities.move, after: 'move' }
 		]);
-		expect(copied(node(), 'arm', CONTENT, '# text')).toEqual([{ kind: 'text', file: 'resources/arm.yaml', was: null, text: '# text' }]);
+		expect(copied(node(), 'arm', CONTENT, '# text', null)).toEqual([{ kind: 'text', file: 'resources/arm.yaml', was: null, text: '# text' }]);
 	});
 
 	test('what is chosen says where something new belongs first', () => {

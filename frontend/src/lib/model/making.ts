@@ -1,6 +1,7 @@
 /** What is made, copied, moved and taken away: each as the edits that do it. */
 import type { Edit } from '#lib/contract.ts';
 import { capital } from '#lib/wording/capital.ts';
+import { commentedAt, type Yaml } from './commented.ts';
 import { isList, isMapping, same, shownPath, valueAt, type Json, type Path } from './content.ts';
 import { SPECIFICATIONS } from './specification.ts';
 import { typeFile } from './types.ts';
@@ -115,12 +116,13 @@ export function madeAt(place: Place, name: string): { file: string; path: Path }
 	return { file: place.file, path: [...place.path, name] };
 }
 
-/** Edits that make another one like it, called `name`. */
-export function copied(node: Node, name: string, content: Json | undefined, text: string): Edit[] {
+/** Edits that make another one like it, called `name`; with the comments in it, where there is what reads them. */
+export function copied(node: Node, name: string, content: Json | undefined, text: string, yaml: Yaml | null): Edit[] {
 	if (node.kind === 'resource' || node.kind === 'type') return [{ kind: 'text', file: ownFile(node.kind, name), was: null, text }];
 	if (node.kind === 'message') return [{ kind: 'text', file: messageFile(name), was: null, text }];
 	const value = valueAt(content, node.path) ?? null;
-	return [{ kind: 'add', file: node.file, path: [...node.path.slice(0, -1), name], value, after: node.name }];
+	const commented = yaml && commentedAt(yaml, text, node.path, value);
+	return [{ kind: 'add', file: node.file, path: [...node.path.slice(0, -1), name], value, after: node.name, ...(commented !== null && { text: commented }) }];
 }
 
 /** Where a copy would be found. */

@@ -94,7 +94,7 @@ describe('several parts', () => {
 	});
 
 	test('are duplicated each beside itself, under names that are free', () => {
-		const made = duplicatedAll([ability('move'), ability('stop'), node(GRIPPER)], LOOKUP, CONTENTS, (file) => `# ${file}`);
+		const made = duplicatedAll([ability('move'), ability('stop'), node(GRIPPER)], LOOKUP, CONTENTS, (file) => `# ${file}`, null);
 		expect(made.names).toEqual(['move_2', 'stop_2', 'gripper_2']);
 		expect(made.edits).toMatchObject([{ kind: 'add', after: 'move' }, { kind: 'add', after: 'stop' }, { kind: 'text', file: 'resources/gripper_2.yaml', text: `# ${GRIPPER}` }]);
 	});

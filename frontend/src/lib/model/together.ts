@@ -1,6 +1,7 @@
 /** What can be done with several parts at once: what is in the way, and the edits that do it as one change. */
 import type { Edit } from '#lib/contract.ts';
 import { free, sectionOf } from './clipboard.ts';
+import type { Yaml } from './commented.ts';
 import { isList, isMapping, valueAt, type Json, type Path } from './content.ts';
 import { copied, copiedAt, removed } from './making.ts';
 import { around, type Lookup, type Node } from './tree.ts';
@@ -88,7 +89,8 @@ export function duplicatedAll(
 	nodes: readonly Node[],
 	lookup: Lookup,
 	contents: Contents,
-	text: (file: string) => string
+	text: (file: string) => string,
+	yaml: Yaml | null
 ): { readonly edits: readonly Edit[]; readonly at: readonly { readonly file: string; readonly path: Path }[]; readonly names: readonly string[] } {
 	const given = new Map<Node | undefined, Set<string>>();
 	const made = nodes.map((node) => {
@@ -97,7 +99,7 @@ export function duplicatedAll(
 		given.set(parent, taken);
 		const name = free(node.name, (each) => taken.has(each));
 		taken.add(name);
-		return { name, edits: copied(node, name, contents[node.file], text(node.file)), at: copiedAt(node, name) };
+		return { name, edits: copied(node, name, contents[node.file], text(node.file), yaml), at: copiedAt(node, name) };
 	});
 	return { edits: made.flatMap(({ edits }) => edits), at: made.map(({ at }) => at), names: made.map(({ name }) => name) };
 }
