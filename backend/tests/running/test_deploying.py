@@ -337,6 +337,17 @@ def test_where_the_model_asks_for_it_only_what_somebody_else_has_approved_is_dep
         assert station.outcome(first)["state"] == "runs"
         until(station.up)
         assert station.get("station", "station")["deployment_approval"] == "dual"
+        # How the station was at first nobody has saved: who brings that back does not approve it alone.
+        saved = station.get("revisions", "model/revisions")
+        initial = next(each["id"] for each in saved if each["by"] == "Sequence Planner")
+        for revision in (initial, first):
+            number = station.asked("GET", "model")["number"]
+            station.asked("POST", f"model/revisions/{revision}/restore", {"number": number})
+            assert station.checked()["state"] == "done"
+            if revision == initial:
+                station.asked("POST", f"model/revisions/{initial}/reviews", {"verdict": "approved"})
+                refused = station.deploy(initial)
+                assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-approved")
         station.change((STATION, DUAL[2], DUAL[1]))
         assert station.checked()["state"] == "done"
         revision = station.save("One again")

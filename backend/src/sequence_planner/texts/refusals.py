@@ -49,8 +49,12 @@ REFUSALS: Final[dict[str, str]] = {
     "refused.not-approved.nobody": (
         "What is deployed here is approved by a second person. Somebody else than who saved “{name}” has to approve it."
     ),
+    "refused.not-approved.alone": (
+        "You alone have approved “{name}”, and nobody of this station has saved it. Somebody else has to approve it."
+    ),
     "refused.not-approved.changes": (
-        "Changes in “{name}” are still wanted by {people}. Save them as another revision, or ask again."
+        "{people} asked for changes in “{name}”. "
+        "Save another revision with them, or {people} approves this one after all."
     ),
     "refused.no-review": "There is nothing to withdraw",
     "refused.no-review.withdraw": "You have said nothing of “{name}” that still counts.",

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from sequence_planner.core.actor import Actor, ActorKind
 from sequence_planner.db.database import Database
 from sequence_planner.editor.revision import Revision
-from sequence_planner.editor.talk.approval import standing_verdicts
+from sequence_planner.editor.talk.approval import approvals_for, standing_verdicts
 from sequence_planner.editor.talk.comments import (
     MOST_KEPT,
     Comment,
@@ -45,6 +45,19 @@ def test_of_each_but_who_saved_it_the_last_verdict_on_it_counts(all_: list[Comme
         last = own[-1] if own and who != "eva" and own[-1].verdict is not Verdict.WITHDRAWN else None
         assert [each for each in counting if each.by_id == who] == ([] if last is None else [last])
     assert counting == sorted(counting, key=lambda each: each.number)
+
+
+@given(said, st.sampled_from((*PEOPLE, "sequence-planner", "somebody else")), st.sampled_from(PEOPLE))
+def test_two_persons_stand_for_what_is_deployed(all_: list[Comment], author: str, deployer: str) -> None:
+    revision = Revision(REVISIONS[0], "New", "", author, 0.0, "tree", author=author)
+    approvals = approvals_for(revision, all_, deployer, PEOPLE)
+    assert all(each.verdict is Verdict.APPROVED and each.by_id != author for each in approvals)
+    if approvals:
+        assert len({each.by_id for each in approvals} | ({author} & set(PEOPLE)) | {deployer}) > 1
+    others = [each for each in standing_verdicts(revision, all_) if each.by_id != deployer]
+    assert [each for each in approvals if each.by_id != deployer] == [
+        each for each in others if each.verdict is Verdict.APPROVED
+    ]
 
 
 def test_an_author_whose_id_a_commit_cannot_have_is_the_author_all_the_same() -> None:

@@ -30,7 +30,7 @@ export function partsText(nodes: readonly Node[], contents: Contents, textOf: (f
 		const below = written.get(section);
 		if (yaml.isMap(below)) below.add(pair ?? written.createPair(node.name, value));
 	}
-	const text = written.toString({ lineWidth: 0 });
+	const text = written.toString({ lineWidth: 0, flowCollectionPadding: false });
 	return same(yaml.parse(text) as Json, all) ? text : yaml.stringify(all);
 }
 

@@ -22,6 +22,6 @@ export function commentedAt(yaml: Yaml, file: string, path: Path, value: Json): 
 	if (pair === null) return null;
 	const document = new yaml.Document();
 	document.contents = pair.value as typeof document.contents;
-	const text = document.toString({ lineWidth: 0 });
+	const text = document.toString({ lineWidth: 0, flowCollectionPadding: false });
 	return text.includes('#') && same(yaml.parse(text) as Json, value) ? text : null;
 }

@@ -453,8 +453,8 @@ class Discovery:
     def _ask_again(self) -> None:
         """Let participants tell their nodes once more, where endpoints have been without one for long.
 
-        A participant tells it again only when it has other endpoints. What was lost of that, as on a machine under load,
-        would be lost for ever; whoever begins to listen anew is told the last of it.
+        A participant tells it again only when it has other endpoints. What was lost of that, as on a machine under
+        load, would be lost for ever; whoever begins to listen anew is told the last of it.
         """
         tellers = {
             seen.participant_key

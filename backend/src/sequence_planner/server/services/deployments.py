@@ -174,7 +174,9 @@ class DeploymentService:
         if (hindrance := (await self.shop.checked()).hindrance(draft.number)) is not None:
             raise Refused(hindrance.slug, message("hindrance.why", why=hindrance.why), title=hindrance.title)
         if view.station.deployment_approval == "dual":
-            _require_approval(known)
+            approved = known.approved_by
+            known = known.model_copy(update={"approved_by": await self.shop.approvers(known.id, asked.by)})
+            _require_approval(known, alone=bool(approved))
         if asked.reset and not view.station.emulated:
             raise Refused("not-emulated", message("refused.not-emulated.reset"))
         return draft, known
@@ -196,13 +198,16 @@ async def revision_of(shop: Workshop, id: str) -> RevisionView:
     return found
 
 
-def _require_approval(revision: RevisionView) -> None:
-    """Raises `Refused` where nobody else than who saved it has approved it, or somebody wants changes in it."""
+def _require_approval(revision: RevisionView, *, alone: bool) -> None:
+    """Raises `Refused` where no second person has approved it, or somebody wants changes in it. `alone` says that who
+    deploys it has, and nobody else stands for it.
+    """
     if wanting := revision.changes_requested_by:
         people = ", ".join(wanting)
         raise Refused("not-approved", message("refused.not-approved.changes", name=revision.name, people=people))
     if not revision.approved_by:
-        raise Refused("not-approved", message("refused.not-approved.nobody", name=revision.name))
+        why = "alone" if alone else "nobody"
+        raise Refused("not-approved", message(f"refused.not-approved.{why}", name=revision.name))
 
 
 async def transfer_question(shop: Workshop, view: StationView, *, reset: bool) -> tuple[object, ...]:
