@@ -89,7 +89,7 @@ test('where an ability can start is told only where that is proven, with a run w
 	expect(rows).toHaveLength(1);
 	expect(rows[0]).toMatchObject({ tag: 'new', lead: 'the tool.run can start where it could not', says: ['It is so after 2 starts.'], runs: [['the a', 'the b']] });
 	const lost = only({ behaviour: [{ ability: 'tool.run', gains: false, gained: null, loses: true, lost: null }] });
-	expect(lost).toMatchObject({ tag: 'gone', runs: [] });
+	expect(lost).toMatchObject({ tag: 'changed', runs: [] });
 	expect(lost.says).toEqual(['Such a state is reached; no short run there was found.']);
 });
 

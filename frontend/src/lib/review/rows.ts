@@ -171,7 +171,7 @@ function startRows({ ability, gains, gained, loses, lost }: BehaviourDifference,
 		row(`${tag} start ${ability}`, 'condition', tag, lead, { says: [said(run)], runs: run === null || run.length === 0 ? [] : [run.map(titles.ability)] });
 	return [
 		...(gains === true ? [rowFor('new', texts.startsGained(title), gained)] : []),
-		...(loses === true ? [rowFor('gone', texts.startsLost(title), lost)] : [])
+		...(loses === true ? [rowFor('changed', texts.startsLost(title), lost)] : [])
 	];
 }
 

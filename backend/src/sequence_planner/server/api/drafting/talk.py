@@ -40,7 +40,7 @@ class ReviewBody(Body):
     @model_validator(mode="after")
     def _says_which(self) -> Self:
         if self.verdict is Verdict.CHANGES_REQUESTED and not self.text.strip():
-            raise ValueError("say which changes you want")
+            raise ValueError("`text` says which changes you want")
         return self
 
 
