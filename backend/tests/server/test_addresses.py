@@ -88,7 +88,7 @@ def test_what_is_wrong_with_a_body_is_told_in_words_of_the_interface(tmp_path: P
 def body_of(operation: dict[str, Any], document: dict[str, Any]) -> object:
     """A body that the operation takes, so that what is refused is refused for its address."""
     content = operation.get("requestBody", {}).get("content", {})
-    return smallest(content["application/json"]["schema"], document) if content else None
+    return smallest(content["application/json"]["schema"], document) if "application/json" in content else None
 
 
 def smallest(schema: dict[str, Any], document: dict[str, Any]) -> Any:  # noqa: ANN401 - JSON

@@ -43,7 +43,6 @@ from sequence_planner.server.metrics import ControllerFigures, Readiness, WayToD
 from sequence_planner.server.openapi_document import describe
 from sequence_planner.server.routers import ROUTERS
 from sequence_planner.server.services.backups import BackupService
-from sequence_planner.server.services.deployments import DeploymentService
 from sequence_planner.server.services.drafts import furnish
 from sequence_planner.server.services.identity import IdentityService, Sweeper
 from sequence_planner.server.services.orders import OrderService
@@ -113,9 +112,9 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.history = looking_back = (
             None if folder is None else HistoryProcess(folder, settings.database, archives)
         )
-        shop, examples, recordings = furnish(office, settings)
-        app.state.workshop, app.state.examples, app.state.recordings = shop, examples, recordings
-        app.state.deployments = deployments = None if shop is None else DeploymentService(shop, controller)
+        shop, deployments, recordings, examples = furnish(office, settings, controller)
+        app.state.workshop, app.state.deployments = shop, deployments
+        app.state.examples, app.state.recordings = examples, recordings
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
         app.state.deliverer = deliverer = Deliverer(

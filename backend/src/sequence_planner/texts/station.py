@@ -257,9 +257,9 @@ STATION: Final[dict[str, str]] = {
     "offer.return": "bring {titles} back",
     "offer.return-first": "Bring {titles} back",
     "offer.see-to": "see to it that {changes}",
-    "offer.see-to-first": "Make sure that {changes}",
+    "offer.see-to-first": "See to it that {changes}",
     "offer.see-to-so": "see to it that {changes}, so that {records}",
-    "offer.see-to-so-first": "Make sure that {changes}, so that {records}",
+    "offer.see-to-so-first": "See to it that {changes}, so that {records}",
     "offer.do": "{acts}",
     "offer.do-first": "{acts^}",
     "offer.do-so": "{acts}, so that {records}",
@@ -380,5 +380,5 @@ STATION: Final[dict[str, str]] = {
     "order-waits.no-master": "the station has no work master {name}",
     "order-waits.worked": "{title} is in work",
     "order-waits.first": "{title} comes first",
-    "order-waits.take": "the station to take it",
+    "order-waits.take": "the station has not taken it yet",
 }

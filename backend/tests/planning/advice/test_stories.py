@@ -147,7 +147,7 @@ def test_who_does_what_makes_the_station_believe_bolts_to_be_tight_is_told_so(
     (offer,) = (offer for offer in advisor.advise(request).offers if offer.physical)
     assert offer.records == (ValueChange("bolts[bolt_pair_1]", "placed", "tightened"),)
     assert offer_title(station, offer).startswith(
-        "Make sure that nutrunner.programmed_torque_reached is true, so that bolts[bolt_pair_1] is tightened"
+        "See to it that nutrunner.programmed_torque_reached is true, so that bolts[bolt_pair_1] is tightened"
     )
 
 

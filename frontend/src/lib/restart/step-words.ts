@@ -85,12 +85,15 @@ export function agreeText(view: Pick<StationView, 'resources'>): string {
 	return Object.values(view.resources).some(({ online }) => !online) ? texts.agreeHeard : texts.agree;
 }
 
+/** Seconds for which what was carried out is what led to here. */
+const LATELY = 600;
+
 function ways(view: StationView, advice: AdviceAnswer | null, now: number): string {
 	const texts = say().restart.steps;
 	const last = view.last_errand;
 	if (view.errand) return texts.runs(told(view.errand.title_message, view.errand.title));
 	const found = advice !== null && advice.revision === view.revision ? advice.offers : null;
-	if (found?.[0] && goesOn(found[0])) return last?.done ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
+	if (found?.[0] && goesOn(found[0])) return last?.done && now - last.ended < LATELY ? texts.taken(told(last.title_message, last.title), clockText(last.ended, now)) : texts.nothing;
 	if (!isTrue(view)) return texts.afterwards;
 	if (found === null) return say().restart.ways.looking;
 	return found.length === 0 ? texts.none : found.length === 1 ? texts.one : texts.ways(found.length);

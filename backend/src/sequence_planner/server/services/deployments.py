@@ -6,6 +6,7 @@ import asyncio
 import secrets
 import shutil
 import time
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,8 +48,12 @@ class AskedDeployment:
 class DeploymentService:
     """Has the controller behind `client` run the draft of `shop`. Used from one event loop."""
 
-    def __init__(self, shop: Workshop, client: ControllerClient) -> None:
+    def __init__(
+        self, shop: Workshop, client: ControllerClient, approvers: Callable[[str, Actor], Awaitable[list[str]]]
+    ) -> None:
+        """Begin with nothing planned; `approvers` tells who has approved a revision for who would deploy it."""
         self.shop = shop
+        self._approvers = approvers
         self._client = client
         self._planned: AskedDeployment | None = None
         self._since = 0.0  # when the controller had taken note of that, by the clock of the machine that both share
@@ -175,7 +180,7 @@ class DeploymentService:
             raise Refused(hindrance.slug, message("hindrance.why", why=hindrance.why), title=hindrance.title)
         if view.station.deployment_approval == "dual":
             approved = known.approved_by
-            known = known.model_copy(update={"approved_by": await self.shop.approvers(known.id, asked.by)})
+            known = known.model_copy(update={"approved_by": await self._approvers(known.id, asked.by)})
             _require_approval(known, alone=bool(approved))
         if asked.reset and not view.station.emulated:
             raise Refused("not-emulated", message("refused.not-emulated.reset"))

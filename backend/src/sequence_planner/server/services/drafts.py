@@ -4,7 +4,8 @@ in the same way, and what edits are refused with.
 
 from __future__ import annotations
 
-from typing import Annotated
+from functools import partial
+from typing import Annotated, NamedTuple
 
 from fastapi import Depends, Query
 from fastapi.requests import HTTPConnection
@@ -16,11 +17,12 @@ from sequence_planner.model.files import Files
 from sequence_planner.model.paths import EditError
 from sequence_planner.server.errors import ProblemFound
 from sequence_planner.server.recordings.shelf import RecordingShelf
-from sequence_planner.server.services.deployments import revision_of
+from sequence_planner.server.services.deployments import DeploymentService, revision_of
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.examples import ExampleShelf
 from sequence_planner.server.services.identity import IdentityService
 from sequence_planner.server.services.reading import ReadableWorkshop
+from sequence_planner.server.services.reviews import approvers
 from sequence_planner.server.settings import Settings
 from sequence_planner.texts.message import message
 
@@ -31,17 +33,25 @@ EXAMPLE = "example"  # what a question is about that is not about the draft
 ExampleName = Annotated[str, Query(pattern="^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
 
 
-def furnish(
-    identity: IdentityService, settings: Settings
-) -> tuple[Workshop | None, ExampleShelf, RecordingShelf | None]:
-    """The workshop of the server's station, where it knows its model, the example stations, and a place for recordings
-    of the station.
+class Furniture(NamedTuple):
+    """The workshop of the server's station with what deploys its draft and a place for recordings, where it knows its
+    model; and the example stations.
     """
+
+    shop: Workshop | None
+    deployments: DeploymentService | None
+    recordings: RecordingShelf | None
+    examples: ExampleShelf
+
+
+def furnish(identity: IdentityService, settings: Settings, client: ControllerClient) -> Furniture:
+    """Make all of it, for the station of the controller behind `client`."""
     shop = Workshop.for_model(identity, settings)
     # Where the launcher keeps what ends with it, however this process ends.
     folder = settings.controller_socket.parent / "recordings"
     recordings = None if shop is None else RecordingShelf(shop, folder, settings.largest_recording)
-    return shop, ExampleShelf(settings.stream, settings.examples), recordings
+    deployments = None if shop is None else DeploymentService(shop, client, partial(approvers, shop, identity))
+    return Furniture(shop, deployments, recordings, ExampleShelf(settings.stream, settings.examples))
 
 
 async def workshop(connection: HTTPConnection) -> Workshop:

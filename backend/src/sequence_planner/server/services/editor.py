@@ -11,7 +11,6 @@ from pathlib import Path
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
-from sequence_planner.auth.users import everybody
 from sequence_planner.controller.views.pipelines import RecordView
 from sequence_planner.controller.views.station import DeploymentState, StationView
 from sequence_planner.core.actor import Actor
@@ -43,7 +42,6 @@ from sequence_planner.editor.schemas.draft import (
     places_changed,
     revisions_view,
 )
-from sequence_planner.editor.talk.approval import approvals_for
 from sequence_planner.editor.talk.comments import read_verdicts
 from sequence_planner.model.files import Files, FolderReader
 from sequence_planner.model.launch_requirements import StartNeeds
@@ -240,16 +238,6 @@ class Workshop(ReadableWorkshop):
         found = await self._editing.ask(draft.files, "revised", self._revisions, draft.base)
         assert isinstance(found, tuple)
         return found
-
-    async def approvers(self, revision: str, deployer: Actor) -> list[str]:
-        """The names of those who have approved a revision, as far as that counts where `deployer` deploys it.
-
-        Raises `WorkerError`.
-        """
-        verdicts = await self._identity.read(read_verdicts)
-        people = [person.id for person in await self._identity.read(everybody)]
-        found = next((each for each in (await self.saved())[0] if each.id == revision), None)
-        return [] if found is None else [each.by_name for each in approvals_for(found, verdicts, deployer.id, people)]
 
     async def files_of(self, revision: str) -> dict[str, str]:
         """The files of a revision. Raises `EditError` where there is none, and `WorkerError`."""

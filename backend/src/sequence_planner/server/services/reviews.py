@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from sqlalchemy import Connection
 
+from sequence_planner.auth.users import everybody
 from sequence_planner.core.actor import Actor, ActorKind
-from sequence_planner.editor.talk.approval import standing_verdicts
+from sequence_planner.editor.talk.approval import approvals_for, standing_verdicts
 from sequence_planner.editor.talk.comments import Comment, Verdict, append_verdict, read_verdicts
 from sequence_planner.server.services.editor import Workshop
 from sequence_planner.server.services.identity import IdentityService
@@ -39,3 +40,14 @@ async def review(
     made = await identity.write(decide, by=by)
     shop.tell_comment(made.number)
     return made
+
+
+async def approvers(shop: Workshop, identity: IdentityService, revision: str, deployer: Actor) -> list[str]:
+    """Return the names of those who have approved a revision, as far as that counts where `deployer` deploys it.
+
+    Raises `WorkerError`.
+    """
+    verdicts = await identity.read(read_verdicts)
+    people = [person.id for person in await identity.read(everybody)]
+    found = next((each for each in (await shop.saved())[0] if each.id == revision), None)
+    return [] if found is None else [each.by_name for each in approvals_for(found, verdicts, deployer.id, people)]

@@ -209,7 +209,7 @@ export const restart = {
 		outsideShort: 'Starts outside the safe states',
 		leftOutShort: (n: number): string => `Gives up ${count(n, 'operation', 'operations')}`,
 		first: 'You do first',
-		see: (so: string): string => `Make sure that ${so}.`,
+		see: (so: string): string => `See to it that ${so}.`,
 		now: (value: string): string => `(now: ${value})`,
 		online: (title: string): string => `Bring ${title} back.`,
 		waits: 'The station notices it by itself.',

@@ -59,7 +59,7 @@ export const review = {
 		want: 'Ask for changes',
 		withdraw: 'Withdraw what I said of it',
 		unsaved: 'A revision is approved: it can be once the draft is saved.',
-		about: (name: string): string => `You approve “${name}” as it is now. To ask for changes, write which.`,
+		about: (name: string): string => `An approval is of “${name}” as it is now. To ask for changes, write which.`,
 		own: (name: string): string => `You have saved “${name}”: somebody else can approve it here.`,
 		verdict: {
 			approved: (name: string): string => `Approves “${name}”`,
@@ -247,6 +247,16 @@ export const review = {
 			fits: 'Fits the state the station is in',
 			standing: 'The station is paused',
 			control: 'You have control'
+		},
+		/** As long as it is not so. */
+		lacks: {
+			other: 'It has to differ from what runs',
+			saved: 'It has to be saved as a revision',
+			checked: 'It has to be checked, with a supervisor',
+			approved: 'It needs the approval of a second person',
+			fits: 'It has to fit the state the station is in',
+			standing: 'The station has to be paused',
+			control: 'You need control'
 		},
 		approval: {
 			by: (people: string): string => `Approved by ${people}.`,

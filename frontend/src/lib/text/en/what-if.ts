@@ -175,7 +175,7 @@ export const whatIf = {
 	changed: 'Changed',
 	all: 'All',
 	seek: 'Search variables',
-	nothingChanged: 'No variable is otherwise',
+	nothingChanged: 'Nothing has changed yet',
 	next: 'What can happen next',
 	pastMoment: 'known at the last step',
 	goesOnOtherwise: 'This branch has gone on from here. What else could have happened is a branch of its own.',

@@ -58,7 +58,7 @@ export const review: Text['review'] = {
 		want: 'Be om ändringar',
 		withdraw: 'Ta tillbaka det jag sagt om den',
 		unsaved: 'Det är en revision som godkänns: det går när utkastet är sparat.',
-		about: (name) => `Du godkänner ”${name}” som den är nu. Skriv vilka ändringar du vill ha för att be om dem.`,
+		about: (name) => `Ett godkännande gäller ”${name}” som den är nu. Skriv vilka ändringar du vill ha för att be om dem.`,
 		own: (name) => `Du har sparat ”${name}”: någon annan kan godkänna den här.`,
 		verdict: {
 			approved: (name) => `Godkänner ”${name}”`,
@@ -244,6 +244,15 @@ export const review: Text['review'] = {
 			fits: 'Passar tillståndet som stationen är i',
 			standing: 'Stationen är pausad',
 			control: 'Du har kontrollen'
+		},
+		lacks: {
+			other: 'Det måste skilja sig från det som körs',
+			saved: 'Det måste sparas som revision',
+			checked: 'Det måste granskas, med övervakare',
+			approved: 'Det behöver godkännas av en andra person',
+			fits: 'Det måste passa tillståndet som stationen är i',
+			standing: 'Stationen måste vara pausad',
+			control: 'Du behöver kontrollen'
 		},
 		approval: {
 			by: (people) => `Godkänt av ${people}.`,
