@@ -27,7 +27,7 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 /** Kinds of alarms that tell that a device does not do what it should. */
 export const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
 /** Kinds of alarms that tell that nothing is heard of one, or of several. */
-export const UNHEARD: ReadonlySet<string> = new Set(['silent', 'many-silent', 'never-heard']);
+const UNHEARD: ReadonlySet<string> = new Set(['silent', 'many-silent', 'never-heard']);
 
 /** Messages that tell that there is no plan: as a cause of an alarm, and as what an alarm means. */
 const NO_PLAN: ReadonlySet<string> = new Set(['no-plan.text', 'wait.no-plan']);
