@@ -78,9 +78,9 @@ def test_an_alarm_stays_until_its_cause_is_gone_and_a_person_knows_of_it() -> No
 
 def test_where_the_text_becomes_another_its_time_is_told_anew() -> None:
     on = Scene()
-    came = on.look(replace(cause("a"), stage="not begun"))["a"]
-    assert on.look(replace(cause("a"), stage="not begun"))["a"].since == came.since
-    other = on.look(replace(cause("a"), stage="not finished"))["a"]
+    came = on.look(replace(cause("a"), phase="not begun"))["a"]
+    assert on.look(replace(cause("a"), phase="not begun"))["a"].since == came.since
+    other = on.look(replace(cause("a"), phase="not finished"))["a"]
     assert (other.since, other.state, other.count) == (on.now.epoch, came.state, 1)
     assert on.told == [("a", "came")], "it is the same alarm"
 

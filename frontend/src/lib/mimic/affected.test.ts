@@ -14,7 +14,7 @@ const station = view({
 		'robot.pose': estimate({ value: 'pair_2' })
 	},
 	operations: {
-		'tighten(pair_2)': operation({ active: true, active_since: 1, steps: ['1'], goal: 'bolts[pair_2] == tight and bolts[pair_1] == tight' }),
+		'tighten(pair_2)': operation({ active: true, active_since: 1, steps: ['1'], goal: 'old.bolts[pair_10] == tight and bolts[pair_2] == tight and bolts[pair_1] == tight' }),
 		'tighten(pair_10)': operation({ active: true, active_since: 1, goal: 'bolts[pair_10] == tight' })
 	},
 	alarms: { overdue: alarm({ kind: 'overdue', group: 'device', priority: 'medium', resources: ['tool'], since: 20 }) },

@@ -4,15 +4,15 @@ import type { Stopped } from '#lib/operation/standing.ts';
 import { valuesIn, type Pictured } from './describe.ts';
 import { valueOf, whereabouts } from './live.ts';
 
+/** A variable, with its indices, and the value that a goal wants of it. */
+const WANTED = /([\w.]+(?:\[[^\]]*\])?) == ([\w.-]+)/g;
+
 /** Whether a part of the product is what a stopped operation has yet to change: its goal wants another value of it. */
 export function isPartAffected({ variable }: MimicPart, { operations, variables }: Pictured, stopped: Stopped): boolean {
-	const wanted = `${variable} == `;
-	return [...stopped.operations].some((name) => {
-		const goal = operations[name]?.goal ?? '';
-		const at = goal.indexOf(wanted);
-		const rest = goal.slice(at + wanted.length);
-		return at >= 0 && rest.match(/^[\w.-]+/)?.[0] !== String(valueOf(variables, variable));
-	});
+	const now = String(valueOf(variables, variable));
+	return [...stopped.operations].some((name) =>
+		[...(operations[name]?.goal ?? '').matchAll(WANTED)].some(([, wanted, value]) => wanted === variable && value !== now)
+	);
 }
 
 /** Whether something stands where a stopped operation is carried out. */

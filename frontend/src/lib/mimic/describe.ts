@@ -55,8 +55,9 @@ export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, languag
 	const resource = symbol.resource;
 	if (resource !== null && view.resources[resource]?.online === false) return { text: texts.notHeard, tone: 'doubt' };
 	const running = found.doing.get(resource ?? '')?.running ?? [];
-	// What it last measured would read as what is wrong with it.
-	if (alarmsOf(view.alarms, resource).some(([, { kind }]) => STUCK.has(kind))) return { text: texts.stuck, tone: 'rests' };
+	// What it last measured would read as what is wrong with it. Of what moves it is told where it is, of a person their task.
+	const isDevice = symbol.track === null && symbol.symbol !== 'person';
+	if (isDevice && alarmsOf(view.alarms, resource).some(([, { kind }]) => STUCK.has(kind))) return { text: texts.stuck, tone: 'rests' };
 	const active = running.length > 0 || (symbol.active.length > 0 && holds(symbol.active, variables) === true);
 	const tone = active ? 'active' : 'rests';
 	if (symbol.track !== null) return whereNow(symbol.track, view, active, waits && running.length === 0, language);

@@ -31,7 +31,7 @@ export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: 
 		const alarm = worst(alarmsOf(view.alarms, symbol.resource));
 		const stands = stopped !== null && standsAffected(symbol, view, stopped);
 		const now = nowOf(symbol, view, found, language, stands);
-		const parts = symbol.parts.filter((part) => stopped !== null && isPartAffected(part, view, stopped));
+		const parts = stopped === null ? [] : symbol.parts.flatMap((part) => (isPartAffected(part, view, stopped) ? [[part.variable, stopped.priority] as const] : []));
 		return {
 			symbol,
 			title: nameOf(symbol, view.resources, language),
@@ -40,7 +40,7 @@ export function toldOf(mimic: Mimic, view: Pictured, language: string, stopped: 
 			alarm,
 			stands: standsAt(symbol, view),
 			lit: alarm ?? (stands ? stopped.priority : null),
-			parts: new Map(parts.map(({ variable }) => [variable, stopped?.priority ?? 'low']))
+			parts: new Map(parts)
 		};
 	});
 }

@@ -36,7 +36,7 @@ class AlarmKind:
         of: frozenset[str] = frozenset(),
         about: frozenset[str] = frozenset(),
         waits: bool = False,
-        stage: str = "",
+        phase: str = "",
     ) -> Cause:
         """A cause of such an alarm. `parts` are told one by one; a single one that the text tells is not."""
         text, past = self._said("text", arguments), self._said("past", arguments)
@@ -57,7 +57,7 @@ class AlarmKind:
             of=of,
             about=about,
             waits=waits,
-            stage=stage,
+            phase=phase,
         )
 
     def _said(self, what: str, arguments: Mapping[str, Argument]) -> Message:
@@ -73,7 +73,7 @@ class Cause:
     one of those is there that it `follows` from. `past` is its `text` once it is over, `past_parts` are its parts then,
     `resources` and `topics` where to look, `of` the resources whose devices fail with it, and `about` the variables of
     which it is doubted what is believed. A device that `waits` has nothing to do itself. Where the text becomes another
-    as it lasts, `stage` says which it is, and `since` is counted from there.
+    as it lasts, `phase` says which it is, and `since` is counted from there.
     """
 
     key: str
@@ -92,7 +92,7 @@ class Cause:
     of: frozenset[str] = field(default=frozenset(), kw_only=True)
     about: frozenset[str] = field(default=frozenset(), kw_only=True)
     waits: bool = field(default=False, kw_only=True)
-    stage: str = field(default="", kw_only=True)
+    phase: str = field(default="", kw_only=True)
 
 
 KINDS: Final[dict[str, AlarmKind]] = {}

@@ -259,7 +259,7 @@ class AlarmRegistry:
     def _last(self, key: str, life: Alarm, cause: Cause, moment: Timestamp) -> None:
         """The cause of an alarm is there, still or again; perhaps it has become more urgent."""
         is_worse = urgency(cause.priority) > urgency(life.worst)
-        if cause.stage != life.cause.stage:
+        if cause.phase != life.cause.phase:
             life.since = moment.epoch
         was_part, life.part, life.cause = life.part, False, cause
         if life.away is not None:

@@ -99,7 +99,7 @@ class Abilities:
                 resources=[ability.resource],
                 of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
-                stage=what,
+                phase=what,
             )
 
     def _standing_still(self, monotonic: float) -> Iterator[Cause]:

@@ -33,7 +33,7 @@ EXAMPLE = "example"  # what a question is about that is not about the draft
 ExampleName = Annotated[str, Query(pattern="^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
 
 
-class Furniture(NamedTuple):
+class DraftServices(NamedTuple):
     """The workshop of the server's station with what deploys its draft and a place for recordings, where it knows its
     model; and the example stations.
     """
@@ -44,14 +44,14 @@ class Furniture(NamedTuple):
     examples: ExampleShelf
 
 
-def furnish(identity: IdentityService, settings: Settings, client: ControllerClient) -> Furniture:
+def furnish(identity: IdentityService, settings: Settings, client: ControllerClient) -> DraftServices:
     """Make all of it, for the station of the controller behind `client`."""
     shop = Workshop.for_model(identity, settings)
     # Where the launcher keeps what ends with it, however this process ends.
     folder = settings.controller_socket.parent / "recordings"
     recordings = None if shop is None else RecordingShelf(shop, folder, settings.largest_recording)
     deployments = None if shop is None else DeploymentService(shop, client, partial(approvers, shop, identity))
-    return Furniture(shop, deployments, recordings, ExampleShelf(settings.stream, settings.examples))
+    return DraftServices(shop, deployments, recordings, ExampleShelf(settings.stream, settings.examples))
 
 
 async def workshop(connection: HTTPConnection) -> Workshop:
