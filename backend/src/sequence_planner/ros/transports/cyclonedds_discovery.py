@@ -456,13 +456,8 @@ class Discovery:
         A participant tells it again only when it has other endpoints. What was lost of that, as on a machine under
         load, would be lost for ever; whoever begins to listen anew is told the last of it.
         """
-        tellers = {
-            seen.participant_key
-            for seen in self._known["publisher"].values()
-            if seen.topic_name == discovery_info.TOPIC and seen.participant_key != self._own
-        }
         nameless = any(
-            seen.participant_key in tellers and names.ros_topic(seen.topic_name) and self._node(seen) is None
+            seen.participant_key != self._own and names.ros_topic(seen.topic_name) and self._node(seen) is None
             for known in self._known.values()
             for seen in known.values()
         )
@@ -472,7 +467,7 @@ class Discovery:
         elif self._nameless_since is None:
             self._nameless_since = now
         elif now - self._nameless_since >= self._patience:
-            _log.info("endpoints have no node: participants are asked for their nodes again")
+            _log.debug("endpoints have no node: participants are asked for their nodes again")
             release(self._reader)
             self._reader = self._listen()
             self._nameless_since, self._patience = now, min(2 * self._patience, _SELDOM)
