@@ -122,7 +122,9 @@ def test_devices_that_were_killed_leave_unknown_values_and_come_back_to_work(
 ) -> None:
     os.kill(at_work.child("emulate"), signal.SIGKILL)
     until(lambda: at_work.value("robot.pose") is None)
-    assert at_work.get("variables", "state")["robot.pose"]["awaits"] == "/ur10/state"
+    pose = at_work.get("variables", "state")["robot.pose"]
+    assert pose["awaits"] == "/ur10/state"
+    assert pose["last_known"] in pose["domain"], "where it was last"
     topics = ["/ur10/state", "/ur10/planning_scene/state"]
     until(lambda: at_work.get("resources")["robot"]["awaited_topics"] == topics)
     assert at_work.get("resources")["operator"]["online"]

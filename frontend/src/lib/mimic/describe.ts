@@ -53,7 +53,8 @@ export function nowOf(symbol: MimicSymbol, view: Pictured, found: Found, languag
 	const texts = say().mimic;
 	const { variables, tasks } = view;
 	const resource = symbol.resource;
-	if (resource !== null && view.resources[resource]?.online === false) return { text: texts.notHeard, tone: 'doubt' };
+	if (resource !== null && view.resources[resource]?.online === false)
+		return { text: lastPlace(symbol.track, variables, texts.notHeard, language), tone: 'doubt' };
 	const running = found.doing.get(resource ?? '')?.running ?? [];
 	// What it last measured would read as what is wrong with it. Of what moves it is told where it is, of a person their task.
 	const isDevice = symbol.track === null && symbol.symbol !== 'person';
@@ -82,7 +83,7 @@ function whereNow(track: MimicTrack, view: Pictured, active: boolean, waits: boo
 	const texts = say().mimic;
 	const { variables } = view;
 	const at = whereabouts(track, variables, null);
-	if (valueOf(variables, track.position) === null) return { text: texts.unknownPlace, tone: 'doubt' };
+	if (valueOf(variables, track.position) === null) return { text: lastPlace(track, variables, texts.unknownPlace, language), tone: 'doubt' };
 	const target = sentTo(track, variables);
 	if (at === null || (at.kind === 'moving' && target === null)) return { text: texts.between, tone: 'active' };
 	const stop = capital(stopName(track, at.kind === 'moving' ? (target ?? at.to) : at.to, language));
@@ -92,6 +93,12 @@ function whereNow(track: MimicTrack, view: Pictured, active: boolean, waits: boo
 	if (work === null) return { text: stop, tone: active ? 'active' : 'rests' };
 	const isNamed = work.toLowerCase().includes(stop.toLowerCase());
 	return { text: isNamed ? work : texts.atWork(stop, work), tone: 'active' };
+}
+
+/** Say of what moves that nobody knows where it is now, and where it was before. */
+function lastPlace(track: MimicTrack | null, variables: Variables, said: string, language: string): string {
+	const at = track && whereabouts(track, variables, null);
+	return track && at?.kind === 'doubt' ? say().mimic.last(said, stopName(track, at.from, language)) : said;
 }
 
 /** What is done at a stop: by a device there, or for the operation that is about it while a device works. */

@@ -48,6 +48,9 @@ it('shows a thing where it is, between two stops, or in doubt', () => {
 	expect(whereabouts(TRACK, variables({ at: 'between', to: 'pair', last: null }), null)).toEqual({ from: 'above', to: 'pair', kind: 'moving' });
 	expect(whereabouts(TRACK, variables({ at: null, to: 'above', last: 'home' }), null)).toEqual({ from: 'home', to: 'home', kind: 'doubt' });
 	expect(whereabouts(TRACK, variables({ at: null, to: null, last: null }), null)).toBeNull();
+	// Where it stood when it was heard last is told also to who has not looked on.
+	const silent = { ...variables({ to: 'pair', last: 'home' }), at: estimate({ value: null, last_known: 'above' }) };
+	expect(whereabouts(TRACK, silent, null)).toEqual({ from: 'above', to: 'above', kind: 'doubt' });
 	// It is drawn at no stop at which it was never seen.
 	expect(whereabouts(TRACK, variables({ at: null, to: 'above', last: null }), null)).toBeNull();
 	expect(whereabouts(TRACK, variables({ at: null, to: 'above', last: null }), 'home')).toEqual({ from: 'home', to: 'home', kind: 'doubt' });

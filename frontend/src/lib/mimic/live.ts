@@ -59,6 +59,9 @@ export function whereabouts(track: MimicTrack, variables: Variables, last: strin
 	const target = track.target === null ? null : valueOf(variables, track.target);
 	const previous = track.previous === null ? null : valueOf(variables, track.previous);
 	if (isStop(position)) return { from: position, to: position, kind: 'there' };
+	const known = Object.hasOwn(variables, track.position) ? (variables[track.position]?.last_known ?? null) : null;
+	// It stood there when it was heard last.
+	if (position === null && isStop(known)) return { from: known, to: known, kind: 'doubt' };
 	// Where nothing is heard of it, and nobody knows where it was, it is drawn at no stop: it may never have been there.
 	if (position === null && !isStop(previous) && last === null) return null;
 	const to = isStop(target) ? target : null;

@@ -106,6 +106,7 @@ export function estimate(rest: Partial<Variable> = {}): Variable {
 		dual_approval: false,
 		since: 900,
 		awaits: null,
+		last_known: null,
 		belief: { writer: 'operator.place', at: 900, evidence: [], unconfirmed_since: null },
 		commanded_by: null,
 		...rest

@@ -208,6 +208,7 @@ class Variables:
         self._execution = execution
         self._feeds, self._beliefs = feeds, beliefs
         self._since: dict[str, tuple[Value | None, float]] = {}
+        self._last: dict[str, Value] = {}  # what those that have become unknown were before
         self._commanded: dict[str, str] = {}
         self.began: float | None = None
         """The first tick: a value of then may be as old as can be."""
@@ -219,8 +220,10 @@ class Variables:
         self.began = now if self.began is None else self.began
         changed = set()
         for name in automaton.variables:
-            value = self._execution.state[name]
-            if name not in self._since or self._since[name][0] != value:
+            value, before = self._execution.state[name], self._since.get(name)
+            if before is None or before[0] != value:
+                if value is None and before is not None and before[0] is not None:
+                    self._last[name] = before[0]
                 self._since[name] = (value, now)
                 changed.add(name)
         if not changed:
@@ -269,6 +272,7 @@ class Variables:
                 dual_approval=variable.dual_approval,
                 since=since[1] if since else None,
                 awaits=self._feeds.get(name) if value is None else None,
+                last_known=self._last.get(name) if value is None else None,
                 belief=self._beliefs.of(name) if variable.kind is Kind.ESTIMATED else None,
                 commanded_by=self._commanded.get(name) if variable.kind is Kind.OUTPUT else None,
             )

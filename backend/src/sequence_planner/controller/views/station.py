@@ -539,6 +539,7 @@ class VariableView(View):
     dual_approval: bool  # a second person has to approve each correction and force of it
     since: float | None
     awaits: str | None
+    last_known: Value | None  # what it was before it became unknown; null where it is known, or never was
     belief: BeliefView | None  # of an estimated one
     commanded_by: str | None  # of an output: the ability that has written its value
 

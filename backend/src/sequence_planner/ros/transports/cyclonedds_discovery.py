@@ -467,7 +467,7 @@ class Discovery:
         elif self._nameless_since is None:
             self._nameless_since = now
         elif now - self._nameless_since >= self._patience:
-            _log.debug("endpoints have no node: participants are asked for their nodes again")
+            _log.info("endpoints have no node: participants are asked for their nodes again")
             release(self._reader)
             self._reader = self._listen()
             self._nameless_since, self._patience = now, min(2 * self._patience, _SELDOM)

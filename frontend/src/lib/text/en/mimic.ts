@@ -19,6 +19,8 @@ export const mimic = {
 	then: (now: string, next: string): string => `${now}, then ${next}`,
 	andMore: (named: string, more: number): string => `${named} and ${more} more`,
 	unknownPlace: 'Nobody knows where it is',
+	/** Of what is not heard, or at no known place. */
+	last: (said: string, stop: string): string => `${said}, last: ${stop}`,
 	/** Of what stands where an operation has stopped. */
 	standsWaiting: 'waits',
 	/** Of a device with an alarm that it does not do what it should. */

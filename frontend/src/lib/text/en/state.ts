@@ -46,6 +46,8 @@ export const state = {
 	held: 'Sorting waits while you point.',
 	arrangeNow: 'Sort now',
 	awaits: 'awaits',
+	/** Of what is unknown. */
+	lastKnown: (value: string): string => `last known: ${value}`,
 	units: { s: 's', min: 'min', h: 'h', days: 'days' },
 	justNow: 'just now',
 	ago: (span: string): string => `${span} ago`,

@@ -18,6 +18,7 @@ export const mimic = {
 	then: (now: string, next: string): string => `${now}, sedan ${next}`,
 	andMore: (named: string, more: number): string => `${named} och ${more} till`,
 	unknownPlace: 'Ingen vet var den är',
+	last: (said: string, stop: string): string => `${said}, senast: ${stop}`,
 	standsWaiting: 'väntar',
 	stuck: 'Kommer inte vidare',
 	between: 'Mellan två platser',

@@ -45,6 +45,7 @@ export const state: Text['state'] = {
 	held: 'Ordningen väntar medan du pekar på listan.',
 	arrangeNow: 'Sortera nu',
 	awaits: 'väntar på',
+	lastKnown: (value) => `senast känt: ${value}`,
 	units: { s: 's', min: 'min', h: 'h', days: 'dygn' },
 	justNow: 'just nu',
 	ago: (span) => `för ${span} sedan`,
