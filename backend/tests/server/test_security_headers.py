@@ -54,6 +54,16 @@ def test_a_document_of_the_build_may_run_its_own_scripts_and_no_more(server: Ser
     assert HASH not in client.get("/theme.js").headers["content-security-policy"]
 
 
+def test_who_reads_pages_is_told_by_a_page_that_an_address_leads_nowhere(server: Server, client: httpx.Client) -> None:
+    (server.settings.page / "index.html").write_text(DOCUMENT)
+    (server.settings.page / "404.html").write_text(DOCUMENT)
+    typed = client.get("/operate", headers={"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"})
+    assert (typed.status_code, typed.text, typed.headers["cache-control"]) == (404, DOCUMENT, "no-cache")
+    assert HASH in typed.headers["content-security-policy"]
+    asked = client.get("/operate", headers={"Accept": "*/*"})
+    assert (asked.status_code, asked.headers["content-type"]) == (404, "application/problem+json")
+
+
 def test_a_document_without_a_policy_of_its_own_gets_ours(tmp_path: Path) -> None:
     document = tmp_path / "index.html"
     document.write_text("<!doctype html>")

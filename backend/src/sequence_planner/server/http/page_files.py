@@ -8,6 +8,7 @@ takes them so gets them so. Without a build, a page says how to make one.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from http import HTTPStatus
 from pathlib import Path
 
 from starlette.datastructures import Headers
@@ -20,6 +21,7 @@ from sequence_planner.server.http.middleware import document_policy
 
 IMMUTABLE = "_app/immutable/"
 WALL = "wall.html"
+NOWHERE = "404.html"
 FOR_EVER = "public, max-age=31536000, immutable"
 COMPRESSED = {"br": ".br", "gzip": ".gz"}  # how the build names what it has compressed so, the smallest first
 NOT_BUILT = """<!doctype html>
@@ -58,8 +60,14 @@ class PageFiles:
             path = "index.html"
         elif not _is_file(self.folder / path):
             path += ".html"  # `/operator` is `operator.html`
-        coding, suffix = self._compressed(path, Headers(scope=scope).get("accept-encoding", ""))
+        headers = Headers(scope=scope)
+        is_missing = not _is_file(self.folder / path)
+        if is_missing and "text/html" in headers.get("accept", "") and _is_file(self.folder / NOWHERE):
+            path = NOWHERE  # somebody has typed the address; a program that asks is told by an exception
+        coding, suffix = self._compressed(path, headers.get("accept-encoding", ""))
         response = await self._files.get_response(path + suffix, scope)
+        if path == NOWHERE and response.status_code == HTTPStatus.OK:
+            response.status_code = HTTPStatus.NOT_FOUND
         if suffix:
             response.headers["Content-Encoding"] = coding
         response.headers["Vary"] = "Accept-Encoding"
