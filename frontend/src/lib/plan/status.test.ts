@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
-import type { Job, Operation } from '#lib/contract.ts';
+import type { Ability, Job, Operation } from '#lib/contract.ts';
 import { alarm, PLAN, step, view } from '#lib/testing/view.ts';
-import { isOfNoPlan, isUnheard, nothingNext } from './status.ts';
+import { awaited, isOfNoPlan, isUnheard, nothingNext } from './status.ts';
 
 const active = { active: true } as Operation;
 const idle = { ...PLAN, status: 'idle' as const };
@@ -39,4 +39,14 @@ test('an alarm tells that there is no plan by itself, as what it means, or among
 	const consequence = { id: 'silent.consequence', arguments: { consequence: means } };
 	expect(isOfNoPlan(alarm({ messages: { ...alarm().messages, consequence } }))).toBe(true);
 	expect(isOfNoPlan(alarm())).toBe(false);
+});
+
+test('a plan waits for people while nothing else runs and their tasks take longer than expected', () => {
+	const task = step('operator.place', 'operator', 0, { status: 'running', started: 980, expected_end: 995 });
+	const abilities = { 'operator.place': { human: true } as Ability, 'robot.move': { human: false } as Ability };
+	expect(awaited({ plan: { ...PLAN, steps: [task] }, abilities }, 994)).toEqual([]);
+	expect(awaited({ plan: { ...PLAN, steps: [task] }, abilities }, 996)).toEqual(['operator']);
+	const move = step('robot.move', 'robot', 0, { status: 'running', started: 990, expected_end: 995 });
+	expect(awaited({ plan: { ...PLAN, steps: [task, move] }, abilities }, 996)).toEqual([]);
+	expect(awaited({ plan: { ...PLAN, steps: [] }, abilities }, 996)).toEqual([]);
 });

@@ -24,6 +24,13 @@ export function nothingNext(view: StationView): keyof Text['frame']['nothingNext
 	return Object.values(view.jobs).some(({ state }) => state === 'paused') ? 'order' : 'idle';
 }
 
+/** The people that a plan waits for: nothing else runs, and their tasks take longer than expected. */
+export function awaited({ plan, abilities }: Pick<StationView, 'plan' | 'abilities'>, now: number): string[] {
+	const running = plan.steps.filter(({ status }) => status === 'running');
+	const late = running.filter(({ ability, expected_end: end }) => abilities[ability]?.human === true && end !== null && end < now);
+	return late.length < running.length ? [] : [...new Set(late.map(({ resource }) => resource))];
+}
+
 /** Kinds of alarms that tell that a device does not do what it should. */
 export const STUCK: ReadonlySet<string> = new Set(['overdue', 'still', 'given-up']);
 /** Kinds of alarms that tell that nothing is heard of one, or of several. */

@@ -18,6 +18,7 @@ export const operate = {
 		operation: 'Operation',
 		whole: 'All',
 		waiting: 'Waits',
+		waitsFor: (people: string): string => `Waits for ${people}`,
 		plannedFor: (seconds: number): string => (seconds < 100 ? `planned for ${seconds} s` : `planned for ${Math.round(seconds / 60)} min`),
 		since: { broken: (at: string): string => `Broken at ${at}`, none: (at: string): string => `No plan since ${at}`, stopped: (at: string): string => `Stopped at ${at}` },
 		stopped: 'stopped',

@@ -18,6 +18,7 @@ export const operate: Text['operate'] = {
 		operation: 'Operation',
 		whole: 'Allt',
 		waiting: 'Väntar',
+		waitsFor: (people) => `Väntar på ${people}`,
 		plannedFor: (seconds) => (seconds < 100 ? `planerat för ${seconds} s` : `planerat för ${Math.round(seconds / 60)} min`),
 		since: { broken: (at) => `Bröts ${at}`, none: (at) => `Ingen plan sedan ${at}`, stopped: (at) => `Stoppade ${at}` },
 		stopped: 'stoppat',
