@@ -97,6 +97,13 @@ test('bars that last at the same time stand one below the other, in three rows a
 	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1', '2', '2 crowded', '0']);
 });
 
+test('what has stopped or goes on has its words rather than what has ended', () => {
+	const bar = (from: number, rest: Partial<Bar> = {}): Bar => ({ from, to: from, label: '', number: null, open: false, ...rest });
+	const { rows, all } = placed([bar(0), bar(1), bar(2), bar(3, { open: true }), bar(4, { failed: true }), bar(5)], 10);
+	expect(rows).toBe(3);
+	expect(all.map(({ row, crowded }) => `${row}${crowded ? ' crowded' : ''}`)).toEqual(['0', '1 crowded', '2 crowded', '2', '1', '2 crowded']);
+});
+
 test('what only begins has the room of its words, and one that has none takes it from no other', () => {
 	const bar = (at: number): Bar => ({ from: at, to: at, label: '', number: null, open: false });
 	const { all } = placed([bar(0), bar(1), bar(2), bar(3), bar(10), bar(11)], 10);

@@ -227,19 +227,33 @@ export interface Placed<B extends Bar = Bar> {
 	readonly crowded: boolean;
 }
 
-/** Bars that last at the same time one below the other; each takes `least` seconds of its row. */
+/**
+ * Bars that last at the same time one below the other; each takes `least` seconds of its row. What has stopped or has not
+ * ended has its words rather than what has.
+ */
 export function placed<B extends Bar>(bars: readonly B[], least = 0): { readonly rows: number; readonly all: readonly Placed<B>[] } {
-	const ends: number[] = [];
-	const all = [...bars]
-		.sort((a, b) => a.from - b.from)
-		.map((bar): Placed<B> => {
-			const free = ends.findIndex((end) => end <= bar.from);
-			const row = free >= 0 ? free : Math.min(ends.length, MOST_ROWS - 1);
-			const crowded = free < 0 && ends.length === MOST_ROWS;
-			if (!crowded || least === 0) ends[row] = Math.max(ends[row] ?? -Infinity, bar.to, bar.from + least);
-			return { bar, row, crowded };
-		});
-	return { rows: Math.max(1, ends.length), all };
+	const rows: { end: number; last: { bar: B; row: number; crowded: boolean } }[] = [];
+	const all: { bar: B; row: number; crowded: boolean }[] = [];
+	for (const bar of [...bars].sort((a, b) => a.from - b.from)) {
+		const free = rows.findIndex(({ end }) => end <= bar.from);
+		const place = { bar, row: free >= 0 ? free : Math.min(rows.length, MOST_ROWS - 1), crowded: free < 0 && rows.length === MOST_ROWS };
+		const yielding = place.crowded && lasts(bar) ? rows.findLastIndex(({ last }) => !lasts(last.bar)) : -1;
+		const other = rows[yielding];
+		if (other) {
+			other.last.crowded = true;
+			Object.assign(place, { row: yielding, crowded: false });
+		}
+		all.push(place);
+		const end = Math.max(rows[place.row]?.end ?? -Infinity, bar.to, bar.from + least);
+		if (!place.crowded) rows[place.row] = { end, last: place };
+		else if (least === 0) rows[place.row] = { end, last: rows[place.row]?.last ?? place };
+	}
+	return { rows: Math.max(1, rows.length), all };
+}
+
+/** Whether something has stopped, or goes on. */
+function lasts({ failed, open }: Bar): boolean {
+	return failed === true || open;
 }
 
 /** What is nearest to a time in a lane, at most `reach` seconds away: something that began or happened there. */
