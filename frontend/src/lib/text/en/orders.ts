@@ -2,9 +2,9 @@ import { count } from '../count.ts';
 
 /** Orders: what is asked of the station, where that stands, and what was made. */
 export const orders = {
-	summary: (made: string, left: number, last: string | null): string => {
-		const open = left === 0 ? 'no order is open' : `${left} to be made`;
-		return `${made} made by order today, ${open}${last === null ? '' : `; the last is expected at ${last}`}`;
+	summary: (made: string, left: number, held: number, last: string | null): string => {
+		const open = [left > 0 || held === 0 ? `${left === 0 ? 'none' : left} to be made` : '', held > 0 ? `${held} not released` : ''];
+		return `${made} made by order today, ${open.filter(Boolean).join(', ')}${last === null ? '' : `; the last is expected at ${last}`}`;
 	},
 	work: 'How the station works',
 	ways: {

@@ -2,9 +2,9 @@ import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const orders: Text['orders'] = {
-	summary: (made, left, last) => {
-		const open = left === 0 ? 'ingen order är öppen' : `${left} ska tillverkas`;
-		return `${made} tillverkade på order i dag, ${open}${last === null ? '' : `; den sista väntas vara klar ${last}`}`;
+	summary: (made, left, held, last) => {
+		const open = [left > 0 || held === 0 ? `${left === 0 ? 'inga' : left} ska tillverkas` : '', held > 0 ? `${held} inte frisläppta` : ''];
+		return `${made} tillverkade på order i dag, ${open.filter(Boolean).join(', ')}${last === null ? '' : `; den sista väntas vara klar ${last}`}`;
 	},
 	work: 'Hur stationen arbetar',
 	ways: {
