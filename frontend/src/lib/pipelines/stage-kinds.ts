@@ -19,6 +19,7 @@ import Filter from '@lucide/svelte/icons/funnel';
 import Limit from '@lucide/svelte/icons/gauge';
 import Tick from '@lucide/svelte/icons/timer';
 import Timeout from '@lucide/svelte/icons/alarm-clock-off';
+import { helpIn } from '#lib/model/field-help.svelte.ts';
 import { PARTS } from '#lib/model/documents.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
 
@@ -41,7 +42,7 @@ export const kindTitle = (kind: string, { pipelines: { kindTitles } }: Pick<Text
 const isTitled = <Titles extends object>(kind: string, titles: Titles): kind is keyof Titles & string => Object.hasOwn(titles, kind);
 
 /** What a kind does, in a sentence. */
-export const helpOf = (kind: string): string => PARTS['stage']?.fields[kind]?.help ?? '';
+export const helpOf = (kind: string): string => helpIn(PARTS['stage']?.fields[kind]?.help ?? '');
 
 /** The kinds that the documents know, by group; those of none are the last. */
 export function kindsByGroup(): [StageGroup, readonly string[]][] {

@@ -3,7 +3,7 @@ import type { Text } from '../text.svelte.ts';
 
 export const orders: Text['orders'] = {
 	summary: (made, left, held, last) => {
-		const open = [left > 0 || held === 0 ? `${left === 0 ? 'inga' : left} ska tillverkas` : '', held > 0 ? `${held} inte frisläppta` : ''];
+		const open = [left > 0 || held === 0 ? `${left === 0 ? 'inga' : left} ska tillverkas` : '', held > 0 ? `${held} inte släppta` : ''];
 		return `${made} tillverkade på order i dag, ${open.filter(Boolean).join(', ')}${last === null ? '' : `; den sista väntas vara klar ${last}`}`;
 	},
 	work: 'Hur stationen arbetar',
