@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import make_idl_struct, types
 from cyclonedds.pub import DataWriter
@@ -18,11 +19,12 @@ from hypothesis import strategies as st
 from ros_networks import Network, play, settle, standard
 from ros_processes import peer
 
+from sequence_planner.ros import names
 from sequence_planner.ros.qos import Direction, QualityOfService
 from sequence_planner.ros.transport import Sample, Transport, TransportError
-from sequence_planner.ros.transports import cyclonedds_network
+from sequence_planner.ros.transports import cyclonedds, cyclonedds_network
 from sequence_planner.ros.transports.choice import open_transport
-from sequence_planner.ros.transports.cyclonedds_discovery import Discovery
+from sequence_planner.ros.transports.cyclonedds_discovery import Discovery, user_data
 from sequence_planner.ros.transports.cyclonedds_network import MOST_IN_PROCESS, loopback_configuration
 from sequence_planner.ros.types.errors import MalformedMessageError
 from sequence_planner.ros.types.messages import MessageRegistry
@@ -107,32 +109,39 @@ def test_a_peer_that_comes_during_a_look_at_the_network_has_its_name(monkeypatch
     play("cyclonedds", scenario)
 
 
-def test_what_was_lost_of_a_peer_s_nodes_is_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody tells it once more by themselves: under load a station saw emulated devices without a name for ever."""
-    take = Discovery._take_nodes
-    lost: list[int] = []
+def test_peers_are_told_of_every_endpoint_more_than_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who joins in the moment in which one is made may never hear of it. Where that was the one that tells nodes, a
+    station saw emulated devices without a name for ever.
+    """
+    monkeypatch.setattr(cyclonedds, "TOLD_AGAIN", (0.2,))
+
+    async def answer(request: bytes) -> bytes:
+        return request
 
     async def scenario(network: Network) -> None:
         station = network.join("station")
+        onlooker = DomainParticipant(DOMAIN)
+        readers = [
+            BuiltinDataReader(onlooker, kind) for kind in (BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription)
+        ]
+        told: dict[tuple[str, int], bytes] = {}
 
-        def lose(discovery: Discovery) -> None:
-            if len(lost) < 3 and discovery._node_name == "station":
-                lost.append(len(list(cyclonedds_network.take_all(discovery._reader))))
-            else:
-                take(discovery)
+        def look() -> set[tuple[str, int]]:
+            for number, reader in enumerate(readers):
+                told.update({(each.topic_name, number): user_data(each.qos) for each in reader.take(100)})
+            return {endpoint for endpoint, data in told.items() if b"told=2;" in data}
 
-        monkeypatch.setattr(Discovery, "_take_nodes", lose)
-        device = network.join("device")
-        device.advertise("/pong", TEXT, RELIABLE)
-
-        def names() -> list[str | None]:
-            return [endpoint.node for endpoint in station.graph() if endpoint.topic == "/pong"]
-
-        await settle()
-        while len(lost) < 3:
-            assert names() == [None]
-        assert sum(lost) > 0
-        await until_async(lambda: names() == ["/device"], "the device is named")
+        station.advertise("/ping", TEXT, RELIABLE)
+        station.subscribe("/pong", TEXT, RELIABLE, lambda batch: None)
+        station.serve("/ask", "std_srvs/srv/Trigger", answer)
+        request, reply = names.dds_service("/ask")
+        publisher, subscriber = 0, 1
+        every = {("ros_discovery_info", publisher), ("ros_discovery_info", subscriber)}
+        every |= {("rt/ping", publisher), ("rt/pong", subscriber), (reply, publisher), (request, subscriber)}
+        await until_async(lambda: look() == every, "all of them are told of again")
+        hashed = [names.type_hash_of(told[endpoint]) for endpoint in every]
+        assert None not in hashed, "what was told before is told still"
+        assert names.server_of(told[reply, publisher]) == names.server_of(told[request, subscriber]) is not None
 
     play("cyclonedds", scenario)
 

@@ -64,6 +64,46 @@ from sequence_planner.ros.types.messages import MessageRegistry
 from sequence_planner.ros.types.standard_types import ServiceType
 from sequence_planner.ros.types.type_description import TypeDescription
 
+_log = structlog.get_logger(__name__)
+
+# Peers are told of endpoints more than once.
+
+TOLD_AGAIN: Final = (3.0, 15.0)
+"""Seconds after which peers are told of an endpoint once more.
+
+Discovery is reliable, and yet a peer that joins in just the moment in which an endpoint is made has been seen never to
+hear of it; where that is the one that tells a participant's nodes, all others of that participant have no node. An
+endpoint whose user data changes is told anew; ROS 2 reads no key there that it does not know.
+"""
+
+
+class Reminder:
+    """Tells peers of endpoints once more. All methods belong on the event loop's thread."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._closed = False
+
+    def keep_telling(self, *endpoints: DataReader[RawSample] | DataWriter[RawSample]) -> None:
+        """Tell of endpoints that have just been made."""
+        for endpoint in endpoints:
+            data = user_data(endpoint.get_qos())
+            for times, seconds in enumerate(TOLD_AGAIN, 2):
+                self._loop.call_later(seconds, self._tell, endpoint, data + f"told={times};".encode())
+
+    def close(self) -> None:
+        """Tell no more: endpoints may be deleted now."""
+        self._closed = True
+
+    def _tell(self, endpoint: DataReader[RawSample] | DataWriter[RawSample], data: bytes) -> None:
+        if self._closed:
+            return
+        try:
+            endpoint.set_qos(Qos(Policy.Userdata(data)))
+        except DDSException:
+            _log.exception("DDS cannot tell of an endpoint again")
+
+
 # A client or a server of a service over cyclonedds: what it writes and what it reads.
 
 
@@ -151,7 +191,6 @@ def hush(whose: object, known: bool) -> None:
 # then execute what it makes of our header. So a request is written only while every reader that it would reach says
 # that it belongs to a server of this mapping, and a request that comes from anybody else is dropped.
 
-_log = structlog.get_logger(__name__)
 
 _POLL = 0.02  # seconds between two looks for a peer
 _LOOKS = 100  # for a client that has called, as a reader of the answer
@@ -175,9 +214,11 @@ class CycloneServices:
         raw: RawTypes,
         receiver: Receiver,
         loop: asyncio.AbstractEventLoop,
+        reminder: Reminder,
         told_on: Callable[[str], list[bytes]],
     ) -> None:
         """Begin without any; `told_on` gives the user data of all publishers of a topic of DDS."""
+        self._reminder = reminder
         self._told_on = told_on
         self._participant = participant
         self._registry = registry
@@ -298,6 +339,7 @@ class CycloneServices:
             raise TransportError(f"DDS refuses {service} as {type_name}: {error}") from error
         delivery = Delivery(self._loop, service, on_batch)
         self._receiver.add(service, reader, delivery)
+        self._reminder.keep_telling(writer, reader)
         return CallEnd(
             service, types, writer, self._raw(outward[1], called=True), reader, delivery, (topics[0], topics[1])
         )
@@ -345,14 +387,6 @@ def _responder(service: str, end: CallEnd, header: CallHeader) -> Callable[[byte
 # registry.
 
 
-TOLD_AGAIN: Final = (3.0, 15.0)
-"""Seconds after which peers are told of an endpoint once more.
-
-Discovery is reliable, and yet a peer that joins in just the moment in which an endpoint is made has been seen never to
-hear of it. An endpoint whose user data changes is told anew; ROS 2 reads no key there that it does not know.
-"""
-
-
 class _Publisher(Immutable):
     writer: DataWriter[RawSample]
     raw: type[RawSample]
@@ -392,8 +426,10 @@ class CycloneTransport:
         except DDSException as error:
             leave(self._participant)
             raise TransportError(f"DDS cannot start on domain {domain}: {error}") from error
+        self._reminder = Reminder(loop)
+        self._reminder.keep_telling(*self._discovery.own_endpoints)
         self._services = CycloneServices(
-            self._participant, registry, self._raw, self._receiver, loop, self._discovery.told_on
+            self._participant, registry, self._raw, self._receiver, loop, self._reminder, self._discovery.told_on
         )
         self._strangers = Strangers(loop, self._discovery.services_now, partial(hush, self._discovery))
         self._announce()
@@ -411,7 +447,7 @@ class CycloneTransport:
         except DDSException as error:
             raise TransportError(f"DDS cannot advertise {topic}: {error}") from error
         self._publishers[topic] = _Publisher(writer, self._raw(type_name), type_name, qos)
-        self._tell_later(writer, type_name)
+        self._reminder.keep_telling(writer)
         self._events.add(Watched(topic, qos, writer))
         self._announce()
 
@@ -434,7 +470,7 @@ class CycloneTransport:
             raise TransportError(f"DDS cannot subscribe to {topic}: {error}") from error
         delivery = Delivery(self._loop, topic, on_batch)
         self._readers.append((reader, delivery))
-        self._tell_later(reader, type_name)
+        self._reminder.keep_telling(reader)
         self._receiver.add(topic, reader, delivery)
         self._events.add(Watched(topic, qos, reader))
         self._announce()
@@ -487,6 +523,7 @@ class CycloneTransport:
         for _, delivery in self._readers:
             delivery.close()
         self._watchers.clear()
+        self._reminder.close()
         self._strangers.close()
         self._services.close()
         self._receiver.close()
@@ -523,19 +560,6 @@ class CycloneTransport:
 
     def _qos(self, type_name: str, qos: QualityOfService) -> Qos:
         return endpoint_qos(qos, names.type_hash_user_data(self._registry.type_hash(type_name)))
-
-    def _tell_later(self, endpoint: DataReader[RawSample] | DataWriter[RawSample], type_name: str) -> None:
-        data = names.type_hash_user_data(self._registry.type_hash(type_name))
-        for times, seconds in enumerate(TOLD_AGAIN, 2):
-            self._loop.call_later(seconds, self._tell_again, endpoint, data + f"told={times};".encode())
-
-    def _tell_again(self, endpoint: DataReader[RawSample] | DataWriter[RawSample], data: bytes) -> None:
-        if self._closed:
-            return
-        try:
-            endpoint.set_qos(Qos(Policy.Userdata(data)))
-        except DDSException:
-            _log.exception("DDS cannot tell of an endpoint again")
 
     def _changed(self, watched: Watched, change: StatusChange) -> None:
         """Hand a change over to the event loop; called on a thread of the middleware."""

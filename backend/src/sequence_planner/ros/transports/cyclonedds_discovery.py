@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Collection, Container, Iterable
-from functools import partial
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Literal, get_args
 from uuid import UUID
@@ -313,10 +312,6 @@ def is_transient_local(qos: Qos) -> bool:
 
 _CHUNK = 256
 
-#: Seconds for which a participant's endpoints may be there before it is known to which nodes they belong, and at most
-#: between two questions for that.
-_NAMELESS, _SELDOM = 3.0, 60.0
-
 
 class Discovery:
     """The endpoints and nodes of one domain, as seen by one participant, and this participant as others see it."""
@@ -338,11 +333,13 @@ class Discovery:
         self._topic = Topic(participant, discovery_info.TOPIC, raw)
         # Peers look for a hash at endpoints of every topic, and warn where there is none.
         data = names.type_hash_user_data(registry.type_hash(discovery_info.TYPE_NAME))
-        self._listen = partial(DataReader, participant, self._topic, discovery_qos(data, reader=True))
-        self._reader = self._listen()
+        self._reader = DataReader(participant, self._topic, discovery_qos(data, reader=True))
         self._writer = DataWriter(participant, self._topic, discovery_qos(data, reader=False))
-        self._nameless_since: float | None = None
-        self._patience = _NAMELESS
+
+    @property
+    def own_endpoints(self) -> tuple[DataReader[RawSample], DataWriter[RawSample]]:
+        """The endpoints by which participants tell one another their nodes."""
+        return self._reader, self._writer
 
     def announce(self, readers: Iterable[UUID], writers: Iterable[UUID]) -> None:
         """Tell the network that these endpoints belong to this participant's node."""
@@ -448,29 +445,6 @@ class Discovery:
             self._refresh(direction)
         present = {seen.participant_key for known in self._known.values() for seen in known.values()}
         self._nodes = {participant: nodes for participant, nodes in self._nodes.items() if participant in present}
-        self._ask_again()
-
-    def _ask_again(self) -> None:
-        """Let participants tell their nodes once more, where endpoints have been without one for long.
-
-        A participant tells it again only when it has other endpoints. What was lost of that, as on a machine under
-        load, would be lost for ever; whoever begins to listen anew is told the last of it.
-        """
-        nameless = any(
-            seen.participant_key != self._own and names.ros_topic(seen.topic_name) and self._node(seen) is None
-            for known in self._known.values()
-            for seen in known.values()
-        )
-        now = time.monotonic()
-        if not nameless:
-            self._nameless_since, self._patience = None, _NAMELESS
-        elif self._nameless_since is None:
-            self._nameless_since = now
-        elif now - self._nameless_since >= self._patience:
-            _log.info("endpoints have no node: participants are asked for their nodes again")
-            release(self._reader)
-            self._reader = self._listen()
-            self._nameless_since, self._patience = now, min(2 * self._patience, _SELDOM)
 
     def _take_nodes(self) -> None:
         for sample in take_all(self._reader):
