@@ -2,7 +2,7 @@ import * as fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
 import type { MimicStop, MimicTrack } from '#lib/contract.ts';
 import { along, crop, duration, firstPart, lengthOf, movement, nextBox, placeOf, placesOf, route, steps, uncut, wayPath, wayPoints, type Point } from './geometry.ts';
-import { fit } from './measure.svelte.ts';
+import { fit } from '#lib/wording/measure.svelte.ts';
 
 const stop = (value: string, x: number, y: number): MimicStop => ({ value, title: {}, x, y, label: 'above', room: 100, branch: y > 0 });
 /** A line from home over above to far, with two branches below above. */

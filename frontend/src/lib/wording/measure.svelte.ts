@@ -1,6 +1,6 @@
-/** How wide texts are in the picture, so that none reaches out of its card. */
+/** How wide texts of drawings are, as of the picture and the plan, so that none reaches out of its card. */
 
-/** The sizes of text in the picture. */
+/** The sizes of text in drawings. */
 export type Font = 'strong' | 'second' | 'small';
 
 const FONTS: Readonly<Record<Font, readonly [weight: number, size: number]>> = {
