@@ -156,6 +156,7 @@ export const help: Helped = {
 				'Read what will be different: each change in a sentence, with what follows from it. Files show every line.',
 				'The plan of the station as it stands now, with the model that runs and with the draft.',
 				'Checks: what was looked for, how long it took, and what was found.',
+				'Where two people are needed: whoever did not save the revision approves it, or asks for changes, below Talk. Until then it is told to all who may, here and on Operate.',
 				'Bring it to the station: do what is still missing in the list, then deploy.',
 				'Revisions: see what differs, or go back to one. You read what that undoes first.'
 			]

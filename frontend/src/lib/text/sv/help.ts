@@ -155,6 +155,7 @@ export const help: Helped = {
 				'Läs vad som blir annorlunda: varje ändring i en mening, med det som följer av den. Filer visar varje rad.',
 				'Planen för stationen som den står nu, med modellen som körs och med utkastet.',
 				'Kontroller: vad som söktes, hur lång tid det tog och vad som hittades.',
+				'Där två personer behövs: någon annan än den som sparade revisionen godkänner den, eller ber om ändringar, under Samtal. Till dess får alla som kan göra det veta det, här och på Drift.',
 				'För det till stationen: gör det som saknas i listan, driftsätt sedan.',
 				'Revisioner: se vad som skiljer, eller gå tillbaka till en. Du läser först vad det ångrar.'
 			]
