@@ -136,7 +136,8 @@ export const help: Helped = {
 				'Gå vidare på annat sätt från vilket steg som helst: det blir en egen gren.',
 				'Följ planen, eller kör tills ett villkor gäller.',
 				'Eller prova i simulerad tid: låt klockan gå, ge en enhet ett fel, gå tillbaka till ett ögonblick och vidare på annat sätt.',
-				'Eller se hela tillståndsrummet: välj variabler att dela in det efter, så syns vad som är förbjudet eller inte säkert.'
+				'Eller se hela tillståndsrummet: välj variabler att dela in det efter, så syns vad som är förbjudet eller inte säkert. Bilden börjar där stationen är; den sista knappen ovanför visar alltihop.',
+				'Adressen kommer ihåg vilken av de tre som visas.'
 			]
 		},
 		begin: {
