@@ -274,7 +274,7 @@ def test_places_in_which_the_draft_differs_are_counted(eva: httpx.Client) -> Non
     number = made(eva, {"kind": "text", "file": "resources/notes.yaml", "was": None, "text": "one: 1\ntwo: 2\n"})[
         "number"
     ]
-    assert read(eva, "/changes") == {"number": number, "changes": 2}
+    assert read(eva, "/changes") == {"number": number, "changes": 2, "waits": None}
 
 
 def test_versions_are_compared(eva: httpx.Client) -> None:
